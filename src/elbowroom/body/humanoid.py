@@ -1,0 +1,47 @@
+"""Who moves: a humanoid avatar, read from a file or the stock one."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from elbowroom.body.capsules import Capsules
+from elbowroom.body.rig import Rig
+from elbowroom.body.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class AvatarMeta:
+    """What the file says about itself; empty strings where it is silent."""
+
+    title: str = ""
+    authors: tuple[str, ...] = ()
+    licence: str = ""
+    format: str = ""  # "VRM 1.0", "VRM 0.x", "glTF 2.0"
+
+
+@dataclass(frozen=True, eq=False)
+class Humanoid:
+    """An avatar: skeleton, collision body, and the rig of the file that it came from."""
+
+    name: str
+    skeleton: Skeleton
+    capsules: Capsules
+    rig: Rig | None = None  # None for a humanoid that has no file
+    source: Path | None = None
+    meta: AvatarMeta = field(default_factory=AvatarMeta)
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Humanoid":
+        """Read a VRM 0.x, VRM 1.0 or glTF/GLB humanoid.
+
+        Raises `InputError` if the file cannot be read or holds no humanoid.
+        """
+        from elbowroom.body.loading import load_humanoid
+
+        return load_humanoid(Path(path))
+
+    @classmethod
+    def default(cls) -> "Humanoid":
+        """The stock avatar, which comes with the package."""
+        from elbowroom.body.stock import stock_avatar_path
+
+        return cls.load(stock_avatar_path())

@@ -1,0 +1,1 @@
+"""How good: crossing trials with a scripted user."""

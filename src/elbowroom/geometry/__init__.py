@@ -1,0 +1,1 @@
+"""Rotations, rigid transforms and primitives: right-handed, Y up, quaternions `xyzw`, metres and radians."""

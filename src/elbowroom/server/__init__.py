@@ -1,0 +1,1 @@
+"""Over the wire: message schema, live sessions and the web application."""

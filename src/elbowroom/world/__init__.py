@@ -1,0 +1,1 @@
+"""Where: scenes, clearance kernels and the walkable map."""
