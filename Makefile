@@ -1,0 +1,73 @@
+# make run    walk an avatar through a scene in the browser      make test   lint, types, all tests
+# make env    .venv with the `elbowroom` command                 make clean  forget .venv and the built client
+SHELL := /bin/sh
+VENV := .venv
+BIN := $(VENV)/bin
+PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; do \
+	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && command -v "$$p" && break; done)
+WEB_SOURCES := $(shell find web -name node_modules -prune -o -type f -print 2>/dev/null)
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# Bytecode that is not kept makes every start two to four times slower.
+unexport PYTHONDONTWRITEBYTECODE
+
+.DEFAULT_GOAL := help
+.PHONY: help env run test lint types unit web-test browser clean format
+
+help:
+	@sed -n '1,2s/^# //p' Makefile
+
+run: env
+	@$(BIN)/elbowroom play $(ARGS)
+
+env: $(VENV)/installed
+
+$(VENV)/made:
+	@test -n "$(PYTHON)" || { echo "Elbowroom needs Python 3.11 or newer: sudo apt install python3 python3-venv"; exit 1; }
+	@echo "==> Making $(VENV) with $(PYTHON)"
+	@"$(PYTHON)" -m venv $(VENV) || { rm -rf $(VENV); echo "Python has no venv module: sudo apt install python3-venv"; exit 1; }
+	@$(BIN)/python -m pip install --quiet --upgrade pip
+	@touch $@
+
+$(VENV)/installed: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
+	@echo "==> Installing Elbowroom and building its page (about a minute the first time)"
+	@$(BIN)/python -m pip install --editable .
+	@$(BIN)/python -m compileall -q src
+	@touch $@
+
+$(VENV)/developer: $(VENV)/installed
+	@echo "==> Installing the tools for tests"
+	@$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+test: lint types unit web-test browser
+	@echo "==> All tests passed"
+
+lint: $(VENV)/developer
+	@echo "==> Lint"
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+
+types: $(VENV)/developer
+	@echo "==> Types"
+	@$(BIN)/mypy
+
+unit: $(VENV)/developer
+	@echo "==> Tests"
+	@$(BIN)/python -m pytest -m "not browser" -n 2 --dist loadgroup $(ARGS)
+
+web-test: $(VENV)/developer
+	@echo "==> Tests of the page's modules"
+	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
+	@$(BIN)/python hatch_build.py test
+
+browser: $(VENV)/developer
+	@echo "==> Tests in a real browser"
+	@sh tools/install_browser.sh
+	@$(BIN)/python -m pytest -m browser $(ARGS)
+
+format: $(VENV)/developer
+	@$(BIN)/ruff check --fix .
+	@$(BIN)/ruff format .
+
+clean:
+	rm -rf $(VENV) src/elbowroom/client web/node_modules dist

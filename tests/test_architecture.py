@@ -1,0 +1,60 @@
+"""The rooms' order: an import points to the same room or to one below it."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import elbowroom
+
+PACKAGE = Path(elbowroom.__file__).parent
+ROOMS = ["geometry", "formats", "body", "world", "planning", "control", "experiment", "server", "cli"]
+FOR_ALL = {"errors", "jit"}
+
+
+def imported_modules(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            module = node.module or ""
+            yield from ([f"elbowroom.{alias.name}" for alias in node.names] if module == "elbowroom" else [module])
+
+
+def room_of(module: str) -> str | None:
+    parts = module.split(".")
+    return parts[1] if parts[0] == "elbowroom" and len(parts) > 1 else None
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_imports_point_down(room: str) -> None:
+    below = set(ROOMS[: ROOMS.index(room) + 1]) | FOR_ALL
+    for path in (PACKAGE / room).rglob("*.py"):
+        for module in imported_modules(path):
+            target = room_of(module)
+            if module.startswith("elbowroom") and target != "__version__":
+                assert target in below, f"{path.relative_to(PACKAGE)} imports {module}, which is above {room}"
+
+
+def test_every_folder_with_code_is_a_room() -> None:
+    folders = {path.relative_to(PACKAGE).parts[0] for path in PACKAGE.glob("*/*.py")}
+    assert folders == set(ROOMS)
+
+
+def test_only_the_page_server_knows_the_network() -> None:
+    wire = {"starlette", "uvicorn", "websockets", "socket", "asyncio"}
+    for room in ROOMS[: ROOMS.index("server")]:
+        for path in (PACKAGE / room).rglob("*.py"):
+            assert not wire & {module.split(".")[0] for module in imported_modules(path)}, path
+
+
+def test_nothing_below_the_experiment_reads_a_clock_to_decide() -> None:
+    for room in ROOMS[: ROOMS.index("experiment")]:
+        for path in (PACKAGE / room).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text())):
+                if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "time":
+                    assert node.attr == "perf_counter_ns", f"{path}: time.{node.attr}"
+                if isinstance(node, ast.Attribute) and node.attr in {"now", "utcnow"}:
+                    raise AssertionError(f"{path}: {node.attr}")
