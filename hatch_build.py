@@ -79,7 +79,7 @@ class ClientHook(BuildHookInterface):  # type: ignore[type-arg, misc]
         """Ask for Node.js only if there is something to build."""
         return [] if client_is_fresh() or os.environ.get("ELBOWROOM_SKIP_CLIENT") else [NODE]
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
         """Build the client if it is stale."""
         if os.environ.get("ELBOWROOM_SKIP_CLIENT"):
             self.app.display_warning("ELBOWROOM_SKIP_CLIENT is set: installing without the web page.")
