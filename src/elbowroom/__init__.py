@@ -1,3 +1,47 @@
-"""You steer; your avatar finds the elbow room."""
+"""You steer; your avatar finds the elbow room.
+
+>>> import elbowroom as er
+>>> controller = er.Controller(er.Humanoid.default(), er.Scene.load("a"), seed=0)
+>>> frame = controller.step(er.Command(forward=1.0), dt=1 / 60)
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from elbowroom.body.humanoid import Humanoid as Humanoid
+    from elbowroom.body.root import RootState as RootState
+    from elbowroom.control.controller import Controller as Controller
+    from elbowroom.control.frame import Frame as Frame
+    from elbowroom.control.frame import Phase as Phase
+    from elbowroom.control.recording import Recorder as Recorder
+    from elbowroom.errors import InputError as InputError
+    from elbowroom.planning.command import Command as Command
+    from elbowroom.world.scene import Scene as Scene
 
 __version__ = "0.1.0"
+
+# Where each public name lives; it is imported when it is first asked for, so that `import elbowroom` costs nothing.
+_HOMES = {
+    "Command": "planning.command",
+    "Controller": "control.controller",
+    "Frame": "control.frame",
+    "Humanoid": "body.humanoid",
+    "InputError": "errors",
+    "Phase": "control.frame",
+    "Recorder": "control.recording",
+    "RootState": "body.root",
+    "Scene": "world.scene",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'elbowroom' has no attribute {name!r}")
+    value = getattr(import_module(f"elbowroom.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

@@ -1,0 +1,86 @@
+"""The command line's frame: which commands there are, and how every one of them ends.
+
+Exit codes: 0 done, 1 the thing measured fell short, 2 the call or a file is wrong, 130 interrupted. Whatever is
+wrong from outside is one line on stderr, never a traceback.
+
+A command is one function in a module of its own, registered at the foot of this file. Modules import what is heavy
+inside their function, so that `elbowroom --help` answers at once.
+"""
+
+import sys
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from elbowroom import __version__
+from elbowroom.cli import replay, walk
+from elbowroom.errors import InputError
+
+WRONG_CALL = 2
+INTERRUPTED = 130
+
+# The base of all "wrong call" errors, which typer takes from click or carries itself, depending on its version.
+_CallError: type[Any] = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")
+
+
+class _Commands(TyperGroup):
+    """The group of all commands; wrong input becomes one line and exit code 2."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except InputError as error:
+            typer.echo(f"elbowroom: {error}", err=True)
+            raise typer.Exit(WRONG_CALL) from None
+
+
+app = typer.Typer(
+    cls=_Commands,
+    help="You steer; your avatar finds the elbow room.",
+    epilog="Examples:  elbowroom walk --scene d --queue 5 --seed 0 --record run.elbow  |  elbowroom replay run.elbow",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"elbowroom {__version__}")
+        raise typer.Exit()
+
+
+@app.callback(invoke_without_command=True)
+def _first(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    del version
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+        raise typer.Exit(WRONG_CALL)
+
+
+def run() -> None:
+    """Run the command that the arguments ask for, and leave the process with its exit code."""
+    try:
+        code = app(standalone_mode=False)
+    except (KeyboardInterrupt, typer.Abort):
+        code = INTERRUPTED
+    except _CallError as error:
+        typer.echo(f"elbowroom: {_one_line(error)}", err=True)
+        code = WRONG_CALL
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _one_line(error: Any) -> str:
+    message = " ".join(str(error.format_message()).split()).removesuffix(".")
+    context = getattr(error, "ctx", None)
+    return f"{message} (see {context.command_path} --help)" if context is not None else message
+
+
+app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
+app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
