@@ -1,0 +1,89 @@
+"""Where: obstacles, ground, a start and a finish."""
+
+import math
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from elbowroom.body.root import RootState
+from elbowroom.errors import InputError
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.json_place import parse_json, read_json
+
+MAX_FILE_BYTES = 16 * 2**20
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A line on the ground to cross: `heading` is the direction of crossing, `width` the length of the line."""
+
+    position: tuple[float, float]  # middle of the line: x, z, metres
+    heading: float = 0.0  # radians
+    width: float = 4.0  # metres
+
+    def passed(self, x: float, z: float) -> bool:
+        """Whether a point on the ground lies behind the line, within its width."""
+        dx, dz = x - self.position[0], z - self.position[1]
+        sine, cosine = math.sin(self.heading), math.cos(self.heading)
+        return dx * sine + dz * cosine >= 0.0 and abs(dx * cosine - dz * sine) <= 0.5 * self.width
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A place to walk through; it never changes. `Scene.load` reads one, stock or from a file."""
+
+    name: str
+    title: str
+    description: str
+    ground_center: tuple[float, float]  # x, z, metres
+    ground_size: tuple[float, float]  # extent along x and z, metres
+    start: RootState
+    finish: Gate
+    boxes: Boxes
+    box_names: tuple[str, ...]  # (B,)
+
+    @classmethod
+    def load(cls, name_or_path: str | Path) -> "Scene":
+        """A stock scene by its name (`"a"`, in either case) or a scene file (JSON) by its path.
+
+        Raises `InputError` if there is no such scene, or the file breaks the published schema
+        (`elbowroom/world/data/scene.schema.json`), or its start stands in an obstacle.
+        """
+        stock = None if isinstance(name_or_path, Path) else name_or_path.lower()
+        if stock in cls.stock_names():
+            source = f"{stock}.json"
+            return cls.from_dict(parse_json((_stock() / source).read_text("utf-8"), source), source)
+        path = Path(name_or_path)
+        if path.suffix.lower() != ".json" and not path.is_file():
+            names = ", ".join(cls.stock_names())
+            raise InputError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor a .json file")
+        return cls.from_dict(read_json(path, MAX_FILE_BYTES), str(path))
+
+    @staticmethod
+    def stock_names() -> tuple[str, ...]:
+        """The names of the scenes that come with the package: the paper's four first."""
+        found = sorted(entry.name.removesuffix(".json") for entry in _stock().iterdir() if entry.name.endswith(".json"))
+        return tuple(sorted(found, key=len))
+
+    @classmethod
+    def from_dict(cls, document: Any, source: str = "scene") -> "Scene":
+        """A scene from a parsed JSON document; `source` is how error messages call it. Raises `InputError`."""
+        from elbowroom.world.scene_format import read_scene
+
+        return read_scene(document, source)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""
+        from elbowroom.world.scene_format import write_scene
+
+        return write_scene(self)
+
+    def finished(self, root: RootState) -> bool:
+        """Whether the avatar has crossed the finish gate."""
+        return self.finish.passed(root.x, root.z)
+
+
+def _stock() -> Traversable:
+    return files("elbowroom.world") / "data" / "scenes"

@@ -1,0 +1,179 @@
+"""Scenes as JSON documents: the run-time reader and writer of what `data/scene.schema.json` publishes.
+
+A test holds reader and schema together on many broken documents.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.errors import InputError
+from elbowroom.geometry import quaternion
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.clearance import pairwise_clearance
+from elbowroom.world.json_place import Place
+from elbowroom.world.scene import Gate, Scene
+
+FORMAT = "elbowroom-scene"
+VERSION = 1
+
+MAX_OBSTACLES = 10_000
+FARTHEST = 10_000.0  # metres, any coordinate
+LARGEST = 1_000.0  # metres, any size
+_FULL_TURN = 6.2832  # radians; what is larger was meant in degrees
+_NAME, _TITLE, _PROSE = 100, 200, 4000  # characters
+
+# What a start must leave free: a slim standing figure's legs and pelvis, metres.
+_STANCE_LOW, _STANCE_HIGH, _STANCE_RADIUS = 0.1, 1.0, 0.12
+
+_REQUIRED = ("format", "version", "name", "ground", "start", "finish", "obstacles")
+_TURNS = ("rotation", "yaw", "euler")
+
+
+def read_scene(document: Any, source: str) -> Scene:
+    """The scene in a parsed JSON document; raises `InputError` at the first wrong field."""
+    fields = Place(source, "$", document).fields(_REQUIRED, ("$schema", "title", "description"))
+    fields["format"].constant(FORMAT)
+    fields["version"].constant(VERSION)
+    if "$schema" in fields:
+        fields["$schema"].text(_TITLE)
+    name = fields["name"].text(_NAME, least=1)
+    ground = fields["ground"].fields(("size",), ("center",))
+    boxes, names = _read_obstacles(fields["obstacles"])
+    scene = Scene(
+        name=name,
+        title=fields["title"].text(_TITLE) if "title" in fields else name,
+        description=fields["description"].text(_PROSE) if "description" in fields else "",
+        ground_center=_pair(ground["center"].vector(2, -FARTHEST, FARTHEST)) if "center" in ground else (0.0, 0.0),
+        ground_size=_pair(ground["size"].vector(2, 0.0, LARGEST, above=True)),
+        start=_read_start(fields["start"]),
+        finish=_read_gate(fields["finish"]),
+        boxes=boxes,
+        box_names=names,
+    )
+    _refuse_start_in_obstacle(scene, fields["start"])
+    return scene
+
+
+def _pair(values: list[float]) -> tuple[float, float]:
+    return values[0], values[1]
+
+
+def _angle(place: Place) -> float:
+    if isinstance(place.value, int | float) and _FULL_TURN < abs(place.value) <= 360.0:
+        place.fail(f"must be an angle in radians (were these degrees? then write {math.radians(place.value):.4f})")
+    return place.number(-_FULL_TURN, _FULL_TURN)
+
+
+def _read_start(place: Place) -> RootState:
+    fields = place.fields(("position",), ("heading",))
+    x, z = fields["position"].vector(2, -FARTHEST, FARTHEST)
+    return RootState(x=x, z=z, heading=_angle(fields["heading"]) if "heading" in fields else 0.0)
+
+
+def _read_gate(place: Place) -> Gate:
+    fields = place.fields(("position",), ("heading", "width"))
+    return Gate(
+        position=_pair(fields["position"].vector(2, -FARTHEST, FARTHEST)),
+        heading=_angle(fields["heading"]) if "heading" in fields else 0.0,
+        width=fields["width"].number(0.0, LARGEST, above=True) if "width" in fields else Gate.width,
+    )
+
+
+def _read_obstacles(place: Place) -> tuple[Boxes, tuple[str, ...]]:
+    rows = [_read_obstacle(item, i) for i, item in enumerate(place.items(MAX_OBSTACLES))]
+    if not rows:
+        return Boxes.empty(), ()
+    names, centers, rotations, sizes = zip(*rows, strict=True)
+    return Boxes(np.array(centers), np.array(rotations), 0.5 * np.array(sizes)), names
+
+
+def _read_obstacle(place: Place, index: int) -> tuple[str, list[float], NDArray[np.float64], list[float]]:
+    """One obstacle: name, centre, rotation, size. Its type decides which fields it has; today all are boxes."""
+    if isinstance(place.value, dict) and "type" in place.value:
+        Place(place.source, f"{place.path}.type", place.value["type"]).constant("box")
+    fields = place.fields(("type", "center", "size"), ("name", *_TURNS))
+    return (
+        fields["name"].text(_NAME, least=1) if "name" in fields else f"box {index + 1}",
+        fields["center"].vector(3, -FARTHEST, FARTHEST),
+        _read_rotation(place, fields),
+        fields["size"].vector(3, 0.0, LARGEST, above=True),
+    )
+
+
+def _read_rotation(place: Place, fields: dict[str, Place]) -> NDArray[np.float64]:
+    given = [name for name in _TURNS if name in fields]
+    if len(given) > 1:
+        raise InputError(f"{place.source}: {place.path} has both {' and '.join(given)}; give one of them")
+    if "yaw" in fields:
+        return quaternion.about_axis(1, _angle(fields["yaw"]))
+    if "euler" in fields:
+        return _from_euler([_angle(item) for item in _three(fields["euler"])])
+    if "rotation" in fields:
+        return _unit_quaternion(fields["rotation"])
+    return quaternion.IDENTITY
+
+
+def _three(place: Place) -> list[Place]:
+    if not isinstance(place.value, list) or len(place.value) != 3:
+        place.fail("must be a list of 3 angles in radians, about X, Y and Z")
+    return list(place.items(3))
+
+
+def _from_euler(angles: list[float]) -> NDArray[np.float64]:
+    """Rotation Ry(y) Rx(x) Rz(z): the order "YXZ" of three.js."""
+    about_x, about_y, about_z = (quaternion.about_axis(axis, angle) for axis, angle in enumerate(angles))
+    return quaternion.multiply(about_y, quaternion.multiply(about_x, about_z))
+
+
+def _unit_quaternion(place: Place) -> NDArray[np.float64]:
+    """Four numbers that are nearly a unit quaternion: one of them is at least a half, as in every unit quaternion."""
+    values = np.array(place.vector(4, -1.0, 1.0))
+    if np.max(np.abs(values)) < 0.49:
+        place.fail("must be a unit quaternion x, y, z, w")
+    if abs(np.linalg.norm(values) - 1.0) < 1e-9:
+        return values  # as written, so that writing and reading change nothing
+    return quaternion.normalize(values)
+
+
+def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
+    x, z = scene.start.x, scene.start.z
+    legs = np.array([x, _STANCE_LOW, z, x, _STANCE_HIGH, z]).reshape(1, 6, 1)
+    distances = pairwise_clearance(legs, np.array([_STANCE_RADIUS]), scene.boxes.table)[0, :, 0]
+    if len(distances) and distances.min() < 0.0:
+        name = scene.box_names[int(distances.argmin())]
+        Place(place.source, f"{place.path}.position", [x, z]).fail(
+            f"it stands in the obstacle {name!r}; move one of them"
+        )
+
+
+def write_scene(scene: Scene) -> dict[str, Any]:
+    """The JSON document of a scene."""
+    rows = zip(
+        scene.box_names,
+        scene.boxes.centers.tolist(),
+        (2.0 * scene.boxes.half_sizes).tolist(),
+        scene.boxes.rotations.tolist(),
+        strict=True,
+    )
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "name": scene.name,
+        "title": scene.title,
+        "description": scene.description,
+        "ground": {"size": list(scene.ground_size), "center": list(scene.ground_center)},
+        "start": {"position": [scene.start.x, scene.start.z], "heading": scene.start.heading},
+        "finish": {
+            "position": list(scene.finish.position),
+            "heading": scene.finish.heading,
+            "width": scene.finish.width,
+        },
+        "obstacles": [
+            {"type": "box", "name": name, "center": center, "size": size, "rotation": rotation}
+            for name, center, size, rotation in rows
+        ],
+    }

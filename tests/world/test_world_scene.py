@@ -1,0 +1,228 @@
+"""Scenes: stock data, round trips, and one clear complaint for each wrong field."""
+
+import copy
+import json
+import math
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+from elbowroom.body.root import RootState
+from elbowroom.errors import InputError
+from elbowroom.geometry import quaternion
+from elbowroom.world.clearance import clearance
+from elbowroom.world.scene import MAX_FILE_BYTES, Gate, Scene
+
+SCHEMA = json.loads((files("elbowroom.world") / "data" / "scene.schema.json").read_text("utf-8"))
+VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
+
+
+def document() -> dict[str, Any]:
+    """A document that uses every field of the format."""
+    return {
+        "$schema": "scene.schema.json",
+        "format": "elbowroom-scene",
+        "version": 1,
+        "name": "test",
+        "title": "A test",
+        "description": "Nothing special",
+        "ground": {"size": [8, 10.5], "center": [0, 3]},
+        "start": {"position": [0, -1], "heading": 0.5},
+        "finish": {"position": [1, 5], "heading": 0.25, "width": 3},
+        "obstacles": [
+            {"type": "box", "name": "one", "center": [1, 1, 2], "size": [0.5, 1, 0.5], "yaw": 0.3},
+            {"type": "box", "center": [-1, 1, 2], "size": [0.5, 1, 0.5], "euler": [0.1, 0.2, 0.3]},
+            {"type": "box", "name": "three", "center": [0, 2, 3], "size": [2, 0.1, 0.1], "rotation": [0, 0, 0, 1]},
+        ],
+    }
+
+
+def spots(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The paths of all values in a document."""
+    children = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [path] + [spot for key, child in children for spot in spots(child, (*path, key))]
+
+
+def replaced(source: Any, path: tuple[Any, ...], value: Any) -> Any:
+    out = copy.deepcopy(source)
+    if not path:
+        return value
+    parent = out
+    for key in path[:-1]:
+        parent = parent[key]
+    parent[path[-1]] = value
+    return out
+
+
+def removed(source: Any, path: tuple[Any, ...]) -> Any:
+    out = copy.deepcopy(source)
+    parent = out
+    for key in path[:-1]:
+        parent = parent[key]
+    del parent[path[-1]]
+    return out
+
+
+STRANGERS: list[Any] = [
+    None, True, "", "box", "x" * 5000, 0, -1, 1, 0.5, 7, 1e9, -1e9, math.inf, [], [0], [0, 0], [0, 0, 0], [1, 1, 1],
+    [0.1, 0.2, 0.1, 0.2], [0, 0.6, 0, 0.8], [0, 0, 0, 2], ["a", "b"], [True, 1], {}, {"type": "box"},
+    {"size": [1, 1]}, {"position": [3, 3]},
+]  # fmt: skip
+
+
+def mutants() -> list[Any]:
+    base, out = document(), []
+    for path in spots(base):
+        out += [replaced(base, path, value) for value in STRANGERS]
+        if path:
+            out.append(removed(base, path))
+        target: Any = base
+        for key in path:
+            target = target[key]
+        if isinstance(target, dict):
+            out += [replaced(base, path, {**target, extra: 0.1}) for extra in ("yaw", "colour", "rotation", "$schema")]
+    return out
+
+
+def _read_unless_start_is_blocked(mutant: Any) -> None:
+    """The one rule that a schema cannot state: the start is no obstacle's."""
+    try:
+        Scene.from_dict(mutant)
+    except InputError as error:
+        if "stands in the obstacle" not in str(error):
+            raise
+
+
+def test_reader_and_published_schema_agree_on_every_mutant() -> None:
+    VALIDATOR.check_schema(SCHEMA)
+    verdicts = set()
+    for mutant in mutants():
+        wanted = VALIDATOR.is_valid(mutant)
+        verdicts.add(wanted)
+        if wanted:
+            _read_unless_start_is_blocked(mutant)
+        else:
+            with pytest.raises(InputError) as error:
+                Scene.from_dict(mutant, "some.json")
+            assert str(error.value).startswith("some.json: $")
+            assert "\n" not in str(error.value)
+            assert len(str(error.value)) < 300
+    assert verdicts == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "parts"),
+    [
+        (("obstacles", 2, "size", 1), -0.1, ["$.obstacles[2].size[1] is -0.1", "above 0 and at most 1000"]),
+        (("obstacles", 0, "yaw"), 45, ["$.obstacles[0].yaw is 45", "radians", "0.7854"]),
+        (("obstacles", 0, "tpye"), "box", ["unknown field", "did you mean 'type'"]),
+        (("obstacles", 1, "type"), "sphere", ['$.obstacles[1].type is "sphere"', 'must be "box"']),
+        (("obstacles", 1, "yaw"), 0.0, ["$.obstacles[1] has both yaw and euler"]),
+        (("obstacles", 2, "rotation"), [0.1, 0, 0, 0], ["$.obstacles[2].rotation", "unit quaternion"]),
+        (("version",), 2, ["$.version is 2", "must be 1"]),
+        (("start", "position"), [1.0, 2.0], ["$.start.position", "stands in the obstacle 'one'"]),
+        (("start", "heading"), math.nan, ["$.start.heading is NaN", "must be a number"]),
+        (("ground", "size"), [1, 2, 3], ["$.ground.size", "list of 2 numbers"]),
+        (("name",), "", ["$.name", "1 to 100 characters"]),
+    ],
+)
+def test_a_wrong_field_is_named_with_its_value_and_the_mend(
+    path: tuple[Any, ...], value: Any, parts: list[str]
+) -> None:
+    with pytest.raises(InputError) as error:
+        Scene.from_dict(replaced(document(), path, value), "hall.json")
+    for part in ["hall.json", *parts]:
+        assert part in str(error.value)
+
+
+def test_what_was_read_is_what_is_written() -> None:
+    scene = Scene.from_dict(document())
+    again = Scene.from_dict(json.loads(json.dumps(scene.to_dict())))
+    assert again.to_dict() == scene.to_dict()
+    assert VALIDATOR.is_valid(scene.to_dict())
+    np.testing.assert_array_equal(again.boxes.table, scene.boxes.table)
+    assert scene.box_names == ("one", "box 2", "three")
+    assert scene.start == RootState(x=0.0, z=-1.0, heading=0.5)
+    assert scene.finish == Gate((1.0, 5.0), 0.25, 3.0)
+
+
+def test_rotations_mean_what_the_schema_says() -> None:
+    scene = Scene.from_dict(document())
+    x, y, z = (quaternion.to_matrix(quaternion.about_axis(axis, 0.1 + 0.1 * axis)) for axis in range(3))
+    np.testing.assert_allclose(quaternion.to_matrix(scene.boxes.rotations[1]), y @ x @ z, atol=1e-12)
+    np.testing.assert_allclose(scene.boxes.rotations[0], [0.0, math.sin(0.15), 0.0, math.cos(0.15)], atol=1e-12)
+    np.testing.assert_allclose(scene.boxes.half_sizes[0], [0.25, 0.5, 0.25])
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("", "line 1, column 1"),
+        ('{"a": 1,}', "line 1, column 9"),
+        ('{"a": 1, "a": 2}', "stands twice"),
+        ('{"a": NaN}', "NaN is not a JSON number"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"a": ' + "9" * 5000 + "}", "a number cannot be read"),
+        ("[]", "$ is []"),
+        (json.dumps({**document(), "obstacles": [document()["obstacles"][0]] * 10_001}), "at most 10000"),
+    ],
+)
+def test_a_broken_file_gives_one_line(tmp_path: Path, text: str, part: str) -> None:
+    path = tmp_path / "broken.json"
+    path.write_text(text, "utf-8")
+    with pytest.raises(InputError) as error:
+        Scene.load(path)
+    assert str(path) in str(error.value)
+    assert part in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_files_that_are_no_text_too_big_or_absent(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    with pytest.raises(InputError, match="cannot be read"):
+        Scene.load(path)
+    path.write_bytes(b'{"name": "\xff"}')
+    with pytest.raises(InputError, match="UTF-8"):
+        Scene.load(str(path))
+    with path.open("wb") as file:
+        file.truncate(MAX_FILE_BYTES + 1)
+    with pytest.raises(InputError, match=f"at most {MAX_FILE_BYTES}"):
+        Scene.load(path)
+    path.write_bytes(b"\xef\xbb\xbf" + json.dumps(document()).encode())
+    assert Scene.load(path).name == "test"
+
+
+def test_stock_scenes_by_name() -> None:
+    assert Scene.stock_names() == ("a", "b", "c", "d", "empty")
+    assert Scene.load("D").name == "d"
+    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, empty\)"):
+        Scene.load("e")
+
+
+@pytest.mark.parametrize("name", Scene.stock_names())
+def test_a_stock_scene_is_valid_and_leaves_the_straight_way_free_for_the_legs(name: str) -> None:
+    text = (files("elbowroom.world") / "data" / "scenes" / f"{name}.json").read_text("utf-8")
+    VALIDATOR.validate(json.loads(text))
+    scene = Scene.load(name)
+    assert len(scene.boxes) == {"a": 4, "b": 4, "c": 4, "d": 6, "empty": 0}[name]
+    assert not scene.finished(scene.start)
+    length = scene.finish.position[1] - scene.start.z
+    z = scene.start.z + np.linspace(0.0, length + 1.0, 200)
+    legs = np.stack([0 * z, 0 * z + 0.24, z, 0 * z, 0 * z + 0.8, z])
+    assert np.all(clearance(legs[None], np.array([0.24]), scene.boxes.table) > 0.0)
+    assert scene.finished(RootState(x=0.0, z=scene.start.z + length + 0.01))
+    low = np.array(scene.ground_center) - 0.5 * np.array(scene.ground_size)
+    corners = scene.boxes.corners[..., [0, 2]].reshape(-1, 2)
+    assert np.all(corners >= low)
+    assert np.all(corners <= low + scene.ground_size)
+
+
+def test_a_gate_is_crossed_in_its_direction_and_width() -> None:
+    gate = Gate((1.0, 2.0), math.pi / 2, 2.0)
+    assert gate.passed(1.1, 2.9)
+    assert not gate.passed(0.9, 2.0)
+    assert not gate.passed(1.1, 3.1)
