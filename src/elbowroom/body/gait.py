@@ -1,0 +1,210 @@
+"""A plain walking cycle tied to the root's motion: cadence, foot paths and the bob of the pelvis.
+
+The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included.
+The swing foot returns on a cubic that meets the stance foot's velocity at both ends. Everything is a function of the root
+state alone; with the speed every excursion goes to zero, so that a body at rest stands with its feet together.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.skeleton import Skeleton
+from elbowroom.jit import inlined, kernel
+
+Floats = NDArray[np.float64]
+
+STANDARD_LEG = 0.491 * 1.72  # metres: thigh and shin of an average adult, see `proportions`
+
+# Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin.
+_HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN = 0, 3, 6, 7, 8, 9
+
+_STATURE = 1.72  # metres, of the standard leg
+_CADENCE = 64.8 / 60.0  # strides/s at one stature per second
+_SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
+_STILL = 1e-3  # m/s: below, the phase rests
+_LATERAL, _TURN = 2.0, 1.0  # side steps and turns on the spot are short and quick: weights in the effective speed
+_DUTY, _RUN_DUTY = 0.62, 0.45  # stance fraction of the cycle, walking and running
+_HEEL_STRIKE, _TOE_OFF = np.deg2rad(18.0), np.deg2rad(42.0)  # foot pitch
+_LIFT = 0.05  # metres, of the swinging foot on a standard leg
+_MID_DROP = 0.3  # pelvis drop in mid-stance as a part of that in double support
+_STRETCH = 0.999  # the leg is never straighter than this part of its length
+
+
+class GaitShape(NamedTuple):
+    """What the walking cycle needs of a body."""
+
+    legs: Floats  # (2, 10) left and right leg, metres
+    scale: float  # leg length / that of an average adult
+
+
+def gait_shape(skeleton: Skeleton) -> GaitShape:
+    """Measure the legs of a skeleton."""
+    at = dict(zip(skeleton.names, skeleton.positions, strict=True))
+    rows = []
+    for side in ("left", "right"):
+        hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
+        thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
+        ball = at[f"{side}Toes"][2] - ankle[2] if skeleton.has(f"{side}Toes") else 0.15 * (thigh + shin)
+        rows.append([*hip, *ankle, max(float(ball), 0.01), 0.08 * (thigh + shin), thigh, shin])
+    legs = np.array(rows)
+    return GaitShape(legs, float((legs[:, _THIGH] + legs[:, _SHIN]).mean()) / STANDARD_LEG)
+
+
+@inlined
+def _cadence(forward: float, lateral: float, turn: float, scale: float) -> float:
+    """Strides per second, not yet resting at standstill."""
+    side, spin = _LATERAL * lateral, _TURN * scale * turn
+    relative = (forward * forward + side * side + spin * spin) / (_STATURE * scale) ** 2
+    return _CADENCE * (relative + _SLOW) ** 0.285  # type: ignore[no-any-return]
+
+
+@kernel
+def phase_rate(forward: float, lateral: float, turn: float, scale: float = 1.0) -> float:
+    """Strides per second for root velocities in m/s and rad/s; `scale` as in `GaitShape`; 0 at standstill.
+
+    D. W. Grieve & R. J. Gear, "The relationships between length of stride, step frequency, time of swing and speed of
+    walking for children and adults", Ergonomics 9 (1966): cadence 64.8 (speed / stature)^0.57 strides a minute.
+    """
+    if abs(forward) + abs(lateral) + abs(turn) < _STILL:
+        return 0.0
+    return _cadence(forward, lateral, turn, scale)
+
+
+@kernel
+def stride_length(speed: float, scale: float = 1.0) -> float:
+    """Length in metres of a stride (two steps) when walking forward at `speed` m/s; `scale` as in `GaitShape`."""
+    return abs(speed) / _cadence(speed, 0.0, 0.0, scale)
+
+
+@inlined
+def _smooth(x: float) -> float:
+    """Smoothstep, 0 below 0 and 1 above 1."""
+    t = min(max(x, 0.0), 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+@inlined
+def _pitch_ahead(u: float, duty: float) -> float:
+    """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off."""
+    strike, lift = -_HEEL_STRIKE, _TOE_OFF
+    if u < duty:
+        return strike * (1.0 - _smooth(u / (0.2 * duty))) + lift * _smooth((u - 0.55 * duty) / (0.45 * duty))
+    return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
+
+
+@inlined
+def _pitch_back(u: float, duty: float) -> float:
+    """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
+    strike, lift = 0.5 * _TOE_OFF, -0.6 * _HEEL_STRIKE
+    if u < duty:
+        return strike * (1.0 - _smooth(u / (0.3 * duty))) + lift * _smooth((u - 0.7 * duty) / (0.3 * duty))
+    return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
+
+
+@inlined
+def _foot_on_ground(
+    x: float, z: float, time: float, forward: float, lateral: float, turn: float
+) -> tuple[float, float]:
+    """Where a point fixed to the ground is in the root frame, `time` after it was at (x, z)."""
+    angle = turn * time
+    if abs(angle) < 1e-6:
+        along, across = time, 0.5 * angle * time
+    else:
+        along, across = np.sin(angle) / turn, (1.0 - np.cos(angle)) / turn
+    px = x - lateral * along - forward * across
+    pz = z + lateral * across - forward * along
+    return px * np.cos(angle) - pz * np.sin(angle), px * np.sin(angle) + pz * np.cos(angle)
+
+
+@inlined
+def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
+    """Cubic from `a` to `b` over w in [0, 1]."""
+    rest = 1.0 - w
+    return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
+
+
+@kernel
+def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, out: Floats) -> None:
+    """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
+    forward, lateral, turn = root[3], root[4], root[5]
+    period = 1.0 / _cadence(forward, lateral, turn, scale)
+    speed = np.sqrt(forward * forward + lateral * lateral)
+    duty = _DUTY + (_RUN_DUTY - _DUTY) * _smooth((speed / scale - 1.3) / 1.3)
+    stride = forward * period / (1.1 * scale)
+    travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
+    ahead = min(max(stride, -1.2), 1.2)
+    effort = travel / np.sqrt(1.0 + travel * travel)
+    outward = 1.0 if side == 0 else -1.0
+    aside = lateral * period / (4.0 * scale)
+    x0 = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0)) + outward * scale * (
+        np.sqrt(aside * aside + 1e-4) - 1e-2
+    )
+    z0 = legs[side, _ANKLE + 2] - 0.045 * scale * ahead
+    half = 0.5 * duty * period
+    lift, fade = 0.0, 1.0
+    if u < duty:
+        time = (u - 0.5 * duty) * period
+        x, z = _foot_on_ground(x0, z0, time, forward, lateral, turn)
+        yaw = -turn * time
+    else:
+        w, swing = (u - duty) / (1.0 - duty), (1.0 - duty) * period
+        ax, az = _foot_on_ground(x0, z0, half, forward, lateral, turn)
+        bx, bz = _foot_on_ground(x0, z0, -half, forward, lateral, turn)
+        x = _hermite(ax, swing * (-turn * az - lateral), bx, swing * (-turn * bz - lateral), w)
+        z = _hermite(az, swing * (turn * ax - forward), bz, swing * (turn * bx - forward), w)
+        yaw = _hermite(-turn * half, -turn * swing, turn * half, -turn * swing, w)
+        lift = _LIFT * scale * effort * 16.0 * (w * (1.0 - w)) ** 2
+        fade = (2.0 * w - 1.0) ** 2
+    if ahead >= 0.0:
+        pitch = ahead * _pitch_ahead(u, duty)
+    else:
+        pitch = -ahead * _pitch_back(u, duty)
+    pivot = legs[side, _BALL] if pitch > 0.0 else -legs[side, _HEEL]
+    height = legs[side, _ANKLE + 1]
+    along = pivot + height * np.sin(pitch) - pivot * np.cos(pitch)
+    out[0] = x + along * np.sin(yaw)
+    out[1] = height * np.cos(pitch) + pivot * np.sin(pitch) + lift
+    out[2] = z + along * np.cos(yaw)
+    out[3] = yaw
+    out[4] = pitch
+    out[5] = -max(pitch, 0.0) * fade
+
+
+@inlined
+def _needed_drop(legs: Floats, side: int, foot: Floats) -> float:
+    """How far the pelvis must come down for the leg to reach the ankle."""
+    length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
+    dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
+    reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
+    return max(legs[side, _HIP + 1] - foot[1] - reach, 0.0)
+
+
+@kernel
+def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Floats]:
+    """Feet and pelvis of the walking cycle for root states (N, 7).
+
+    Returns the feet (N, 2, 6) in the root frame: ankle x, y, z, yaw, pitch (positive toes down), bend of the toes; and
+    how far the hips are below their height in T-pose (N,).
+    """
+    feet = np.empty((len(roots), 2, 6))
+    drops = np.empty(len(roots))
+    extreme = np.empty(6)
+    for n in range(len(roots)):
+        root = roots[n]
+        speed = np.sqrt(root[3] * root[3] + root[4] * root[4])
+        duty = _DUTY + (_RUN_DUTY - _DUTY) * _smooth((speed / scale - 1.3) / 1.3)
+        low = 0.0
+        for side in range(2):
+            cycle = root[6] + 0.5 * side
+            _foot_pose(legs, scale, root, side, cycle - np.floor(cycle), feet[n, side])
+            _foot_pose(legs, scale, root, side, 0.0, extreme)
+            low = max(low, _needed_drop(legs, side, extreme))
+            _foot_pose(legs, scale, root, side, duty * (1.0 - 1e-9), extreme)
+            low = max(low, _needed_drop(legs, side, extreme))
+        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (duty - 0.5))
+        peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
+        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (root[6] - 0.5 * (duty - 0.5)))
+        drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
+    return feet, drops

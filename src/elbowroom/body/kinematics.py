@@ -1,0 +1,215 @@
+"""Forward kinematics: where a configuration and a root state put the joints and the collision body.
+
+Conventions: see `docs/architecture.md`. A posture is `q` (13,), a root state (7,); places are metres, Y up. The root
+frame has its origin on the ground and +Z along the heading; the pelvis frame the same axes with the hips joint as origin;
+the chest frame is that of the last spine joint. Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body import posing
+from elbowroom.body.bones import SPINE
+from elbowroom.body.capsules import Capsules
+from elbowroom.body.dof import DOF, DofGroup
+from elbowroom.body.gait import GaitShape, foot_poses, gait_shape
+from elbowroom.body.hands import relaxed_rotations
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.legs import leg_rest, leg_rotations
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.skeleton import Skeleton
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Segments = NDArray[np.float32]
+
+_SPINE_WEIGHTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
+_GAZE = 0.65  # the part of the waist's rotation that neck and head undo
+_SIDES = ("left", "right")
+_ARM_BONES = ("UpperArm", "LowerArm", "Hand")
+_LEG_BONES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
+
+
+class CapsuleSet(NamedTuple):
+    """The capsules of one group and the chain of joints that carries them."""
+
+    indices: Indices  # (C,) into the humanoid's capsules
+    joints: Indices  # (C,)
+    ends: Floats  # (C, 6) both end points in the joint's frame
+    radii: NDArray[np.float32]  # (C,) metres
+    order: Indices  # joints to pose, parents first, without the frame they start from
+
+
+class BodyModel(NamedTuple):
+    """All that kinematics needs of a humanoid, as arrays; made once by `body_model`."""
+
+    parents: Indices  # (J,)
+    offsets: Floats  # (J, 3) from the parent joint in T-pose; for the hips their place in the root frame
+    base: Floats  # (J, 4) local rotations of the joints that do not move: relaxed fingers, else identity
+    spine: Indices  # (S,) present spine joints, the last one carries the chest frame
+    spine_weights: Floats  # (S,) parts of the waist's rotation, sum 1
+    gaze: Indices  # (G,) neck if present, head
+    gaze_weights: Floats  # (G,) negative: they turn back
+    arms: Indices  # (2, 3) upper arm, forearm, hand; left first
+    legs: Indices  # (2, 4) thigh, shin, foot, toes; -1 where absent
+    leg_rest: Floats  # (2, 9) see `legs.leg_rest`
+    gait: GaitShape
+    body: CapsuleSet  # every capsule, in the humanoid's order
+    roots: CapsuleSet  # of the group ROOT
+    trunk: CapsuleSet  # of the group WAIST
+    left_arm: CapsuleSet
+    right_arm: CapsuleSet
+
+    def capsules_of(self, group: DofGroup) -> CapsuleSet:
+        """The capsules of a group."""
+        return {
+            DofGroup.ROOT: self.roots,
+            DofGroup.WAIST: self.trunk,
+            DofGroup.LEFT_ARM: self.left_arm,
+            DofGroup.RIGHT_ARM: self.right_arm,
+        }[group]
+
+
+def body_model(humanoid: Humanoid) -> BodyModel:
+    """Measure a humanoid. The model belongs to this object: keep it beside the humanoid."""
+    skeleton, capsules = humanoid.skeleton, humanoid.capsules
+    spine = [bone for bone in SPINE if skeleton.has(bone)]
+    gaze = [bone for bone in ("neck", "head") if skeleton.has(bone)]
+    weights = np.array([_SPINE_WEIGHTS[bone] for bone in spine])
+    chest = skeleton.index(spine[-1])
+    parents = np.ascontiguousarray(skeleton.parents, np.int64)
+    rest = np.ascontiguousarray(skeleton.positions, np.float64)
+    every = np.arange(len(capsules.names))
+    return BodyModel(
+        parents=parents,
+        offsets=rest - np.where(parents[:, None] >= 0, rest[parents], 0.0),
+        base=relaxed_rotations(skeleton),
+        spine=_joints(skeleton, spine),
+        spine_weights=weights / weights.sum(),
+        gaze=_joints(skeleton, gaze),
+        gaze_weights=np.full(len(gaze), -_GAZE / len(gaze)),
+        arms=np.array([_joints(skeleton, [side + bone for bone in _ARM_BONES]) for side in _SIDES]),
+        legs=np.array([_joints(skeleton, [side + bone for bone in _LEG_BONES]) for side in _SIDES]),
+        leg_rest=leg_rest(skeleton),
+        gait=gait_shape(skeleton),
+        body=_capsule_set(skeleton, capsules, every, 0),
+        roots=_capsule_set(skeleton, capsules, capsules.of(DofGroup.ROOT), 0),
+        trunk=_capsule_set(skeleton, capsules, capsules.of(DofGroup.WAIST), 0, [chest]),
+        left_arm=_capsule_set(skeleton, capsules, capsules.of(DofGroup.LEFT_ARM), chest),
+        right_arm=_capsule_set(skeleton, capsules, capsules.of(DofGroup.RIGHT_ARM), chest),
+    )
+
+
+def _joints(skeleton: Skeleton, bones: list[str]) -> Indices:
+    return np.array([skeleton.index(bone) if skeleton.has(bone) else -1 for bone in bones], np.int64)
+
+
+def _capsule_set(
+    skeleton: Skeleton, capsules: Capsules, indices: Indices, start: int, also: list[int] | None = None
+) -> CapsuleSet:
+    """The capsules at `indices` and the joints between joint `start` and them (and those in `also`)."""
+    joints = capsules.joints[indices]
+    needed: set[int] = set()
+    for joint in [*joints, *(also or [])]:
+        at = int(joint)
+        while at not in (start, -1):
+            needed.add(at)
+            at = int(skeleton.parents[at])
+    ends = np.concatenate([capsules.starts[indices], capsules.ends[indices]], axis=1)
+    return CapsuleSet(
+        indices=np.asarray(indices, np.int64),
+        joints=np.ascontiguousarray(joints, np.int64),
+        ends=np.ascontiguousarray(ends, np.float64),
+        radii=capsules.radii[indices].astype(np.float32),
+        order=np.array(sorted(needed), np.int64),
+    )
+
+
+def _rows(values: ArrayLike, size: int) -> Floats:
+    """`values` as a contiguous float64 array (N, size); a single row is taken as N = 1."""
+    array = np.ascontiguousarray(values, np.float64)
+    return array.reshape(-1, size) if array.ndim != 2 else array
+
+
+def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
+    """Normalised local rotations (J, 4) of every joint for `q` (13,) and a root state (7,).
+
+    The hips' rotation is the identity: the root's heading turns the whole body.
+    """
+    m = model
+    feet, drops = foot_poses(m.gait.legs, m.gait.scale, _rows(root, ROOT_STATE))
+    legs = leg_rotations(m.leg_rest, feet, drops)[0]
+    posture = np.ascontiguousarray(q, np.float64)
+    return posing.pose_local(m.base, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs, posture, legs)
+
+
+def hips_position(model: BodyModel, root: ArrayLike) -> Floats:
+    """The hips joint (3,) in the root frame for a root state (7,): its place in T-pose, lowered by the gait."""
+    _, drops = foot_poses(model.gait.legs, model.gait.scale, _rows(root, ROOT_STATE))
+    return model.offsets[0] - np.array([0.0, drops[0], 0.0])
+
+
+def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segments:
+    """All capsules (C, 6, N) in the world for postures (N, 13) and root states (N, 7).
+
+    The first three components of `q` are ignored: the root states say where the body stands.
+    """
+    m, states = model, _rows(roots, ROOT_STATE)
+    feet, drops = foot_poses(m.gait.legs, m.gait.scale, states)
+    legs = leg_rotations(m.leg_rest, feet, drops)
+    c = m.body
+    return posing.pose_body(
+        m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs,
+        c.joints, c.ends, _rows(q, DOF), states, legs, drops,
+    )  # fmt: skip
+
+
+def leg_capsules(model: BodyModel, roots: ArrayLike) -> Segments:
+    """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7)."""
+    m, c, states = model, model.roots, _rows(roots, ROOT_STATE)
+    feet, drops = foot_poses(m.gait.legs, m.gait.scale, states)
+    legs = leg_rotations(m.leg_rest, feet, drops)
+    return posing.pose_legs(m.base, m.parents, m.offsets, c.order, m.legs, c.joints, c.ends, states, legs, drops)
+
+
+def _trunk(model: BodyModel, waist: ArrayLike) -> tuple[Segments, Floats, Floats]:
+    m, c = model, model.trunk
+    return posing.pose_trunk(
+        m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights,
+        c.joints, c.ends, _rows(waist, DofGroup.WAIST.size),
+    )  # fmt: skip
+
+
+def trunk_capsules(model: BodyModel, waist: ArrayLike) -> Segments:
+    """The capsules of the group WAIST (C, 6, N) in the pelvis frame for waist configurations (N, 2)."""
+    return _trunk(model, waist)[0]
+
+
+def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
+    """Positions (N, 3) and rotations (N, 4) of the last spine joint in the pelvis frame for waists (N, 2)."""
+    _, positions, rotations = _trunk(model, waist)
+    return positions, rotations
+
+
+def arm_capsules(model: BodyModel, group: DofGroup, arm: ArrayLike) -> Segments:
+    """An arm's capsules (3, 6, N) in the chest frame for arm configurations (N, 4)."""
+    if group not in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
+        raise ValueError(f"{group.name} is not an arm")
+    m, c, side = model, model.capsules_of(group), 0 if group is DofGroup.LEFT_ARM else 1
+    return posing.pose_arm(
+        m.base, m.parents, m.offsets, c.order, int(m.spine[-1]), m.arms[side], 1.0 - 2.0 * side,
+        c.joints, c.ends, _rows(arm, group.size),
+    )  # fmt: skip
+
+
+def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:
+    """Positions (N, 3) and rotations (N, 4) of the pelvis frame in the world for root states (N, 7)."""
+    states = _rows(roots, ROOT_STATE)
+    _, drops = foot_poses(model.gait.legs, model.gait.scale, states)
+    hips, heading = model.offsets[0], states[:, 2]
+    c, s, zero = np.cos(heading), np.sin(heading), np.zeros(len(states))
+    x, z = states[:, 0] + hips[0] * c + hips[2] * s, states[:, 1] - hips[0] * s + hips[2] * c
+    positions = np.stack([x, hips[1] - drops, z], axis=-1)
+    return positions, np.stack([zero, np.sin(0.5 * heading), zero, np.cos(0.5 * heading)], axis=-1)

@@ -1,0 +1,101 @@
+"""Two-bone inverse kinematics: from foot poses to the rotations of thigh, shin, foot and toes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.skeleton import Skeleton
+from elbowroom.jit import inlined, kernel
+
+Floats = NDArray[np.float64]
+
+LEG_ROTATIONS = 4  # thigh, shin, foot, toes
+
+
+def leg_rest(skeleton: Skeleton) -> Floats:
+    """T-pose of the legs for the kernel, (2, 9): hip joint, hip to knee, knee to ankle."""
+    at = dict(zip(skeleton.names, skeleton.positions, strict=True))
+    rows = []
+    for side in ("left", "right"):
+        hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
+        rows.append([*hip, *(knee - hip), *(ankle - knee)])
+    return np.array(rows)
+
+
+@inlined
+def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, out: Floats) -> None:
+    """Columns: the bone's direction, the knee axis made perpendicular to it, and their cross product."""
+    length = np.sqrt(x * x + y * y + z * z)
+    x, y, z = x / length, y / length, z / length
+    dot = x * nx + y * ny + z * nz
+    nx, ny, nz = nx - dot * x, ny - dot * y, nz - dot * z
+    length = np.sqrt(nx * nx + ny * ny + nz * nz)
+    nx, ny, nz = nx / length, ny / length, nz / length
+    out[0, 0], out[1, 0], out[2, 0] = x, y, z
+    out[0, 1], out[1, 1], out[2, 1] = nx, ny, nz
+    out[0, 2], out[1, 2], out[2, 2] = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
+
+
+@inlined
+def _turn_between(rest: Floats, posed: Floats, out: Floats) -> None:
+    """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn."""
+    m = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            m[i, j] = posed[i, 0] * rest[j, 0] + posed[i, 1] * rest[j, 1] + posed[i, 2] * rest[j, 2]
+    w = 0.5 * np.sqrt(max(1.0 + m[0, 0] + m[1, 1] + m[2, 2], 1e-6))
+    out[0] = (m[2, 1] - m[1, 2]) / (4.0 * w)
+    out[1] = (m[0, 2] - m[2, 0]) / (4.0 * w)
+    out[2] = (m[1, 0] - m[0, 1]) / (4.0 * w)
+    out[3] = w
+
+
+@inlined
+def _relative(a: Floats, b: Floats, out: Floats) -> None:
+    """The quaternion `a^-1 b`."""
+    out[0] = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1]
+    out[1] = a[3] * b[1] + a[0] * b[2] - a[1] * b[3] - a[2] * b[0]
+    out[2] = a[3] * b[2] - a[0] * b[1] + a[1] * b[0] - a[2] * b[3]
+    out[3] = a[3] * b[3] + a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def leg_rotations(rest: Floats, feet: Floats, drops: Floats) -> Floats:
+    """Normalised local rotations (N, 2, 4, 4) of thigh, shin, foot and toes; left leg first.
+
+    `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) and `drops` (N,) from `gait.foot_poses`. The knee bends forward, in
+    the plane through hip and ankle that turns by half the foot's yaw. A target out of reach is approached straight.
+    """
+    out = np.empty((len(feet), 2, LEG_ROTATIONS, 4))
+    at_rest, posed = np.empty((3, 3)), np.empty((3, 3))
+    thigh, shin, foot = np.empty(4), np.empty(4), np.empty(4)
+    for n in range(len(feet)):
+        for side in range(2):
+            r, f = rest[side], feet[n, side]
+            upper = np.sqrt(r[3] * r[3] + r[4] * r[4] + r[5] * r[5])
+            lower = np.sqrt(r[6] * r[6] + r[7] * r[7] + r[8] * r[8])
+            dx, dy, dz = f[0] - r[0], f[1] - r[1] + drops[n], f[2] - r[2]
+            distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+            dx, dy, dz = dx / distance, dy / distance, dz / distance
+            reach = min(max(distance, abs(upper - lower) + 0.05 * upper), 0.9999 * (upper + lower))
+            cosine = (upper * upper + reach * reach - lower * lower) / (2.0 * upper * reach)
+            sine = np.sqrt(max(1.0 - cosine * cosine, 0.0))
+            nx, ny, nz = np.cos(0.5 * f[3]), 0.0, -np.sin(0.5 * f[3])
+            _bone_basis(dx, dy, dz, nx, ny, nz, posed)
+            ax, ay, az = posed[0, 2], posed[1, 2], posed[2, 2]
+            nx, ny, nz = posed[0, 1], posed[1, 1], posed[2, 1]
+            # direction x knee axis points forward for a hanging leg: (0,-1,0) x (1,0,0) = (0,0,1)
+            kx, ky, kz = cosine * dx + sine * ax, cosine * dy + sine * ay, cosine * dz + sine * az
+            _bone_basis(r[3], r[4], r[5], 1.0, 0.0, 0.0, at_rest)
+            _bone_basis(kx, ky, kz, nx, ny, nz, posed)
+            _turn_between(at_rest, posed, thigh)
+            _bone_basis(r[6], r[7], r[8], 1.0, 0.0, 0.0, at_rest)
+            _bone_basis(reach * dx - upper * kx, reach * dy - upper * ky, reach * dz - upper * kz, nx, ny, nz, posed)
+            _turn_between(at_rest, posed, shin)
+            cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
+            foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
+            out[n, side, 0] = thigh
+            _relative(thigh, shin, out[n, side, 1])
+            _relative(shin, foot, out[n, side, 2])
+            out[n, side, 3, 0], out[n, side, 3, 1] = np.sin(0.5 * f[5]), 0.0
+            out[n, side, 3, 2], out[n, side, 3, 3] = 0.0, np.cos(0.5 * f[5])
+    return out

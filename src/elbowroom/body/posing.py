@@ -1,0 +1,262 @@
+"""The kernels of forward kinematics: planning degrees of freedom to joint rotations, frames and capsules.
+
+Quaternions are rows `xyzw` of (J, 4) arrays; every kernel poses one posture after the other, in float64.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import inlined, kernel
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Segments = NDArray[np.float32]
+
+
+@inlined
+def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
+    """out[k] = a[i] b[j]."""
+    ax, ay, az, aw = a[i, 0], a[i, 1], a[i, 2], a[i, 3]
+    bx, by, bz, bw = b[j, 0], b[j, 1], b[j, 2], b[j, 3]
+    out[k, 0] = aw * bx + ax * bw + ay * bz - az * by
+    out[k, 1] = aw * by - ax * bz + ay * bw + az * bx
+    out[k, 2] = aw * bz + ax * by - ay * bx + az * bw
+    out[k, 3] = aw * bw - ax * bx - ay * by - az * bz
+
+
+@inlined
+def _offset(
+    q: Floats, j: int, x: float, y: float, z: float, base: Floats, i: int, out: Floats, k: int, at: int
+) -> None:
+    """out[k, at:at+3] = base[i] + (x, y, z) rotated by q[j]."""
+    qx, qy, qz, qw = q[j, 0], q[j, 1], q[j, 2], q[j, 3]
+    tx, ty, tz = 2.0 * (qy * z - qz * y), 2.0 * (qz * x - qx * z), 2.0 * (qx * y - qy * x)
+    out[k, at] = base[i, 0] + x + qw * tx + qy * tz - qz * ty
+    out[k, at + 1] = base[i, 1] + y + qw * ty + qz * tx - qx * tz
+    out[k, at + 2] = base[i, 2] + z + qw * tz + qx * ty - qy * tx
+
+
+@inlined
+def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) -> None:
+    """out[k] = exp(scale (x, y, z))."""
+    half = 0.5 * scale * np.sqrt(x * x + y * y + z * z)
+    factor = 0.5 * scale * (1.0 - half * half / 6.0) if abs(half) < 1e-4 else 0.5 * scale * np.sin(half) / half
+    out[k, 0], out[k, 1], out[k, 2], out[k, 3] = factor * x, factor * y, factor * z, np.cos(half)
+
+
+@inlined
+def _set_trunk(
+    spine: Indices, spine_weights: Floats, gaze: Indices, gaze_weights: Floats, bend: float, twist: float, local: Floats
+) -> None:
+    """Spine, neck and head for a waist: each takes its part of the rotation vector of Ry(twist) Rx(bend)."""
+    cb, sb, ct, st = np.cos(0.5 * bend), np.sin(0.5 * bend), np.cos(0.5 * twist), np.sin(0.5 * twist)
+    x, y, z, w = ct * sb, st * cb, -st * sb, ct * cb
+    sine = np.sqrt(x * x + y * y + z * z)
+    angle = 2.0 * np.arctan2(sine, w)
+    factor = angle / sine if sine > 1e-9 else 2.0
+    for i in range(len(spine)):
+        _set_power(x * factor, y * factor, z * factor, spine_weights[i], local, spine[i])
+    for i in range(len(gaze)):
+        _set_power(x * factor, y * factor, z * factor, gaze_weights[i], local, gaze[i])
+
+
+@inlined
+def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
+    """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
+    upper, lower = joints[0], joints[1]
+    _set_power(-arm[0], 0.0, mirror * arm[1], 1.0, scratch, 0)
+    half = 0.5 * np.sqrt(0.5)
+    # Ry(-m i) Rz(-m 90 deg): the product of two rotations about axes, written out
+    c, s = 2.0 * half * np.cos(0.5 * arm[2]), -mirror * 2.0 * half * np.sin(0.5 * arm[2])
+    scratch[1, 0], scratch[1, 1], scratch[1, 2], scratch[1, 3] = -mirror * s, s, -mirror * c, c
+    _product(scratch, 0, scratch, 1, local, upper)
+    local[lower, 0], local[lower, 1] = 0.0, -mirror * np.sin(0.5 * arm[3])
+    local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
+
+
+@inlined
+def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
+    """Thigh, shin, foot and toes of both legs; joints (2, 4), -1 where the avatar has no such bone."""
+    for side in range(2):
+        for part in range(4):
+            joint = joints[side, part]
+            if joint >= 0:
+                for i in range(4):
+                    local[joint, i] = rotations[side, part, i]
+
+
+@inlined
+def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rotations: Floats, places: Floats) -> None:
+    """Frames of the joints in `order`, parents first; the parent of the first is in place already."""
+    for i in range(len(order)):
+        joint = order[i]
+        parent = parents[joint]
+        _offset(
+            rotations, parent, offsets[joint, 0], offsets[joint, 1], offsets[joint, 2], places, parent, places, joint, 0
+        )
+        _product(rotations, parent, local, joint, rotations, joint)
+
+
+@inlined
+def _segments(
+    joints: Indices, ends: Floats, rotations: Floats, places: Floats, row: Floats, n: int, out: Segments
+) -> None:
+    """Capsule end points of posture `n` into out (C, 6, N); `row` (1, 6) is scratch."""
+    for c in range(len(joints)):
+        j = joints[c]
+        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, 0, 0)
+        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, 0, 3)
+        for i in range(6):
+            out[c, i, n] = row[0, i]
+
+
+@inlined
+def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z: float, heading: float) -> None:
+    """Put a base frame at a point, turned about +Y."""
+    rotations[joint, 0], rotations[joint, 1] = 0.0, np.sin(0.5 * heading)
+    rotations[joint, 2], rotations[joint, 3] = 0.0, np.cos(0.5 * heading)
+    places[joint, 0], places[joint, 1], places[joint, 2] = x, y, z
+
+
+@inlined
+def _place_hips(root: Floats, hips: Floats, drop: float, rotations: Floats, places: Floats) -> None:
+    """The hips' frame in the world: T-pose hips in the root's frame, lowered by `drop`."""
+    c, s = np.cos(root[2]), np.sin(root[2])
+    x, z = root[0] + hips[0] * c + hips[2] * s, root[1] - hips[0] * s + hips[2] * c
+    _place(0, rotations, places, x, hips[1] - drop, z, root[2])
+
+
+@kernel
+def pose_local(
+    base: Floats,
+    spine: Indices,
+    spine_weights: Floats,
+    gaze: Indices,
+    gaze_weights: Floats,
+    arms: Indices,
+    legs: Indices,
+    q: Floats,
+    leg_rotations: Floats,
+) -> Floats:
+    """Local rotations (J, 4) of one posture `q` (13,), legs (2, 4, 4)."""
+    local = base.copy()
+    scratch = np.empty((2, 4))
+    _set_trunk(spine, spine_weights, gaze, gaze_weights, q[3], q[4], local)
+    _set_arm(arms[0], 1.0, q[5:9], local, scratch)
+    _set_arm(arms[1], -1.0, q[9:13], local, scratch)
+    _set_legs(legs, leg_rotations, local)
+    return local
+
+
+@kernel
+def pose_body(
+    base: Floats,
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    spine: Indices,
+    spine_weights: Floats,
+    gaze: Indices,
+    gaze_weights: Floats,
+    arms: Indices,
+    legs: Indices,
+    joints: Indices,
+    ends: Floats,
+    q: Floats,
+    roots: Floats,
+    leg_rotations: Floats,
+    drops: Floats,
+) -> Segments:
+    """Capsules (C, 6, N) in the world for postures (N, 13), roots (N, 7), legs (N, 2, 4, 4) and pelvis drops (N,)."""
+    out = np.empty((len(joints), 6, len(q)), np.float32)
+    local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
+    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    for n in range(len(q)):
+        _set_trunk(spine, spine_weights, gaze, gaze_weights, q[n, 3], q[n, 4], local)
+        _set_arm(arms[0], 1.0, q[n, 5:9], local, scratch)
+        _set_arm(arms[1], -1.0, q[n, 9:13], local, scratch)
+        _set_legs(legs, leg_rotations[n], local)
+        _place_hips(roots[n], offsets[0], drops[n], rotations, places)
+        _chain(order, parents, offsets, local, rotations, places)
+        _segments(joints, ends, rotations, places, row, n, out)
+    return out
+
+
+@kernel
+def pose_legs(
+    base: Floats,
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    legs: Indices,
+    joints: Indices,
+    ends: Floats,
+    roots: Floats,
+    leg_rotations: Floats,
+    drops: Floats,
+) -> Segments:
+    """Capsules (C, 6, N) of pelvis and legs in the world."""
+    out = np.empty((len(joints), 6, len(roots)), np.float32)
+    local, row = base.copy(), np.empty((1, 6))
+    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    for n in range(len(roots)):
+        _set_legs(legs, leg_rotations[n], local)
+        _place_hips(roots[n], offsets[0], drops[n], rotations, places)
+        _chain(order, parents, offsets, local, rotations, places)
+        _segments(joints, ends, rotations, places, row, n, out)
+    return out
+
+
+@kernel
+def pose_trunk(
+    base: Floats,
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    spine: Indices,
+    spine_weights: Floats,
+    gaze: Indices,
+    gaze_weights: Floats,
+    joints: Indices,
+    ends: Floats,
+    waist: Floats,
+) -> tuple[Segments, Floats, Floats]:
+    """Trunk capsules (C, 6, N), place (N, 3) and rotation (N, 4) of the last spine joint, all in the pelvis frame."""
+    out = np.empty((len(joints), 6, len(waist)), np.float32)
+    chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
+    local, row = base.copy(), np.empty((1, 6))
+    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    chest = spine[-1]
+    _place(0, rotations, places, 0.0, 0.0, 0.0, 0.0)
+    for n in range(len(waist)):
+        _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], local)
+        _chain(order, parents, offsets, local, rotations, places)
+        _segments(joints, ends, rotations, places, row, n, out)
+        chest_places[n] = places[chest]
+        chest_rotations[n] = rotations[chest]
+    return out, chest_places, chest_rotations
+
+
+@kernel
+def pose_arm(
+    base: Floats,
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    chest: int,
+    arm_joints: Indices,
+    mirror: float,
+    joints: Indices,
+    ends: Floats,
+    arm: Floats,
+) -> Segments:
+    """Arm capsules (C, 6, N) in the frame of the last spine joint for arm configurations (N, 4)."""
+    out = np.empty((len(joints), 6, len(arm)), np.float32)
+    local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
+    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    _place(chest, rotations, places, 0.0, 0.0, 0.0, 0.0)
+    for n in range(len(arm)):
+        _set_arm(arm_joints, mirror, arm[n], local, scratch)
+        _chain(order, parents, offsets, local, rotations, places)
+        _segments(joints, ends, rotations, places, row, n, out)
+    return out
