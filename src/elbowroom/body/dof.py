@@ -16,7 +16,7 @@ no gimbal lock within the limits, and Euclidean distance between configurations 
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 DOF = 13
 
@@ -44,6 +44,8 @@ LOCAL_GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 # is limited to 45 degrees, after Boone & Azen, J. Bone Joint Surg. 61-A (1979).
 _WAIST_DEG = [(-25.0, 80.0), (-45.0, 45.0)]
 _ARM_DEG = [(-60.0, 175.0), (-45.0, 175.0), (-90.0, 70.0), (0.0, 150.0)]
+# Flexion and abduction together swing the arm by at most this angle from hanging (the swing vector's length).
+MAX_ELEVATION = float(np.deg2rad(175.0))
 _LIMITS = np.deg2rad(np.array(_WAIST_DEG + 2 * _ARM_DEG))
 
 
@@ -53,3 +55,20 @@ def limits(group: DofGroup) -> NDArray[np.float64]:
         return np.tile([-np.inf, np.inf], (3, 1))
     rows: NDArray[np.float64] = _LIMITS[group.value.start - 3 : group.value.stop - 3]
     return rows.copy()
+
+
+def clamp(group: DofGroup, q: ArrayLike) -> NDArray[np.float64]:
+    """The group's configurations (..., size) brought within the limits; an arm's elevation too."""
+    low, high = limits(group).T
+    inside: NDArray[np.float64] = np.clip(np.asarray(q, np.float64), low, high)
+    if group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
+        elevation = np.linalg.norm(inside[..., :2], axis=-1, keepdims=True)
+        inside[..., :2] *= np.minimum(1.0, MAX_ELEVATION / np.maximum(elevation, MAX_ELEVATION))
+    return inside
+
+
+def within_limits(q: ArrayLike, tolerance: float = 1e-9) -> bool:
+    """Whether every one of the configurations (..., 13) respects the limits of all groups, within `tolerance` rad."""
+    posture = np.asarray(q, np.float64)
+    groups = ((group, posture[..., group.value]) for group in LOCAL_GROUPS)
+    return all(bool(np.all(np.abs(clamp(group, part) - part) <= tolerance)) for group, part in groups)

@@ -1,10 +1,11 @@
 """A plain walking cycle tied to the root's motion: cadence, foot paths and the bob of the pelvis.
 
 The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included.
-The swing foot returns on a cubic that meets the stance foot's velocity at both ends. Everything is a function of the root
-state alone; with the speed every excursion goes to zero, so that a body at rest stands with its feet together.
+The swing foot returns on a cubic that meets the stance foot's velocity at both ends. Everything is a function of the
+root state alone; with the speed every excursion goes to zero, so that a body at rest stands with its feet together.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and str
 _STILL = 1e-3  # m/s: below, the phase rests
 _LATERAL, _TURN = 2.0, 1.0  # side steps and turns on the spot are short and quick: weights in the effective speed
 _DUTY, _RUN_DUTY = 0.62, 0.45  # stance fraction of the cycle, walking and running
-_HEEL_STRIKE, _TOE_OFF = np.deg2rad(18.0), np.deg2rad(42.0)  # foot pitch
+_HEEL_STRIKE, _TOE_OFF = math.radians(18.0), math.radians(42.0)  # foot pitch
 _LIFT = 0.05  # metres, of the swinging foot on a standard leg
 _MID_DROP = 0.3  # pelvis drop in mid-stance as a part of that in double support
 _STRETCH = 0.999  # the leg is never straighter than this part of its length
@@ -57,7 +58,7 @@ def _cadence(forward: float, lateral: float, turn: float, scale: float) -> float
     """Strides per second, not yet resting at standstill."""
     side, spin = _LATERAL * lateral, _TURN * scale * turn
     relative = (forward * forward + side * side + spin * spin) / (_STATURE * scale) ** 2
-    return _CADENCE * (relative + _SLOW) ** 0.285  # type: ignore[no-any-return]
+    return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
 @kernel
@@ -82,7 +83,7 @@ def stride_length(speed: float, scale: float = 1.0) -> float:
 def _smooth(x: float) -> float:
     """Smoothstep, 0 below 0 and 1 above 1."""
     t = min(max(x, 0.0), 1.0)
-    return t * t * (3.0 - 2.0 * t)
+    return float(t * t * (3.0 - 2.0 * t))
 
 
 @inlined
@@ -178,7 +179,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats) -> float:
     length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
     dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
     reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-    return max(legs[side, _HIP + 1] - foot[1] - reach, 0.0)
+    return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
 @kernel

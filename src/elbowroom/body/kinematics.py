@@ -1,8 +1,8 @@
 """Forward kinematics: where a configuration and a root state put the joints and the collision body.
 
-Conventions: see `docs/architecture.md`. A posture is `q` (13,), a root state (7,); places are metres, Y up. The root
-frame has its origin on the ground and +Z along the heading; the pelvis frame the same axes with the hips joint as origin;
-the chest frame is that of the last spine joint. Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
+A posture is `q` (13,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
+along the heading; the pelvis frame has the same axes and the hips joint as origin; the chest frame is that of the last
+spine joint. Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
 """
 
 from typing import NamedTuple
@@ -148,7 +148,8 @@ def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
 def hips_position(model: BodyModel, root: ArrayLike) -> Floats:
     """The hips joint (3,) in the root frame for a root state (7,): its place in T-pose, lowered by the gait."""
     _, drops = foot_poses(model.gait.legs, model.gait.scale, _rows(root, ROOT_STATE))
-    return model.offsets[0] - np.array([0.0, drops[0], 0.0])
+    position: Floats = model.offsets[0] - np.array([0.0, drops[0], 0.0])
+    return position
 
 
 def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segments:
@@ -208,8 +209,4 @@ def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the pelvis frame in the world for root states (N, 7)."""
     states = _rows(roots, ROOT_STATE)
     _, drops = foot_poses(model.gait.legs, model.gait.scale, states)
-    hips, heading = model.offsets[0], states[:, 2]
-    c, s, zero = np.cos(heading), np.sin(heading), np.zeros(len(states))
-    x, z = states[:, 0] + hips[0] * c + hips[2] * s, states[:, 1] - hips[0] * s + hips[2] * c
-    positions = np.stack([x, hips[1] - drops, z], axis=-1)
-    return positions, np.stack([zero, np.sin(0.5 * heading), zero, np.cos(0.5 * heading)], axis=-1)
+    return posing.place_pelvis(model.offsets[0], states, drops)

@@ -119,11 +119,11 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
 
 
 @inlined
-def _place_hips(root: Floats, hips: Floats, drop: float, rotations: Floats, places: Floats) -> None:
-    """The hips' frame in the world: T-pose hips in the root's frame, lowered by `drop`."""
+def _place_hips(root: Floats, hips: Floats, drop: float, rotations: Floats, places: Floats, joint: int) -> None:
+    """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, lowered by `drop`."""
     c, s = np.cos(root[2]), np.sin(root[2])
     x, z = root[0] + hips[0] * c + hips[2] * s, root[1] - hips[0] * s + hips[2] * c
-    _place(0, rotations, places, x, hips[1] - drop, z, root[2])
+    _place(joint, rotations, places, x, hips[1] - drop, z, root[2])
 
 
 @kernel
@@ -176,7 +176,7 @@ def pose_body(
         _set_arm(arms[0], 1.0, q[n, 5:9], local, scratch)
         _set_arm(arms[1], -1.0, q[n, 9:13], local, scratch)
         _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], drops[n], rotations, places)
+        _place_hips(roots[n], offsets[0], drops[n], rotations, places, 0)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -201,7 +201,7 @@ def pose_legs(
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     for n in range(len(roots)):
         _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], drops[n], rotations, places)
+        _place_hips(roots[n], offsets[0], drops[n], rotations, places, 0)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -260,3 +260,12 @@ def pose_arm(
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
+
+
+@kernel
+def place_pelvis(hips: Floats, roots: Floats, drops: Floats) -> tuple[Floats, Floats]:
+    """Pelvis frames in the world: places (N, 3) and rotations (N, 4)."""
+    places, rotations = np.empty((len(roots), 3)), np.empty((len(roots), 4))
+    for n in range(len(roots)):
+        _place_hips(roots[n], hips, drops[n], rotations, places, n)
+    return places, rotations

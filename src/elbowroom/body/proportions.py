@@ -2,7 +2,8 @@
 
 Joint heights and segment lengths: R. Drillis & R. Contini, "Body segment parameters" (1966), as printed in D. A.
 Winter, "Biomechanics and Motor Control of Human Movement", fractions of stature. Widths and girths: means over men and
-women of C. C. Gordon et al., "2012 Anthropometric Survey of U.S. Army Personnel" (ANSUR II, 2014), divided by the mean stature of 1.69 m; a limb's radius is its girth / 2 pi, averaged over the segment.
+women of C. C. Gordon et al., "2012 Anthropometric Survey of U.S. Army Personnel" (ANSUR II, 2014), divided by the mean
+stature of 1.69 m; a limb's radius is its girth / 2 pi, averaged over the segment.
 """
 
 import numpy as np
