@@ -16,6 +16,7 @@ class AvatarMeta:
     authors: tuple[str, ...] = ()
     licence: str = ""
     format: str = ""  # "VRM 1.0", "VRM 0.x", "glTF 2.0"
+    notes: tuple[str, ...] = ()  # what was left out or guessed in reading it, one line each
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,7 @@ class Humanoid:
     rig: Rig | None = None  # None for a humanoid that has no file
     source: Path | None = None
     meta: AvatarMeta = field(default_factory=AvatarMeta)
+    glb: bytes | None = None  # the file as one self-contained GLB, for a viewer; None without a file
 
     @classmethod
     def load(cls, path: str | Path) -> "Humanoid":
