@@ -1,0 +1,94 @@
+"""The paper's f(t): where the root goes in the next moments, and exactly how it moves between two key frames."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.gait import phase_rate
+from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RootPath:
+    """Root states at equally spaced key times; between them the root moves as `interpolate_root` says."""
+
+    start_time: float  # seconds
+    interval: float  # seconds between key times
+    states: Floats  # (n+1, 7) as in `RootState`
+
+    @property
+    def horizon(self) -> int:
+        """The number n of key intervals."""
+        return len(self.states) - 1
+
+    @cached_property
+    def times(self) -> Floats:
+        """The key times (n+1,), seconds."""
+        times: Floats = self.start_time + self.interval * np.arange(len(self.states), dtype=np.float64)
+        return times
+
+    def at(self, time: float) -> RootState:
+        """The state at a time, which is moved into the path's own duration if need be."""
+        return RootState(*self.sample(np.array([time]))[0].tolist())
+
+    def sample(self, times: ArrayLike) -> Floats:
+        """States (N, 7) at times (N,), which are moved into the path's own duration if need be."""
+        return sample_states(self.states, self.interval, np.asarray(times, np.float64) - self.start_time)
+
+
+@exact_kernel
+def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
+    """The root state (7,) at the part `u` in [0, 1] of a key interval of `interval` seconds from state `a` to `b`.
+
+    Place and heading follow the cubic Hermite curves through both states' places and velocities; the velocities are
+    those curves' derivatives, in the axes of the heading reached. The gait phase runs from `a` to `b` at a rate that
+    changes linearly between the cadences of the two states, so it never runs backwards.
+    """
+    out = np.empty(ROOT_STATE)
+    ax, az = _ground_velocity(a)
+    bx, bz = _ground_velocity(b)
+    out[0], vx = _hermite(a[0], ax, b[0], bx, u, interval)
+    out[1], vz = _hermite(a[1], az, b[1], bz, u, interval)
+    out[2], out[5] = _hermite(a[2], a[5], b[2], b[5], u, interval)
+    sine, cosine = np.sin(out[2]), np.cos(out[2])
+    out[3], out[4] = vx * sine + vz * cosine, vx * cosine - vz * sine
+    first, last = phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5])
+    done = u
+    if first + last > 0.0:
+        done = u * (2.0 * first + (last - first) * u) / (first + last)
+    out[6] = a[6] + (b[6] - a[6]) * done
+    return out
+
+
+@exact_kernel
+def _ground_velocity(state: Floats) -> tuple[float, float]:
+    """Velocity along world x and z."""
+    sine, cosine = np.sin(state[2]), np.cos(state[2])
+    return state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
+
+
+@exact_kernel
+def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, interval: float) -> tuple[float, float]:
+    """Value and rate of change of the cubic from `a` to `b` with the given rates at its ends."""
+    rest = 1.0 - u
+    ta, tb = slope_a * interval, slope_b * interval
+    value = rest * rest * ((1.0 + 2.0 * u) * a + u * ta) + u * u * ((3.0 - 2.0 * u) * b - rest * tb)
+    slope = 6.0 * u * rest * (b - a) + rest * (rest - 2.0 * u) * ta + u * (u - 2.0 * rest) * tb
+    return value, slope / interval
+
+
+@exact_kernel
+def sample_states(states: Floats, interval: float, times: Floats) -> Floats:
+    """States (N, 7) at `times` (N,) after the first of `states` (n+1, 7); the ends hold outside."""
+    out = np.empty((times.shape[0], ROOT_STATE))
+    last = states.shape[0] - 1
+    for i in range(times.shape[0]):
+        position = min(max(times[i] / interval, 0.0), float(last))
+        k = min(int(position), last - 1)
+        out[i] = states[0] if last == 0 else interpolate_root(states[k], states[k + 1], position - k, interval)
+    return out
