@@ -1,0 +1,79 @@
+"""The clips that come with the package, and the arms' swing as a function of gait phase and speed."""
+
+from functools import cache
+from importlib import resources
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.clip import MotionClip
+from elbowroom.body.clip_data import ClipData, parse_clips
+from elbowroom.body.dof import DofGroup
+
+Floats = NDArray[np.float64]
+
+_ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
+_FILES = ("waist.json", "arm.json")
+_SWING = "arm_swing"
+_HANGING = np.deg2rad([-2.0, 6.0, 3.0, 10.0])  # the relaxed arm of a body that stands
+
+# Where two swings a stride (each arm with every step) give way to one (each arm with the other leg): some 0.8 m/s.
+# D. Webb, R. H. Tuttle & M. Baksh, Am. J. Phys. Anthropol. 93 (1994); R. C. Wagenaar & R. E. A. van Emmerik,
+# J. Biomech. 33 (2000).
+_CROSSOVER, _CROSSOVER_WIDTH = 0.80, 0.30  # m/s
+_FULL, _GROWTH = (
+    1.5,
+    1.1,
+)  # the swing is the clip's at 1.2 m/s, half of it at some 0.4 m/s (Kuhtz-Buschbeck & Jing 2012)
+
+
+@cache
+def _stock() -> tuple[ClipData, ...]:
+    folder = resources.files("elbowroom.body") / "data" / "clips"
+    return tuple(clip for name in _FILES for clip in parse_clips((folder / name).read_text("utf-8"), name))
+
+
+@cache
+def stock_clips(group: DofGroup) -> tuple[MotionClip, ...]:
+    """The package's clips of a group, each of which starts at the hanging arm or the upright trunk.
+
+    An arm's first clip is its swing. Mirrored gestures have equal values on both sides.
+    """
+    return tuple(
+        MotionClip(clip.name, group, clip.times, clip.configurations, clip.loop)
+        for clip in _stock()
+        if group in clip.groups
+    )
+
+
+@cache
+def arm_swing(group: DofGroup) -> MotionClip:
+    """An arm's swing over one stride; time is the gait phase in strides, 0 = left heel strike.
+
+    The angles are those of a walk at 1.2 m/s. Raises ValueError if the group is not an arm.
+    """
+    if group not in _ARMS:
+        raise ValueError(f"{group.name} is not an arm")
+    clip = next(clip for clip in stock_clips(group) if clip.name == _SWING)
+    if group is DofGroup.LEFT_ARM:
+        return clip
+    times = np.linspace(0.0, 1.0, len(clip.times))
+    return MotionClip(clip.name, group, times, clip.sample(times + 0.5), loop=True)
+
+
+def arm_swing_goal(group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
+    """Configurations (n, 4) of the natural arm at gait phases (n,) in strides and forward speeds (n,) in m/s.
+
+    The swing grows from the hanging arm at rest. Below some 0.8 m/s the arms swing twice a stride, above once, opposite
+    to their leg; in between the two are mixed. Backward (negative speed) the swing follows the legs.
+    """
+    if group not in _ARMS:
+        raise ValueError(f"{group.name} is not an arm")
+    phase, speed = np.asarray(phases, np.float64), np.asarray(speeds, np.float64)
+    own = phase + (0.0 if group is DofGroup.LEFT_ARM else 0.5) + np.where(speed < 0.0, 0.5, 0.0)
+    clip, pace = arm_swing(DofGroup.LEFT_ARM), np.abs(speed)[..., None]
+    t = np.clip((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0, 1.0)
+    single = t * t * (3.0 - 2.0 * t)
+    swing = single * clip.sample(own) + (1.0 - single) * clip.sample(2.0 * own)
+    goal: Floats = _HANGING + _FULL * (1.0 - np.exp(-pace / _GROWTH)) * (swing - _HANGING)
+    return goal
