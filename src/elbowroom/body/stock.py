@@ -1,0 +1,8 @@
+"""The stock avatar: a VRM 1.0 figure of our own (CC0), written by `tools/make_stock_avatar`."""
+
+from pathlib import Path
+
+
+def stock_avatar_path() -> Path:
+    """The file of the stock avatar in the package."""
+    return Path(__file__).parent / "data" / "stock.vrm"

@@ -1,0 +1,72 @@
+"""Brows and mouth: ribbons laid on the face, with the shapes of a few expressions."""
+
+import numpy as np
+
+from make_stock_avatar.eyes import Sheet, sheet_mesh
+from make_stock_avatar.fields import Array
+from make_stock_avatar.head import on_face
+
+_FRONT = np.array([0.0, 0.0, 1.0])
+
+
+def _laid(xy: Array, lift: Array) -> Array:
+    """Points (N, 3) on the face at xy (N, 2), lifted by metres."""
+    points = on_face(xy)
+    points[:, 2] += lift
+    return points
+
+
+def _brow_points(raise_inner: float = 0.0, raise_outer: float = 0.0) -> Array:
+    u = np.linspace(0.0, 1.0, 17)
+    x = 0.0145 + 0.0435 * u
+    y = 1.6235 + 0.0105 * np.sin(np.pi * (0.12 + 0.74 * u) ** 1.15) - 0.0035 * u
+    y = y + raise_inner * (1 - u) + raise_outer * u
+    half = 0.0042 * np.clip(1.0 - u**2.6, 0.0, 1.0) * np.clip((u + 0.05) / 0.16, 0.35, 1.0) + 0.0002
+    rows = []
+    for side, lift in ((-1.0, -0.0004), (-0.45, 0.0022), (0.45, 0.0022), (1.0, -0.0004)):
+        rows.append(_laid(np.column_stack([x, y + side * half]), np.full(len(u), lift)))
+    return np.concatenate(rows)
+
+
+def brow(colour: Array) -> Sheet:
+    """The left brow with targets "browUp", "browSad" and "browAngry"."""
+    rest = _brow_points()
+    targets = {
+        "browUp": _brow_points(0.007, 0.006) - rest,
+        "browSad": _brow_points(0.006, -0.003) - rest,
+        "browAngry": _brow_points(-0.006, 0.003) - rest,
+    }
+    return Sheet(sheet_mesh(rest, 4, 17, _FRONT), np.tile(colour, (len(rest), 1)), targets)
+
+
+# half width, height of the corners over the middle, upper and lower opening in the middle (metres)
+_MOUTHS: dict[str, tuple[float, float, float, float]] = {
+    "rest": (0.0215, 0.0052, 0.0009, 0.0012),
+    "smile": (0.0265, 0.0085, 0.0010, 0.0110),
+    "aa": (0.0190, 0.0020, 0.0035, 0.0150),
+    "ih": (0.0220, 0.0030, 0.0020, 0.0060),
+    "ou": (0.0095, 0.0000, 0.0035, 0.0055),
+    "ee": (0.0245, 0.0045, 0.0022, 0.0045),
+    "oh": (0.0125, 0.0000, 0.0060, 0.0100),
+    "frown": (0.0200, -0.0040, 0.0009, 0.0012),
+}
+_MIDDLE = 1.5225  # y of the middle of the mouth, metres
+
+
+def _mouth_points(shape: str) -> Array:
+    half, corner, up, down = _MOUTHS[shape]
+    u = np.sin(np.linspace(-0.5, 0.5, 21) * np.pi)
+    line = _MIDDLE + corner * np.abs(u) ** 1.8
+    bulge = np.sqrt(np.maximum(1.0 - u * u, 0.0))
+    rows = []
+    for s in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        y = line + (up if s > 0 else down) * s * bulge
+        rows.append(_laid(np.column_stack([half * u, y]), np.full(len(u), 0.0006)))
+    return np.concatenate(rows)
+
+
+def mouth(colour: Array) -> Sheet:
+    """A small smile; targets "smile", "frown" and the five vowels."""
+    rest = _mouth_points("rest")
+    targets = {name: _mouth_points(name) - rest for name in _MOUTHS if name != "rest"}
+    return Sheet(sheet_mesh(rest, 5, 21, _FRONT), np.tile(colour, (len(rest), 1)), targets)

@@ -1,0 +1,65 @@
+"""Head and neck as clay: a soft, slightly stylised adult face."""
+
+import numpy as np
+
+from make_stock_avatar.fields import Array, carved, common, ellipsoid, mirrored, round_cone, sphere, union
+from make_stock_avatar.loft import Row, loft
+from make_stock_avatar.rest import EYE_CENTRE
+
+# y, half-widths in x and z, centre in x and z
+_NECK: tuple[Row, ...] = (
+    (1.360, 0.0900, 0.0620, 0.0, -0.020),
+    (1.420, 0.0620, 0.0560, 0.0, -0.020),
+    (1.450, 0.0520, 0.0520, 0.0, -0.018),
+    (1.490, 0.0485, 0.0510, 0.0, -0.012),
+    (1.540, 0.0490, 0.0530, 0.0, -0.004),
+)
+
+
+def skull(q: Array) -> Array:
+    """Cranium and jaw without features, the base of the hair."""
+    cranium = ellipsoid(q, (0.0, 1.622, -0.010), (0.0785, 0.100, 0.0980))
+    face = ellipsoid(q, (0.0, 1.572, 0.022), (0.0660, 0.090, 0.0690))
+    jaw = ellipsoid(q, (0.0, 1.522, 0.036), (0.0470, 0.046, 0.0480))
+    return union(union(cranium, face, 0.03), jaw, 0.03)
+
+
+def head(p: Array) -> Array:
+    """Head, neck and the hidden plate under the shirt."""
+    q = mirrored(p)
+    body = skull(q)
+    chin = sphere(q, (0.007, 1.4975, 0.066), 0.0185)
+    cheek = ellipsoid(q, (0.036, 1.556, 0.056), (0.030, 0.028, 0.030))
+    body = union(union(body, chin, 0.03), cheek, 0.025)
+    brow = round_cone(q, (0.0, 1.622, 0.076), (0.045, 1.622, 0.058), 0.012, 0.010)
+    body = union(body, brow, 0.03)
+    socket = ellipsoid(q, (EYE_CENTRE[0], 1.5945, 0.096), (0.0250, 0.0180, 0.0150))
+    body = carved(body, socket, 0.016)
+    nose = round_cone(q, (0.0, 1.598, 0.0800), (0.0, 1.5615, 0.0985), 0.0070, 0.0105)
+    wing = sphere(q, (0.0090, 1.5580, 0.0905), 0.0078)
+    body = union(body, union(nose, wing, 0.010), 0.014)
+    lips = ellipsoid(q, (0.0, 1.5245, 0.0785), (0.021, 0.0125, 0.0085))
+    body = union(body, lips, 0.012)
+    ear = ellipsoid(_turned(q, (0.0775, 1.583, -0.014)), (0.0, 0.0, 0.0), (0.0085, 0.0300, 0.0185))
+    bowl = ellipsoid(_turned(q, (0.0865, 1.585, -0.010)), (0.0, 0.0, 0.0), (0.0055, 0.0195, 0.0105))
+    body = union(body, carved(ear, bowl, 0.005), 0.007)
+    neck = common(loft(q, 1, _NECK), np.maximum(1.395 - q[:, 1], q[:, 1] - 1.56), 0.02)
+    return union(body, neck, 0.022)
+
+
+def _turned(q: Array, centre: tuple[float, float, float]) -> Array:
+    """Axes of the ear: its front edge lies closer to the head than its back edge, its top leans back."""
+    d = q - np.array(centre)
+    turn, lean = 0.35, 0.18
+    x = d[:, 0] * np.cos(turn) + d[:, 2] * np.sin(turn)
+    z = -d[:, 0] * np.sin(turn) + d[:, 2] * np.cos(turn)
+    y = d[:, 1] * np.cos(lean) - z * np.sin(lean)
+    return np.column_stack([x, y, d[:, 1] * np.sin(lean) + z * np.cos(lean)])
+
+
+def on_face(xy: Array) -> Array:
+    """The points of the face seen from the front at (x, y), (N, 3), by sphere tracing along -Z."""
+    points = np.column_stack([xy, np.full(len(xy), 0.16)])
+    for _ in range(60):
+        points[:, 2] -= 0.7 * head(points)
+    return points
