@@ -25,12 +25,12 @@ _STATURE = 1.72  # metres, of the standard leg
 _CADENCE = 64.8 / 60.0  # strides/s at one stature per second
 _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
 _STILL = 1e-3  # m/s: below, the phase rests
-_LATERAL, _TURN = 2.0, 1.0  # side steps and turns on the spot are short and quick: weights in the effective speed
+_LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
 _DUTY, _RUN_DUTY = 0.62, 0.45  # stance fraction of the cycle, walking and running
 _HEEL_STRIKE, _TOE_OFF = math.radians(18.0), math.radians(42.0)  # foot pitch
 _LIFT = 0.05  # metres, of the swinging foot on a standard leg
-_MID_DROP = 0.3  # pelvis drop in mid-stance as a part of that in double support
-_STRETCH = 0.999  # the leg is never straighter than this part of its length
+_MID_DROP = 0.4  # pelvis drop in mid-stance as a part of that in double support
+_STRETCH, _STRIDE_STRETCH = 0.999, 0.994  # how straight the longest leg of the cycle gets, standing and walking
 
 
 class GaitShape(NamedTuple):
@@ -57,7 +57,8 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
 def _cadence(forward: float, lateral: float, turn: float, scale: float) -> float:
     """Strides per second, not yet resting at standstill."""
     side, spin = _LATERAL * lateral, _TURN * scale * turn
-    relative = (forward * forward + side * side + spin * spin) / (_STATURE * scale) ** 2
+    ahead = forward if forward >= 0.0 else _BACK * forward
+    relative = (ahead * ahead + side * side + spin * spin) / (_STATURE * scale) ** 2
     return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
@@ -136,13 +137,14 @@ def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, ou
     stride = forward * period / (1.1 * scale)
     travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
     ahead = min(max(stride, -1.2), 1.2)
-    effort = travel / np.sqrt(1.0 + travel * travel)
+    effort = travel * travel / (0.5 + travel * travel)
     outward = 1.0 if side == 0 else -1.0
     aside = lateral * period / (4.0 * scale)
     x0 = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0)) + outward * scale * (
         np.sqrt(aside * aside + 1e-4) - 1e-2
     )
-    z0 = legs[side, _ANKLE + 2] - 0.045 * scale * ahead
+    x0 += outward * 0.02 * scale * min(abs(turn) * period, 1.5)
+    z0 = legs[side, _ANKLE + 2] - 0.055 * scale * max(ahead, 0.0)
     half = 0.5 * duty * period
     lift, fade = 0.0, 1.0
     if u < duty:
@@ -156,7 +158,10 @@ def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, ou
         x = _hermite(ax, swing * (-turn * az - lateral), bx, swing * (-turn * bz - lateral), w)
         z = _hermite(az, swing * (turn * ax - forward), bz, swing * (turn * bx - forward), w)
         yaw = _hermite(-turn * half, -turn * swing, turn * half, -turn * swing, w)
-        lift = _LIFT * scale * effort * 16.0 * (w * (1.0 - w)) ** 2
+        bump = 16.0 * (w * (1.0 - w)) ** 2
+        sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
+        x -= min(max(sag, -0.1 * scale), 0.1 * scale) * bump
+        lift = _LIFT * scale * effort * bump
         fade = (2.0 * w - 1.0) ** 2
     if ahead >= 0.0:
         pitch = ahead * _pitch_ahead(u, duty)
@@ -174,9 +179,9 @@ def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, ou
 
 
 @inlined
-def _needed_drop(legs: Floats, side: int, foot: Floats) -> float:
+def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
-    length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
+    length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
     dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
     reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
@@ -196,14 +201,15 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
         root = roots[n]
         speed = np.sqrt(root[3] * root[3] + root[4] * root[4])
         duty = _DUTY + (_RUN_DUTY - _DUTY) * _smooth((speed / scale - 1.3) / 1.3)
+        stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(speed / scale)
         low = 0.0
         for side in range(2):
             cycle = root[6] + 0.5 * side
             _foot_pose(legs, scale, root, side, cycle - np.floor(cycle), feet[n, side])
             _foot_pose(legs, scale, root, side, 0.0, extreme)
-            low = max(low, _needed_drop(legs, side, extreme))
+            low = max(low, _needed_drop(legs, side, extreme, stretch))
             _foot_pose(legs, scale, root, side, duty * (1.0 - 1e-9), extreme)
-            low = max(low, _needed_drop(legs, side, extreme))
+            low = max(low, _needed_drop(legs, side, extreme, stretch))
         weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (duty - 0.5))
         peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
         double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (root[6] - 0.5 * (duty - 0.5)))

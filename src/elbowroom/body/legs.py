@@ -8,6 +8,8 @@ from elbowroom.jit import inlined, kernel
 
 Floats = NDArray[np.float64]
 
+_SOFT = 0.004  # of the leg: from here on a straightening knee slows down
+
 LEG_ROTATIONS = 4  # thigh, shin, foot, toes
 
 
@@ -19,6 +21,14 @@ def leg_rest(skeleton: Skeleton) -> Floats:
         hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
         rows.append([*hip, *(knee - hip), *(ankle - knee)])
     return np.array(rows)
+
+
+@inlined
+def _soft_reach(distance: float, length: float) -> float:
+    """`distance`, approaching `length` exponentially: the knee does not snap when the leg straightens."""
+    soft = _SOFT * length
+    beyond = distance - (length - soft)
+    return distance if beyond <= 0.0 else length - soft * np.exp(-beyond / soft)
 
 
 @inlined
@@ -76,7 +86,7 @@ def leg_rotations(rest: Floats, feet: Floats, drops: Floats) -> Floats:
             dx, dy, dz = f[0] - r[0], f[1] - r[1] + drops[n], f[2] - r[2]
             distance = np.sqrt(dx * dx + dy * dy + dz * dz)
             dx, dy, dz = dx / distance, dy / distance, dz / distance
-            reach = min(max(distance, abs(upper - lower) + 0.05 * upper), 0.9999 * (upper + lower))
+            reach = _soft_reach(max(distance, abs(upper - lower) + 0.05 * upper), upper + lower)
             cosine = (upper * upper + reach * reach - lower * lower) / (2.0 * upper * reach)
             sine = np.sqrt(max(1.0 - cosine * cosine, 0.0))
             nx, ny, nz = np.cos(0.5 * f[3]), 0.0, -np.sin(0.5 * f[3])
