@@ -14,6 +14,7 @@ from make_stock_avatar.hand import left_arm_mesh
 from make_stock_avatar.head import head
 from make_stock_avatar.polygonise import Mesh, lattice, polygonise
 from make_stock_avatar.shading import blush, figure, tinted
+from make_stock_avatar.simplify import simplified
 from make_stock_avatar.vrm import Figure, Material, Part, glb, mesh_node
 from make_stock_avatar.weights import body_weights, quantised, rigid, shoe_weights
 
@@ -30,8 +31,9 @@ def stock_avatar() -> bytes:
     return glb(Figure(meshes, vrm_extension(nodes, targets)))
 
 
-def _clay(field: Field, low: tuple[float, ...], high: tuple[float, ...], cell: tuple[float, ...]) -> Mesh:
-    return polygonise(field, lattice(low, high, cell))
+def _clay(field: Field, low: tuple[float, ...], high: tuple[float, ...], cell: float, points: int) -> Mesh:
+    """A part meshed in cubes of `cell` metres and simplified to some `points`."""
+    return simplified(polygonise(field, lattice(low, high, (cell, cell, cell))), field, points)
 
 
 def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
@@ -40,12 +42,12 @@ def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
 
 
 def _body() -> tuple[Part, ...]:
-    arm = _bare(left_arm_mesh(), clothes.shirt, 0.010)
-    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), (0.0175, 0.0180, 0.0175))
-    collar = _clay(clothes.collar, (-0.10, 1.41, -0.11), (0.10, 1.49, 0.08), (0.0125, 0.0070, 0.0125))
-    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), (0.0185, 0.0270, 0.0185))
-    shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), (0.0115, 0.0115, 0.0135))
-    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), (0.0135, 0.0080, 0.0150))
+    arm = _bare(left_arm_mesh(2500), clothes.shirt, 0.010)
+    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0115, 2400)
+    collar = _clay(clothes.collar, (-0.10, 1.41, -0.11), (0.10, 1.49, 0.08), 0.0056, 420)
+    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2300)
+    shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), 0.0070, 850)
+    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0065, 420)
     shirt = _bare(shirt, clothes.trousers, 0.018)
     trousers = _bare(trousers, clothes.shirt, 0.030)
     shoe = _bare(_bare(shoe, clothes.sole, 0.004), clothes.trousers, 0.012)
@@ -60,8 +62,8 @@ def _body() -> tuple[Part, ...]:
 
 
 def _head() -> tuple[Part, ...]:
-    skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), (0.0078, 0.0078, 0.0078))
-    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), (0.0096, 0.0096, 0.0096))
+    skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), 0.0050, 3600)
+    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0058, 2500)
     skin = _bare(_bare(skin, hair, 0.006), clothes.shirt, 0.012)
     locks_colours = tinted(locks, lambda p: np.minimum(hair(p), figure(p)), 0.8, np.array([0.45, 0.35, 0.3]))
     left, right = eyeball(1.0), mirrored_sheet(eyeball(-1.0))

@@ -6,6 +6,7 @@ from make_stock_avatar.fields import Array, chain, common, ellipsoid, round_cone
 from make_stock_avatar.loft import Row, loft
 from make_stock_avatar.polygonise import Mesh, lattice, polygonise
 from make_stock_avatar.rest import WRIST, finger_joints
+from make_stock_avatar.simplify import simplified
 
 # x, half-widths in y and z, centre in y and z
 _ARM: tuple[Row, ...] = (
@@ -62,8 +63,8 @@ def _funnel(points: Array) -> Array:
 _WIDENING = WRIST - 0.01  # x below which the cells grow longer, metres
 
 
-def left_arm_mesh() -> Mesh:
-    """The left arm from inside the sleeve to the finger tips."""
+def left_arm_mesh(points: int) -> Mesh:
+    """The left arm from inside the sleeve to the finger tips, with some `points`."""
     low_x = _WIDENING - (_WIDENING - 0.235) / 2.4
-    corners = lattice((low_x, 1.350, -0.070), (0.902, 1.436, 0.082), (0.0086, 0.0049, 0.0040))
-    return polygonise(arm, corners, relax=3, warp=_funnel)
+    corners = lattice((low_x, 1.350, -0.070), (0.902, 1.436, 0.082), (0.0046, 0.0036, 0.0030))
+    return simplified(polygonise(arm, corners, relax=3, warp=_funnel), arm, points)
