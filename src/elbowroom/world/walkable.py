@@ -1,0 +1,113 @@
+"""Where legs can stand: the clearance of a vertical capsule over a grid of places on the ground."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.jit import kernel
+from elbowroom.world.clearance import clearance_into
+from elbowroom.world.scene import Scene
+
+Floats32 = NDArray[np.float32]
+
+MAX_CELLS = 250_000
+FARTHEST = 1.0  # metres: greater clearance is not told apart
+
+
+class Stance(NamedTuple):
+    """A vertical capsule that stands for legs and pelvis, metres."""
+
+    radius: float
+    low: float  # height of the axis's lower end
+    high: float  # and of its upper end
+
+
+@dataclass(frozen=True, eq=False)
+class WalkableMap:
+    """Clearance of a vertical capsule at the points of a grid; negative where it would touch."""
+
+    origin: tuple[float, float]  # x, z of point (0, 0), metres
+    heading: float  # direction of the grid's first axis on the ground, radians; the second points to its left
+    cell: float  # distance of neighbouring points, metres
+    clearance: Floats32  # (ahead, left), metres, at most `FARTHEST`
+
+    def at(self, x: float, z: float) -> float:
+        """Clearance at a place, interpolated between the four points around it; minus infinity outside."""
+        sine, cosine = np.sin(self.heading), np.cos(self.heading)
+        dx, dz = x - self.origin[0], z - self.origin[1]
+        ahead, left = (dx * sine + dz * cosine) / self.cell, (dx * cosine - dz * sine) / self.cell
+        return float(interpolate_grid(self.clearance, ahead, left))
+
+
+def walkable_map(scene: Scene, radius: float, low: float, high: float, cell: float = 0.1) -> WalkableMap:
+    """Clearance over the scene's ground of a vertical capsule whose axis reaches from height `low` to `high`.
+
+    Metres. `cell` grows where the ground would need more than `MAX_CELLS` points.
+    """
+    width, depth = scene.ground_size
+    cell = max(cell, float(np.sqrt(width * depth / MAX_CELLS)) * 1.01)
+    shape = (int(depth / cell) + 1, int(width / cell) + 1)
+    origin = (scene.ground_center[0] - 0.5 * width, scene.ground_center[1] - 0.5 * depth)
+    return walkable_window(scene.boxes.table32, Stance(radius, low, high), origin, 0.0, shape, cell)
+
+
+def walkable_window(
+    table: Floats32, stance: Stance, origin: tuple[float, float], heading: float, shape: tuple[int, int], cell: float
+) -> WalkableMap:
+    """Clearance over a grid that starts at `origin` and runs along `heading`; `table` as in `Boxes.table32`."""
+    out = np.full(shape, FARTHEST, np.float32)
+    place = np.array([*origin, np.sin(heading), np.cos(heading), cell])
+    _fill_window(table, np.array(stance, np.float32), place, out)
+    return WalkableMap(origin, heading, cell, out)
+
+
+def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
+    """The capsule's axis (1, 6, N) at places `x`, `z` (N,)."""
+    across, along = np.asarray(x, np.float32), np.asarray(z, np.float32)
+    low, high = np.full_like(across, stance.low), np.full_like(across, stance.high)
+    return np.stack([across, low, along, across, high, along])[None]
+
+
+@kernel
+def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
+    """Lower every point within reach of a box; a box's row of points is one batch of the clearance kernel."""
+    sine, cosine, cell = place[2], place[3], place[4]
+    ahead, left = out.shape
+    segments = np.empty((1, 6, left), np.float32)
+    least = np.empty(left, np.float32)
+    for b in range(table.shape[0]):
+        dx, dz = table[b, 0] - place[0], table[b, 2] - place[1]
+        center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
+        half = table[b, 12:15]
+        reach = (np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + stance[0] + FARTHEST) / cell + 1.0
+        first_a, last_a = max(0, int(center_a - reach)), min(ahead, int(center_a + reach) + 1)
+        first_l, last_l = max(0, int(center_l - reach)), min(left, int(center_l + reach) + 1)
+        count = last_l - first_l
+        if count <= 0:
+            continue
+        for i in range(first_a, last_a):
+            for j in range(count):
+                along, aside = i * cell, (first_l + j) * cell
+                x = place[0] + along * sine + aside * cosine
+                z = place[1] + along * cosine - aside * sine
+                segments[0, 0, j], segments[0, 1, j], segments[0, 2, j] = x, stance[1], z
+                segments[0, 3, j], segments[0, 4, j], segments[0, 5, j] = x, stance[2], z
+            row = np.ascontiguousarray(segments[:, :, :count])
+            clearance_into(row, stance[:1], table[b : b + 1], least[:count])
+            for j in range(count):
+                out[i, first_l + j] = min(out[i, first_l + j], least[j])
+
+
+@kernel
+def interpolate_grid(grid: Floats32, a: float, b: float) -> float:
+    """The value at grid coordinates (a, b), bilinear; minus infinity outside."""
+    if not (0.0 <= a <= grid.shape[0] - 1 and 0.0 <= b <= grid.shape[1] - 1):
+        return -np.inf
+    i, j = min(int(a), grid.shape[0] - 2), min(int(b), grid.shape[1] - 2)
+    u, v = a - i, b - j
+    low = grid[i, j] * (1.0 - v) + grid[i, j + 1] * v
+    high = grid[i + 1, j] * (1.0 - v) + grid[i + 1, j + 1] * v
+    value: float = low * (1.0 - u) + high * u
+    return value
