@@ -1,13 +1,22 @@
 """`elbowroom walk`: the paper's crossing test, without a screen."""
 
+from contextlib import nullcontext
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-EXAMPLES = (
-    "Examples:  elbowroom walk --scene c --queue 5  |  elbowroom walk --scene d --seed 1 --record run.elbow --json"
-)
+from elbowroom.cli.output import Bar, print_json, print_row, progress_bar
+
+if TYPE_CHECKING:
+    from elbowroom.control.frame import Frame
+    from elbowroom.control.recording import Recorder
+    from elbowroom.experiment.crossing import CrossingResult, Listener
+    from elbowroom.planning.command import Command
+
+EXAMPLES = "Examples:  elbowroom walk --scene c --queue 5  |  elbowroom walk --scene d --record run.elbow --json"
+FELL_SHORT = 1
+_FRAMES_PER_UPDATE = 30
 
 
 def walk(
@@ -22,5 +31,67 @@ def walk(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Walk an avatar through a scene, faster than real time, and print how it went. Exit code 0: it got through."""
-    raise NotImplementedError
+    """Walk an avatar through a scene, faster than real time, and print how it went.
+
+    A scripted user walks forward, and when stuck backs up and tries again. Exit code 0: through in time, 1: not.
+    """
+    from elbowroom.body.humanoid import Humanoid
+    from elbowroom.control.recording import Recorder
+    from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
+    from elbowroom.world.scene import Scene
+
+    place = Scene.load(scene)
+    settings = CrossingSettings(planner, queue, seed, limit)
+    with progress_bar("Compiling kernels (the first run takes longest)", None, quiet):
+        humanoid = Humanoid.default() if avatar is None else Humanoid.load(avatar)
+        controller = controller_for(humanoid, place, settings)
+        warm_up(controller)
+    with (
+        progress_bar(f"Walking through {place.title}", limit, quiet) as bar,
+        nullcontext() if record is None else Recorder(record, controller) as recorder,
+    ):
+        result = run_crossing(controller, settings, _listener(bar, recorder))
+    _report(result, record, json)
+    raise typer.Exit(0 if result.passed else FELL_SHORT)
+
+
+def _listener(bar: Bar, recorder: "Recorder | None") -> "Listener":
+    """What every step is told to: the recording, and now and then the progress bar."""
+    count = 0
+
+    def listen(command: "Command", dt: float, frame: "Frame") -> None:
+        nonlocal count
+        count += 1
+        if recorder is not None:
+            recorder.append(command, dt, frame)
+        if count % _FRAMES_PER_UPDATE == 0:
+            bar.move(frame.time, f"{frame.time:4.1f} s" + (" stuck" if frame.stuck else ""))
+
+    return listen
+
+
+def _report(result: "CrossingResult", record: Path | None, json: bool) -> None:
+    from dataclasses import asdict
+
+    if json:
+        print_json(asdict(result) | {"recording": None if record is None else str(record)})
+        return
+    yes = {True: "yes", False: "no"}
+    took = "-" if result.passed_time_s is None else f"{result.passed_time_s:.1f} s"
+    rates = f"{result.plan_success_rate:.1%} found, {result.plan_failed_rate:.1%} failed"
+    row = {
+        "passed": yes[result.passed],
+        "straight": yes[result.straight],
+        "stuck times": str(result.stuck_times),
+        "passed time": took,
+        "local planning calls": str(result.plans_total),
+        "of these": rates,
+        "collision checks": str(result.collision_checks),
+        "real time": yes[result.realtime],
+        "frames": str(result.frames),
+        "frame ms, 99 %, worst": f"{result.frame_ms_p99:.2f}, {result.frame_ms_worst:.2f}",
+        "least clearance": f"{1e3 * result.least_clearance:.1f} mm",
+    }
+    if record is not None:
+        row["recording"] = str(record)
+    print_row(f"Scene {result.scene}, {result.planner}, |Q| {result.queue_size}, seed {result.seed}", row)

@@ -1,0 +1,57 @@
+"""What commands print: results on stdout, progress on stderr."""
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+
+def print_json(result: Mapping[str, Any]) -> None:
+    """One JSON object on stdout; what is no JSON number becomes null."""
+    print(json.dumps(_plain(result), indent=2, allow_nan=False))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def print_row(title: str, row: Mapping[str, str]) -> None:
+    """A small table of names and values on stdout."""
+    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table.add_column(style="dim")
+    table.add_column(justify="right")
+    for name, value in row.items():
+        table.add_row(name, value)
+    Console().print(table)
+
+
+class Bar:
+    """A progress bar, or nothing."""
+
+    def __init__(self, progress: Progress | None, task: TaskID | None) -> None:
+        self._progress, self._task = progress, task
+
+    def move(self, completed: float, note: str = "") -> None:
+        """Show what is done by now, in the unit of the total."""
+        if self._progress is not None and self._task is not None:
+            self._progress.update(self._task, completed=completed, note=note)
+
+
+@contextmanager
+def progress_bar(title: str, total: float | None, quiet: bool) -> Iterator[Bar]:
+    """A progress bar on stderr while the block runs; it leaves no trace behind, and is silent where `quiet`."""
+    if quiet:
+        yield Bar(None, None)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[note]}"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        yield Bar(progress, progress.add_task(title, total=total, note=""))

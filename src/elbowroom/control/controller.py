@@ -1,0 +1,245 @@
+"""The control loop of the paper's Figure 4: plan, play, reset."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.control import steering
+from elbowroom.control.body_check import BodyCheck, configuration
+from elbowroom.control.frame import Frame, Phase, PlanReport
+from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.settings import ControlSettings
+from elbowroom.errors import InputError
+from elbowroom.planning.command import Command
+from elbowroom.planning.planner import make_planner
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
+LONGEST_STEP = 60.0  # seconds
+_SETTLE = 0.05  # seconds: time constant with which the legs come to a stand where the avatar is held
+_STILL = 0.02  # m/s and rad/s: slower is standing
+_SAME = 1e-6  # radians
+
+
+class Controller:
+    """Turns commands into poses that touch nothing, one `step` at a time.
+
+    It reads no clock: time is the sum of the `dt` it was given, chance comes from the seed, so the same steps give the
+    same frames bit for bit. It owns what lives: the queue, the planners with their growing activity graphs, the pose.
+    """
+
+    def __init__(
+        self,
+        humanoid: Humanoid,
+        scene: Scene,
+        *,
+        planner: str = "figure6",
+        queue_size: int = 5,
+        interval: float = 0.2,
+        seed: int = 0,
+        assist: bool = True,
+        start: RootState | None = None,
+    ) -> None:
+        """Stand the humanoid at the scene's start, or at `start`.
+
+        Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
+        """
+        self.humanoid = humanoid
+        self.scene = scene
+        self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
+        self.start = scene.start if start is None else start
+        self._check = BodyCheck(humanoid, scene)
+        self._root_planner = RootPlanner(humanoid, scene)
+        self.reset()
+
+    def reset(self) -> None:
+        """Back to the start, as if newly made."""
+        self._rng = np.random.default_rng(self.settings.seed)
+        self._planner = make_planner(self.settings.planner, self.humanoid, self.scene)
+        self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
+        self._assist = self.settings.assist
+        self._plan_report: PlanReport | None = None
+        self._command = Command()
+        self._flow = self._next = Phase.PLAN
+        self._held = self._resting = False
+        self._stand_at_start()
+
+    def _stand_at_start(self) -> None:
+        root = self.start._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
+        upper = self._planner.goals(RootPath(0.0, self.settings.interval, np.stack([root, root])))[0]
+        clearance = self._check.clearance(root, upper)
+        if clearance < 0.0:
+            place = f"x {root[0]:.3g}, z {root[1]:.3g}"
+            raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
+        self._free = Playback(root, upper, np.zeros_like(upper))
+        self._show(self._free, clearance)
+
+    @property
+    def root(self) -> RootState:
+        """The root state that is shown."""
+        return RootState(*self._shown.root.tolist())
+
+    @property
+    def phase(self) -> Phase:
+        """The flow that the last turn took."""
+        return self._flow
+
+    @property
+    def assist(self) -> bool:
+        """Whether upper-body motion is planned; off, the canned walk is shown, touching what it touches."""
+        return self._assist
+
+    @assist.setter
+    def assist(self, wanted: bool) -> None:
+        if wanted == self._assist:
+            return
+        self._assist = wanted
+        self._next, self._resting = Phase.RESET, False
+        if wanted and self._clearance < 0.0:
+            self._show(self._free, self._check.clearance(self._free.root, self._free.upper))
+
+    def step(self, command: Command, dt: float) -> Frame:
+        """Go on by `dt` seconds under `command` and say what to show.
+
+        A step longer than `LONGEST_TURN` is played in equal turns; `dt` 0 changes nothing. Raises `InputError` if a
+        component of the command is no number, or `dt` is negative or longer than `LONGEST_STEP`.
+        """
+        wanted = steering.checked(command)
+        if not 0.0 <= dt <= LONGEST_STEP:
+            raise InputError(f"dt: {dt} is not between 0 and {LONGEST_STEP:g} seconds")
+        turns = math.ceil(dt / LONGEST_TURN)
+        flows = [self._turn(wanted, dt / turns) for _ in range(turns)]
+        self._flow = next((flow for flow in (Phase.RESET, Phase.PLAN) if flow in flows), Phase.PLAY)
+        return self._frame(wanted)
+
+    def _turn(self, command: Command, dt: float) -> Phase:
+        flow = self._choose_flow(command)
+        if flow is Phase.RESET:
+            self._queue.clear()
+        if flow is not Phase.PLAY:
+            self._plan(command)
+        self._play(dt)
+        return flow
+
+    def _choose_flow(self, command: Command) -> Phase:
+        """Figure 4 (b): which flow this turn takes."""
+        if self._resting and command.idle:
+            return Phase.PLAY
+        if steering.overturned(self._command, command):
+            return Phase.RESET
+        if self._next is Phase.RESET:
+            return Phase.PLAY if self._waits(command) else Phase.RESET
+        if self._next is Phase.PLAN or self._queue.consumed > 1.0 or steering.changed(self._command, command):
+            return Phase.PLAN
+        return Phase.PLAY
+
+    def _waits(self, command: Command) -> bool:
+        """Whether the avatar is held and a plan for the same wish failed less than an interval ago."""
+        if not self._held or self._plan_report is None or steering.changed(self._command, command):
+            return False
+        return self._queue.time - self._plan_report.time < self.settings.interval
+
+    def _plan(self, command: Command) -> None:
+        """Flow A: a root path, its upper-body motion; on success the queue is refilled, else it keeps what it has."""
+        time, root, upper = self._planning_start(command)
+        horizon, interval = self.settings.queue_size, self.settings.interval
+        root_plan = self._root_planner.plan(RootState(*root.tolist()), command, horizon, interval)
+        path = replace(root_plan.path, start_time=time)
+        search = self._planner.plan if self._assist else self._planner.canned
+        local = search(path, upper, self._rng)
+        number = 1 if self._plan_report is None else self._plan_report.number + 1
+        report = PlanReport(number, self._queue.time, replace(root_plan, path=path), local)
+        self._command, self._plan_report, self._next = command, report, Phase.PLAY
+        self._resting = False
+        self._queue.start_count()
+        if report.found:
+            self._queue.refill(path, local.configurations, self._shown)
+            self._resting = command.idle and self._stands_still(path, local.configurations)
+
+    def _planning_start(self, command: Command) -> tuple[float, Floats, Floats]:
+        """Time, root state and upper body from which to plan.
+
+        That is the next unplayed key frame (receding horizon); where nothing is left to play, or the user wants
+        something else at once, it is what is shown now.
+        """
+        if not (self._queue.empty or steering.changed(self._command, command)):
+            coming = self._queue.unplayed()
+            return float(coming.times[0]), coming.roots[0], coming.uppers[0]
+        root = self._shown.root.copy()
+        if self._held:
+            root[3:6] = 0.0
+        return self._queue.time, root, self._shown.upper
+
+    def _stands_still(self, path: RootPath, uppers: Floats) -> bool:
+        moving = np.abs(path.states[:, 3:6]).max() > 0.0 or np.abs(self._shown.upper_velocity).max() > _SAME
+        return not moving and bool(np.abs(uppers - self._shown.upper).max() < _SAME)
+
+    def _play(self, dt: float) -> None:
+        """Flow B: interpolate, check, show; what touches is not shown, and leads to flow C, as does an empty queue."""
+        ended = self._queue.empty
+        self._queue.advance(dt)
+        if self._resting:
+            return
+        if ended:
+            self._hold(dt)
+            return
+        playback = self._queue.sample()
+        clearance = self._check.clearance(playback.root, playback.upper)
+        if clearance < 0.0 and self._assist:
+            self._hold(dt)
+            return
+        self._held = False
+        self._show(playback, clearance)
+        if self._queue.empty:
+            self._next = Phase.RESET
+
+    def _hold(self, dt: float) -> None:
+        """Stay in the last good pose; the legs come to a stand where they can."""
+        self._held, self._next = True, Phase.RESET
+        self._queue.clear()
+        root = self._shown.root.copy()
+        root[3:6] *= math.exp(-dt / _SETTLE)
+        root[3:6][np.abs(root[3:6]) < _STILL] = 0.0
+        still = Playback(root, self._shown.upper, np.zeros_like(self._shown.upper))
+        clearance = self._check.clearance(still.root, still.upper)
+        if clearance < 0.0 and self._assist:
+            still, clearance = still._replace(root=self._shown.root), self._clearance
+        self._show(still, clearance)
+
+    def _show(self, playback: Playback, clearance: float) -> None:
+        self._shown, self._clearance = playback, clearance
+        if clearance >= 0.0:
+            self._free = playback
+
+    def _frame(self, command: Command) -> Frame:
+        return Frame(
+            time=self._queue.time,
+            q=configuration(self._shown.root, self._shown.upper),
+            root=self._shown.root,
+            phase=self._flow,
+            clearance=self._clearance,
+            stuck=self._held and not command.idle,
+            touching=self._clearance < 0.0,
+            fill=self._queue.fill,
+            key_frames=self._queue.unplayed(),
+            goal=self._goal(),
+            plan=self._plan_report,
+        )
+
+    def _goal(self) -> Floats:
+        """The goal functions' posture now, from the last plan (10,)."""
+        if self._plan_report is None:
+            return self._shown.upper
+        path, goals = self._plan_report.root.path, self._plan_report.local.goals
+        place = min(max((self._queue.time - path.start_time) / path.interval, 0.0), len(goals) - 1.0)
+        k = min(int(place), len(goals) - 2)
+        goal: Floats = goals[k] + (place - k) * (goals[k + 1] - goals[k])
+        return goal

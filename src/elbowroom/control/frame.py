@@ -1,0 +1,53 @@
+"""What the controller shows in one moment, and why."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.control.key_frame_queue import KeyFrames
+from elbowroom.planning.result import LocalPlan, PlanStatus
+from elbowroom.planning.root_planner import RootPlan
+
+Floats = NDArray[np.float64]
+
+
+class Phase(Enum):
+    """The flow of the control loop (the paper's Figure 4) that a turn took."""
+
+    PLAN = "plan"  # flow A
+    PLAY = "play"  # flow B
+    RESET = "reset"  # flow C
+
+
+@dataclass(frozen=True, eq=False)
+class PlanReport:
+    """One planning call: where it started, what it found, what it cost."""
+
+    number: int  # 1 for the first
+    time: float  # seconds, when it was called
+    root: RootPlan
+    local: LocalPlan
+
+    @property
+    def found(self) -> bool:
+        """Whether the path got its upper-body motion."""
+        return self.local.status is PlanStatus.FOUND
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A pose that may be shown: with assistance on it touches nothing."""
+
+    time: float  # seconds since the start, by the sum of all dt
+    q: Floats  # (13,) the configuration, see `body.dof`
+    root: Floats  # (7,) the root state, see `body.root`
+    phase: Phase
+    clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
+    stuck: bool  # the user pushes, and there is no way on
+    touching: bool  # part of the body is inside an obstacle: only with assistance off
+    fill: int  # unplayed key frames in the queue
+    key_frames: KeyFrames  # the unplayed key frames
+    goal: Floats  # (10,) what the goal functions would show now: waist, left arm, right arm
+    plan: PlanReport | None  # the last planning call

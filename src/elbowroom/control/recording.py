@@ -1,0 +1,241 @@
+"""Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
+
+A `.elbow` file is the line `ELBOWROOM RECORDING 1`, a header and chunks. Header: its length (uint32), UTF-8 JSON of a
+`RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that data
+(uint32 each), the data: `STEP` records. All numbers are little-endian. A file is only ever appended to, so one that
+was cut off is good up to its last whole chunk.
+"""
+
+import json
+import platform
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+import elbowroom
+from elbowroom.body.root import RootState
+from elbowroom.control.avatar_reference import AvatarReference
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.settings import ControlSettings
+from elbowroom.errors import InputError
+from elbowroom.planning.command import Command
+
+MAGIC = b"ELBOWROOM RECORDING 1\n"
+STEPS_PER_CHUNK = 60
+MAX_HEADER_BYTES = 32 * 2**20
+MAX_CHUNK_STEPS = 4096
+_CHUNK_MARK = b"CHNK"
+_CHUNK_HEAD = struct.Struct("<4sIII")
+_COUNT = struct.Struct("<I")
+
+STEP = np.dtype(
+    [
+        ("forward", "<f8"),
+        ("strafe", "<f8"),
+        ("turn", "<f8"),
+        ("direction", "<f8"),  # not a number where the command has none
+        ("dt", "<f8"),
+        ("q", "<f8", 13),
+        ("root", "<f8", 7),
+        ("phase", "u1"),  # place in `Phase`
+        ("flags", "u1"),
+    ]
+)
+RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
+_PHASES = tuple(Phase)
+
+Steps = NDArray[np.void]
+
+
+@dataclass(frozen=True)
+class RecordingHeader:
+    """What a run depends on, besides the commands."""
+
+    version: str  # of elbowroom
+    scene: dict[str, Any]
+    avatar: AvatarReference
+    settings: ControlSettings
+    start: RootState
+    machine: dict[str, str]  # what the last bits of floating-point results may depend on
+
+    @classmethod
+    def of(cls, controller: Controller) -> "RecordingHeader":
+        """The header for a run of this controller."""
+        return cls(
+            version=elbowroom.__version__,
+            scene=controller.scene.to_dict(),
+            avatar=AvatarReference.of(controller.humanoid),
+            settings=controller.settings,
+            start=controller.start,
+            machine=this_machine(),
+        )
+
+    def to_json(self) -> bytes:
+        """The header as JSON text."""
+        document = asdict(self) | {"start": list(self.start)}
+        return json.dumps(document, separators=(",", ":")).encode()
+
+    @classmethod
+    def from_json(cls, data: bytes) -> "RecordingHeader":
+        """Read what `to_json` wrote; raises ValueError, KeyError or TypeError where it is something else."""
+        document = json.loads(data)
+        return cls(
+            version=str(document["version"]),
+            scene=dict(document["scene"]),
+            avatar=AvatarReference(**document["avatar"]),
+            settings=ControlSettings(**document["settings"]),
+            start=RootState(*(float(value) for value in document["start"])),
+            machine={str(key): str(value) for key, value in document["machine"].items()},
+        )
+
+
+def this_machine() -> dict[str, str]:
+    """Processor and compiler, by which two machines may differ in the last bit."""
+    from llvmlite.binding import get_host_cpu_name
+
+    return {
+        "processor": str(get_host_cpu_name()),
+        "system": platform.system(),
+        "numba": numba.__version__,
+        "numpy": np.__version__,
+    }
+
+
+class Recorder:
+    """Appends the steps of a run to a file; a context manager.
+
+    It replaces a recording. Raises `InputError` where the path holds another kind of file, or cannot be written.
+    """
+
+    def __init__(self, path: str | Path, controller: Controller) -> None:
+        self.path = Path(path)
+        self._pending: list[tuple[Any, ...]] = []
+        header = RecordingHeader.of(controller).to_json()
+        try:
+            if self.path.exists() and not is_recording(self.path):
+                raise InputError(f"{self.path}: exists and is no recording; choose another name or remove it")
+            self._file: BinaryIO = self.path.open("wb")
+            self._file.write(MAGIC + _COUNT.pack(len(header)) + header + _COUNT.pack(zlib.crc32(header)))
+            self._file.flush()
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be written ({error.strerror})") from None
+
+    def append(self, command: Command, dt: float, frame: Frame, *, assist: bool = True, restart: bool = False) -> None:
+        """Keep one step: what was asked, and the frame that `Controller.step` gave for it."""
+        flags = (
+            RUN * command.run | STUCK * frame.stuck | TOUCHING * frame.touching | ASSIST * assist | RESTART * restart
+        )
+        direction = np.nan if command.direction is None else command.direction
+        wish = (command.forward, command.strafe, command.turn, direction, dt)
+        self._pending.append((*wish, frame.q, frame.root, _PHASES.index(frame.phase), flags))
+        if len(self._pending) >= STEPS_PER_CHUNK:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is pending as a chunk, so that it survives whatever comes."""
+        if not self._pending:
+            return
+        steps = np.array(self._pending, dtype=STEP)
+        data = zlib.compress(steps.tobytes(), 6)
+        self._file.write(_CHUNK_HEAD.pack(_CHUNK_MARK, len(steps), len(data), zlib.crc32(data)) + data)
+        self._file.flush()
+        self._pending.clear()
+
+    def close(self) -> None:
+        """Write what is pending and close the file."""
+        if not self._file.closed:
+            self.flush()
+            self._file.close()
+
+    def __enter__(self) -> "Recorder":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def is_recording(path: Path) -> bool:
+    """Whether the file begins as a recording does; an empty file may become one."""
+    with path.open("rb") as file:
+        return file.read(len(MAGIC)) in (MAGIC, b"")
+
+
+class Recording:
+    """A recording open for reading: its header, and its steps chunk by chunk.
+
+    Raises `InputError` where the file is missing, no recording, or its header is damaged.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.note: str | None = None  # after reading the steps: why they end before the file does
+        try:
+            with self.path.open("rb") as file:
+                self.header = self._read_header(file)
+                self._steps_at = file.tell()
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be read ({error.strerror})") from None
+
+    def _read_header(self, file: BinaryIO) -> RecordingHeader:
+        if file.read(len(MAGIC)) != MAGIC:
+            raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
+        size = file.read(_COUNT.size)
+        length = _COUNT.unpack(size)[0] if len(size) == _COUNT.size else 0
+        if not 0 < length <= MAX_HEADER_BYTES:
+            raise InputError(f"{self.path}: header of {length} bytes, allowed are 1 to {MAX_HEADER_BYTES}")
+        data, crc = file.read(length), file.read(_COUNT.size)
+        if len(data) < length or len(crc) < _COUNT.size or _COUNT.unpack(crc)[0] != zlib.crc32(data):
+            raise InputError(f"{self.path}: the header is damaged or cut off")
+        try:
+            return RecordingHeader.from_json(data)
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            raise InputError(f"{self.path}: the header does not describe a run ({error})") from None
+
+    def chunks(self) -> Iterator[Steps]:
+        """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what follows it."""
+        self.note = None
+        with self.path.open("rb") as file:
+            file.seek(self._steps_at)
+            while head := file.read(_CHUNK_HEAD.size):
+                steps = _read_chunk(head, file)
+                if steps is None:
+                    self.note = "the file was cut off or is damaged: read up to its last whole chunk"
+                    return
+                yield steps
+
+    def steps(self) -> Steps:
+        """All steps in one array."""
+        return np.concatenate([np.empty(0, STEP), *self.chunks()])
+
+
+def _read_chunk(head: bytes, file: BinaryIO) -> Steps | None:
+    if len(head) < _CHUNK_HEAD.size:
+        return None
+    mark, count, length, crc = _CHUNK_HEAD.unpack(head)
+    expected = count * STEP.itemsize
+    if mark != _CHUNK_MARK or not 0 < count <= MAX_CHUNK_STEPS or length > expected + 1024:
+        return None
+    data = file.read(length)
+    if len(data) < length or zlib.crc32(data) != crc:
+        return None
+    inflater = zlib.decompressobj()
+    try:
+        raw = inflater.decompress(data, expected + 1)
+    except zlib.error:
+        return None
+    return np.frombuffer(raw, STEP) if len(raw) == expected and inflater.eof else None
+
+
+def command_of(step: Any) -> Command:
+    """The command of one `STEP` record."""
+    direction = None if np.isnan(step["direction"]) else float(step["direction"])
+    forward, strafe, turn = float(step["forward"]), float(step["strafe"]), float(step["turn"])
+    return Command(forward, strafe, turn, direction, bool(step["flags"] & RUN))

@@ -1,0 +1,91 @@
+"""A recording run again, and compared bit for bit."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.recording import ASSIST, RESTART, Recording, command_of
+from elbowroom.world.scene import Scene
+
+_PHASES = tuple(Phase)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first frame that came out otherwise."""
+
+    frame: int  # counted from 0
+    time: float  # seconds
+    position: float  # metres between the two roots
+    angle: float  # radians, the largest difference of a joint or the heading
+
+    def __str__(self) -> str:
+        place = f"frame {self.frame} at {self.time:.3f} s"
+        return f"{place}: {self.position:.3g} m and {self.angle:.3g} rad from the recording"
+
+
+@dataclass(frozen=True)
+class ReplayResult:
+    """How a replay went."""
+
+    frames: int  # compared
+    seconds: float  # of motion
+    difference: Difference | None  # None: identical bit for bit
+
+    @property
+    def identical(self) -> bool:
+        """Whether every frame was the recorded one, to the last bit."""
+        return self.difference is None
+
+
+def controller_for(recording: Recording, humanoid: Humanoid) -> Controller:
+    """A controller as it was when the recording began."""
+    header = recording.header
+    settings = header.settings
+    return Controller(
+        humanoid,
+        Scene.from_dict(header.scene, str(recording.path)),
+        planner=settings.planner,
+        queue_size=settings.queue_size,
+        interval=settings.interval,
+        seed=settings.seed,
+        assist=settings.assist,
+        start=header.start,
+    )
+
+
+def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], object] | None = None) -> ReplayResult:
+    """Run the recorded commands again, up to the first frame that differs; `progress` is told how many steps are done.
+
+    Raises `InputError` where the recorded scene or a recorded step is not valid.
+    """
+    controller = controller_for(recording, humanoid)
+    count, time = 0, 0.0
+    for chunk in recording.chunks():
+        for step in chunk:
+            if step["flags"] & RESTART:
+                controller.reset()
+            controller.assist = bool(step["flags"] & ASSIST)
+            frame = controller.step(command_of(step), float(step["dt"]))
+            time = frame.time
+            if not _same(step, frame):
+                return ReplayResult(count + 1, time, _difference(count, step, frame))
+            count += 1
+        if progress is not None:
+            progress(count)
+    return ReplayResult(count, time, None)
+
+
+def _same(step: Any, frame: Frame) -> bool:
+    same_pose = step["q"].tobytes() == frame.q.tobytes() and step["root"].tobytes() == frame.root.tobytes()
+    return same_pose and _PHASES.index(frame.phase) == step["phase"]
+
+
+def _difference(index: int, step: Any, frame: Frame) -> Difference:
+    away = np.abs(step["q"] - frame.q)
+    return Difference(index, frame.time, float(np.hypot(away[0], away[1])), float(away[2:].max()))

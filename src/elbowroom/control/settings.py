@@ -1,0 +1,28 @@
+"""What a controller is told once."""
+
+import math
+from dataclasses import dataclass
+
+from elbowroom.errors import InputError
+
+QUEUE_SIZES = range(2, 33)
+
+
+@dataclass(frozen=True)
+class ControlSettings:
+    """The parameters of the control loop; the paper varies the queue size from 3 to 7."""
+
+    planner: str = "figure6"  # how upper-body motion is searched
+    queue_size: int = 5  # |Q|, key frames planned ahead
+    interval: float = 0.2  # T_interval, seconds between key frames
+    seed: int = 0  # of all chance in planning
+    assist: bool = True  # off: the canned walk, touching what it touches
+
+    def __post_init__(self) -> None:
+        if self.queue_size not in QUEUE_SIZES:
+            limits = f"{QUEUE_SIZES.start} to {QUEUE_SIZES.stop - 1}"
+            raise InputError(f"queue size: {self.queue_size} is not a whole number from {limits} key frames")
+        if not (math.isfinite(self.interval) and 0.05 <= self.interval <= 1.0):
+            raise InputError(f"interval: {self.interval} is not between 0.05 and 1 seconds")
+        if self.seed < 0:
+            raise InputError(f"seed: {self.seed} is negative")

@@ -1,0 +1,50 @@
+"""How much a command differs from the one that the motion in the queue was planned for."""
+
+import math
+from dataclasses import replace
+
+from elbowroom.errors import InputError
+from elbowroom.planning.command import Command
+
+_BENT = math.radians(20.0)  # a change of walking direction that is worth a plan of its own
+_REVERSED = math.radians(90.0)
+_SHARE = 0.25  # the same for shares of full speed and of full turning
+
+
+def checked(command: Command) -> Command:
+    """The command with its shares clipped to [-1, 1]; raises `InputError` where a component is no number."""
+    shares = (command.forward, command.strafe, command.turn)
+    if not all(math.isfinite(share) for share in (*shares, command.direction or 0.0)):
+        raise InputError(f"command: {command} holds a value that is no finite number")
+    if max(map(abs, shares)) <= 1.0:
+        return command
+    forward, strafe, turn = (max(-1.0, min(1.0, share)) for share in shares)
+    return replace(command, forward=forward, strafe=strafe, turn=turn)
+
+
+def changed(planned: Command, command: Command) -> bool:
+    """Whether the user asks for something else: waiting for the next key frame would feel late."""
+    if (planned.idle, planned.run, planned.direction is None) != (command.idle, command.run, command.direction is None):
+        return True
+    share = abs(_speed(planned) - _speed(command)) > _SHARE or abs(planned.turn - command.turn) > _SHARE
+    return share or _angle(planned, command) > _BENT
+
+
+def overturned(planned: Command, command: Command) -> bool:
+    """Whether what was planned is not wanted any more at all: the user has let go, or turned back."""
+    if command.idle:
+        return not planned.idle
+    return not planned.idle and _angle(planned, command) > _REVERSED
+
+
+def _speed(command: Command) -> float:
+    return abs(command.forward) if command.direction is not None else math.hypot(command.forward, command.strafe)
+
+
+def _angle(a: Command, b: Command) -> float:
+    """The angle between two walking directions, in the world if both say so, else in the avatar's axes."""
+    if a.direction is not None and b.direction is not None:
+        return abs(math.remainder(a.direction - b.direction, math.tau))
+    if _speed(a) == 0.0 or _speed(b) == 0.0 or a.direction is not None or b.direction is not None:
+        return 0.0
+    return abs(math.remainder(math.atan2(a.strafe, a.forward) - math.atan2(b.strafe, b.forward), math.tau))
