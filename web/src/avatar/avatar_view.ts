@@ -1,0 +1,101 @@
+/** The avatar as it stands in the world: takes poses, fades when the camera is close, blinks now and then. */
+
+import { Group, Mesh, type Material, type Object3D } from "three";
+import type { AvatarMessage } from "../generated/messages";
+import type { ShownPose } from "../net/pose_timeline";
+import type { AvatarFile } from "./avatar_file";
+import { Blinking } from "./blinking";
+
+interface FadingMaterial {
+  readonly material: Material;
+  readonly transparent: boolean;
+  readonly opacity: number;
+  readonly depthWrite: boolean;
+}
+
+export class AvatarView {
+  /** Stands at the root: position on the ground, turned to the heading. */
+  readonly group = new Group();
+  private file: AvatarFile | null = null;
+  private joints: (Object3D | undefined)[] = [];
+  private hips: Object3D | undefined;
+  private materials: FadingMaterial[] = [];
+  private opacity = 1;
+  private epoch = -1;
+  private blinking: Blinking | null = null;
+  private dispose: ((file: AvatarFile) => void) | null = null;
+  /** Revision of the avatar that is on show; -1 without one. */
+  revision = -1;
+
+  /** Replaces the avatar. Without a file nothing is drawn here (the capsules are shown instead). */
+  show(message: AvatarMessage, file: AvatarFile | null, dispose: ((file: AvatarFile) => void) | null): void {
+    if (this.file) this.dispose?.(this.file);
+    this.group.clear();
+    this.file = file;
+    this.dispose = dispose;
+    this.revision = message.revision;
+    this.joints = message.bones.map((bone) => file?.nodes.get(bone.node));
+    this.hips = this.joints[message.bones.findIndex((bone) => bone.name === "hips")];
+    this.materials = file ? fadingMaterials(file.scene) : [];
+    this.opacity = 1;
+    this.blinking = file?.vrm?.expressionManager ? new Blinking(file.vrm.expressionManager) : null;
+    if (!file) return;
+    const placed = new Group();
+    placed.position.set(...message.placement.position);
+    placed.rotation.y = message.placement.heading;
+    placed.scale.setScalar(message.placement.scale);
+    placed.add(file.scene);
+    this.group.add(placed);
+  }
+
+  get loaded(): boolean {
+    return this.file !== null;
+  }
+
+  /** Sets the joints from a pose of this avatar. */
+  pose(pose: ShownPose): void {
+    this.group.position.set(pose.x, pose.y, pose.z);
+    this.group.rotation.y = pose.heading;
+    const { rotations } = pose;
+    this.joints.forEach((joint, i) => joint?.quaternion.fromArray(rotations, 4 * i));
+    this.hips?.position.set(pose.hipsX, pose.hipsY, pose.hipsZ);
+    if (pose.epoch !== this.epoch) {
+      this.epoch = pose.epoch;
+      this.group.updateMatrixWorld(true);
+      this.file?.vrm?.springBoneManager?.reset();
+    }
+  }
+
+  /** Moves hair and cloth, eyelids and materials by `dt` seconds. */
+  update(dt: number, still: boolean): void {
+    if (!still) this.blinking?.update(dt);
+    this.file?.vrm?.update(dt);
+  }
+
+  /** 1 is solid; below, the avatar is see-through. */
+  fade(opacity: number): void {
+    const rounded = Math.round(opacity * 50) / 50;
+    if (rounded === this.opacity) return;
+    this.opacity = rounded;
+    for (const entry of this.materials) {
+      const { material } = entry;
+      const transparent = entry.transparent || rounded < 1;
+      if (material.transparent !== transparent) material.needsUpdate = true;
+      material.transparent = transparent;
+      material.opacity = entry.opacity * rounded;
+      material.depthWrite = entry.depthWrite;
+    }
+  }
+}
+
+function fadingMaterials(scene: Object3D): FadingMaterial[] {
+  const found = new Map<Material, FadingMaterial>();
+  scene.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    for (const material of [object.material as Material | Material[]].flat()) {
+      const { transparent, opacity, depthWrite } = material;
+      found.set(material, { material, transparent, opacity, depthWrite });
+    }
+  });
+  return [...found.values()];
+}

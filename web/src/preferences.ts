@@ -1,0 +1,76 @@
+/** What the address line and earlier visits ask for. */
+
+import type { SteeringMode } from "./input/steering";
+import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
+import type { QualityName } from "./stage/quality";
+
+export type ThemeChoice = "auto" | "light" | "dark";
+
+/** The page's own choices; the server knows nothing of them. */
+export interface Preferences {
+  theme: ThemeChoice;
+  quality: QualityName;
+  steering: SteeringMode;
+  overlays: Set<OverlayName>;
+}
+
+/** Wishes for the session from the address line, sent once at the start; null where the line says nothing. */
+export interface SessionWishes {
+  readonly scene: string | null;
+  readonly avatar: string | null;
+  readonly planner: string | null;
+  readonly queueSize: number | null;
+  readonly assist: boolean | null;
+  readonly showUi: boolean;
+}
+
+const STORE = "elbowroom.preferences";
+const QUALITIES: readonly QualityName[] = ["low", "medium", "high", "auto"];
+const THEMES: readonly ThemeChoice[] = ["auto", "light", "dark"];
+const STEERINGS: readonly SteeringMode[] = ["camera", "tank"];
+
+/** The address line wins over what was stored. */
+export function readPreferences(query: URLSearchParams): Preferences {
+  const stored = readStore();
+  const pick = <T extends string>(name: string, allowed: readonly T[], fallback: T): T =>
+    allowed.find((value) => value === query.get(name)) ?? allowed.find((value) => value === stored[name]) ?? fallback;
+  const overlays = query.has("overlays") ? query.get("overlays") : stored["overlays"];
+  return {
+    theme: pick("theme", THEMES, "auto"),
+    quality: pick("quality", QUALITIES, "auto"),
+    steering: pick("steering", STEERINGS, "camera"),
+    overlays: typeof overlays === "string" ? parseOverlays(overlays) : new Set(),
+  };
+}
+
+/** Keeps the choices for the next visit; a browser that forbids it is no error. */
+export function storePreferences(preferences: Preferences): void {
+  const overlays = OVERLAYS.filter((name) => preferences.overlays.has(name)).join();
+  try {
+    localStorage.setItem(STORE, JSON.stringify({ ...preferences, overlays }));
+  } catch {
+    return;
+  }
+}
+
+export function readWishes(query: URLSearchParams): SessionWishes {
+  const queue = Number(query.get("queue") ?? NaN);
+  const assist = query.get("assist");
+  return {
+    scene: query.get("scene"),
+    avatar: query.get("avatar"),
+    planner: query.get("planner"),
+    queueSize: Number.isInteger(queue) ? queue : null,
+    assist: assist === null ? null : assist !== "0" && assist !== "off",
+    showUi: query.get("ui") !== "0",
+  };
+}
+
+function readStore(): Record<string, unknown> {
+  try {
+    const data: unknown = JSON.parse(localStorage.getItem(STORE) ?? "{}");
+    return typeof data === "object" && data !== null ? (data as Record<string, unknown>) : {};
+  } catch {
+    return {};
+  }
+}

@@ -1,0 +1,86 @@
+/** The colours of the 3D world, light and dark; the page's own colours live in style.css. */
+
+export type Theme = "light" | "dark";
+
+export interface Palette {
+  readonly skyTop: number;
+  readonly horizon: number;
+  readonly skyGround: number;
+  readonly field: number;
+  readonly slab: string;
+  readonly gridFine: string;
+  readonly gridBold: string;
+  readonly contact: number;
+  readonly keyLight: number;
+  readonly keyIntensity: number;
+  readonly skyLight: number;
+  readonly groundLight: number;
+  readonly ambientIntensity: number;
+  readonly environmentIntensity: number;
+  readonly exposure: number;
+  readonly obstacles: readonly number[];
+  readonly accent: number;
+  readonly path: number;
+  readonly ghost: number;
+  readonly goal: number;
+  readonly chosen: number;
+  readonly capsule: number;
+  readonly touching: number;
+  readonly nearest: number;
+}
+
+/** Colour-blind-safe accents (after Okabe and Ito): teal, orange, sky blue, vermilion differ in lightness as well. */
+export const PALETTES: Readonly<Record<Theme, Palette>> = {
+  light: {
+    skyTop: 0xa9c4cf,
+    horizon: 0xeee9df,
+    skyGround: 0xe2dccf,
+    field: 0xded7c9,
+    slab: "#efeae0",
+    gridFine: "rgba(92, 84, 70, 0.09)",
+    gridBold: "rgba(92, 84, 70, 0.20)",
+    contact: 0x3a3026,
+    keyLight: 0xfff1dc,
+    keyIntensity: 2.5,
+    skyLight: 0xdbe9f2,
+    groundLight: 0xcdbfa8,
+    ambientIntensity: 1.25,
+    environmentIntensity: 0.35,
+    exposure: 1.0,
+    obstacles: [0xc9775a, 0xdcae5c, 0x86a38b, 0x6d879f, 0xa1809a, 0xb8907a],
+    accent: 0x17756c,
+    path: 0x17756c,
+    ghost: 0x2c6f93,
+    goal: 0xc98a12,
+    chosen: 0x17756c,
+    capsule: 0x2f7fb0,
+    touching: 0xd23b2a,
+    nearest: 0xb2441e,
+  },
+  dark: {
+    skyTop: 0x0b111b,
+    horizon: 0x263142,
+    skyGround: 0x161c26,
+    field: 0x171d27,
+    slab: "#2a323e",
+    gridFine: "rgba(190, 210, 235, 0.055)",
+    gridBold: "rgba(190, 210, 235, 0.13)",
+    contact: 0x04060a,
+    keyLight: 0xffe3c0,
+    keyIntensity: 2.1,
+    skyLight: 0x8fb0d8,
+    groundLight: 0x2a2622,
+    ambientIntensity: 0.8,
+    environmentIntensity: 0.28,
+    exposure: 1.0,
+    obstacles: [0xb9694d, 0xc29648, 0x73917a, 0x5f7a94, 0x8d6e87, 0xa07a64],
+    accent: 0x4fc7b8,
+    path: 0x4fc7b8,
+    ghost: 0x6fb5df,
+    goal: 0xf0b64a,
+    chosen: 0x4fc7b8,
+    capsule: 0x66b6e6,
+    touching: 0xff5a43,
+    nearest: 0xff9062,
+  },
+};

@@ -1,0 +1,109 @@
+/** The small table of numbers in the corner. */
+
+import type { GroupReport, Status } from "../generated/messages";
+import { byId, make } from "./dom";
+
+/** What the page itself measures. */
+export interface PageNumbers {
+  readonly fps: number;
+  readonly frameMsP50: number;
+  readonly frameMsP95: number;
+  readonly roundTripMs: number;
+  readonly clearance: number;
+}
+
+const ROWS = [
+  ["queue", "Queue", ""],
+  ["planning", "Planning", ""],
+  ["checks", "Checks", ""],
+  ["serverFrame", "Server frame", "extra"],
+  ["pageFrame", "Page frame", "extra"],
+  ["line", "Round trip", "extra"],
+  ["clearance", "Clearance", ""],
+  ["crossed", "Crossed", ""],
+  ["stuck", "Stuck", ""],
+] as const;
+
+type RowName = (typeof ROWS)[number][0];
+
+const GROUP_TITLES: Readonly<Record<GroupReport["group"], string>> = {
+  root: "root", waist: "waist", leftArm: "left arm", rightArm: "right arm",
+};
+
+export class Hud {
+  private readonly cells = new Map<RowName, HTMLElement>();
+  private readonly pips = make("span", { class: "pips", "aria-hidden": "true" });
+  private readonly queueText = document.createTextNode("");
+  private readonly planList = make("dl", { class: "plan" });
+
+  constructor() {
+    const list = make("dl");
+    for (const [name, title, kind] of ROWS) {
+      const cell = make("dd", { class: kind }, "–");
+      this.cells.set(name, cell);
+      list.append(make("dt", { class: kind }, title), cell);
+    }
+    this.cells.get("queue")?.replaceChildren(this.pips, this.queueText);
+    this.planList.hidden = true;
+    byId("hud", HTMLElement).append(list, this.planList);
+  }
+
+  update(status: Status, page: PageNumbers, showPlan: boolean): void {
+    this.showQueue(status.queueFill, status.queueSize);
+    this.set("planning", `${status.planningMs.toFixed(1)} ms`);
+    this.set("checks", status.checks.toLocaleString("en"));
+    this.set("serverFrame", spread(status.frameMsP50, status.frameMsP95));
+    this.set("pageFrame", `${page.fps.toFixed(0)} fps · ${spread(page.frameMsP50, page.frameMsP95)}`);
+    this.set("line", Number.isNaN(page.roundTripMs) ? "–" : `${page.roundTripMs.toFixed(0)} ms`);
+    this.set("clearance", clearanceText(page.clearance), page.clearance < 0 ? "bad" : "");
+    this.set("crossed", String(status.crossed), status.crossed > 0 ? "good" : "");
+    this.set("stuck", String(status.stuckTimes), status.stuck ? "bad" : "");
+    this.planList.hidden = !showPlan;
+    if (showPlan) this.showPlan(status);
+  }
+
+  private set(name: RowName, text: string, tone = ""): void {
+    const cell = this.cells.get(name);
+    if (!cell) return;
+    if (cell.textContent !== text) cell.textContent = text;
+    cell.classList.toggle("bad", tone === "bad");
+    cell.classList.toggle("good", tone === "good");
+  }
+
+  private showQueue(fill: number, size: number): void {
+    if (this.pips.children.length !== size) {
+      this.pips.replaceChildren(...Array.from({ length: size }, () => make("i")));
+    }
+    [...this.pips.children].forEach((pip, i) => pip.classList.toggle("full", i < fill));
+    this.queueText.data = `${fill}/${size}`;
+  }
+
+  private showPlan(status: Status): void {
+    const rows: [string, string, string][] = [
+      ["Phase", status.phase, ""],
+      ["Root", status.rootKind.toLowerCase() || "–", ""],
+      ["Plan", words(status.planStatus), status.planStatus === "FOUND" || !status.planStatus ? "" : "bad"],
+      ["Plans", `${status.plans - status.plansFailed} of ${status.plans} found`, ""],
+    ];
+    for (const group of status.groups) {
+      const cost = `${group.checks.toLocaleString("en")} checks · ${group.ms.toFixed(1)} ms`;
+      rows.push([GROUP_TITLES[group.group], `${words(group.status)} · ${cost}`, group.status === "FOUND" ? "" : "bad"]);
+    }
+    this.planList.replaceChildren(
+      ...rows.flatMap(([title, text, tone]) => [make("dt", {}, title), make("dd", { class: tone }, text)]),
+    );
+  }
+}
+
+function spread(p50: number, p95: number): string {
+  return `${p50.toFixed(1)} / ${p95.toFixed(1)} ms`;
+}
+
+function clearanceText(clearance: number): string {
+  if (!Number.isFinite(clearance)) return "free";
+  return clearance < 0 ? "touching" : `${(100 * clearance).toFixed(1)} cm`;
+}
+
+function words(status: string): string {
+  return status ? status.toLowerCase().replaceAll("_", " ") : "–";
+}

@@ -1,0 +1,149 @@
+/** The menu and the playback bar: shows the settings in force and reports what the user chooses. */
+
+import type { Catalog, Configure, Settings } from "../generated/messages";
+import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
+import type { Preferences } from "../preferences";
+import { byId, make, setOptions } from "./dom";
+
+/** What the user does with the menu. */
+export interface MenuListener {
+  configure(change: Omit<Configure, "type">): void;
+  preferences(change: Partial<Preferences>): void;
+  overlay(name: OverlayName, on: boolean): void;
+  file(file: File): void;
+  action(action: "assist" | "pause" | "step" | "slow" | "reset" | "help"): void;
+}
+
+const NARROW = "(max-width: 900px), (max-height: 540px)";
+const BAR_ACTIONS = ["assist", "pause", "step", "slow", "reset"] as const;
+
+export class Menu {
+  private readonly panel = byId("menu", HTMLElement);
+  private readonly button = byId("menu-button", HTMLButtonElement);
+  private readonly scene = byId("scene", HTMLSelectElement);
+  private readonly avatar = byId("avatar", HTMLSelectElement);
+  private readonly planner = byId("planner", HTMLSelectElement);
+  private readonly queue = byId("queue", HTMLInputElement);
+  private readonly speed = byId("speed", HTMLInputElement);
+  private readonly file = byId("file", HTMLInputElement);
+  private readonly checks = new Map<OverlayName, HTMLInputElement>();
+
+  constructor(private readonly listener: MenuListener, preferences: Preferences) {
+    this.listenToLists();
+    this.listenToSliders();
+    this.listenToFile();
+    this.listenToButtons();
+    this.addOverlays();
+    this.bindPreferences(preferences);
+    const narrow = window.matchMedia(NARROW);
+    this.setOpen(!narrow.matches);
+    narrow.addEventListener("change", () => this.setOpen(!narrow.matches));
+    byId("view", HTMLElement).addEventListener("pointerdown", () => {
+      if (narrow.matches) this.setOpen(false);
+    });
+  }
+
+  get isOpen(): boolean {
+    return !this.panel.classList.contains("closed");
+  }
+
+  setOpen(open: boolean): void {
+    this.panel.classList.toggle("closed", !open);
+    this.button.setAttribute("aria-expanded", String(open));
+    this.button.setAttribute("aria-pressed", String(open));
+  }
+
+  showCatalog(catalog: Catalog): void {
+    setOptions(this.scene, catalog.scenes.map((s) => [s.name, s.title]));
+    setOptions(this.avatar, catalog.avatars.map((a) => [a.id, a.title]));
+    setOptions(this.planner, catalog.planners.map((name) => [name, name]));
+    this.queue.min = String(Math.min(...catalog.queueSizes));
+    this.queue.max = String(Math.max(...catalog.queueSizes));
+    const [slowest, fastest] = catalog.walkSpeed;
+    Object.assign(this.speed, { min: String(slowest), max: String(fastest), step: "0.05" });
+  }
+
+  showSettings(settings: Settings): void {
+    this.scene.value = settings.scene;
+    this.avatar.value = settings.avatar;
+    this.planner.value = settings.planner;
+    this.queue.value = String(settings.queueSize);
+    this.speed.value = String(settings.walkSpeed);
+    this.showValues();
+    const assist = byId("assist", HTMLButtonElement);
+    assist.setAttribute("aria-checked", String(settings.assist));
+    const value = assist.querySelector(".value");
+    if (value) value.textContent = settings.assist ? "on" : "off";
+    const pause = byId("pause", HTMLButtonElement);
+    pause.setAttribute("aria-pressed", String(settings.paused));
+    pause.setAttribute("aria-label", settings.paused ? "Resume" : "Pause");
+    byId("slow", HTMLButtonElement).setAttribute("aria-pressed", String(settings.speed < 1));
+  }
+
+  /** Adds an avatar that came as a file, unless the list has it. */
+  addAvatar(id: string, title: string): void {
+    if ([...this.avatar.options].some((option) => option.value === id)) return;
+    this.avatar.add(new Option(title, id));
+  }
+
+  showOverlays(shown: ReadonlySet<OverlayName>): void {
+    for (const [name, box] of this.checks) box.checked = shown.has(name);
+  }
+
+  showPreference(name: "steering" | "quality" | "theme", value: string): void {
+    byId(name, HTMLSelectElement).value = value;
+  }
+
+  private listenToLists(): void {
+    for (const name of ["scene", "avatar", "planner"] as const) {
+      this[name].addEventListener("change", () => this.listener.configure({ [name]: this[name].value }));
+    }
+  }
+
+  private listenToSliders(): void {
+    for (const slider of [this.queue, this.speed]) slider.addEventListener("input", () => this.showValues());
+    this.queue.addEventListener("change", () => this.listener.configure({ queueSize: Number(this.queue.value) }));
+    this.speed.addEventListener("change", () => this.listener.configure({ walkSpeed: Number(this.speed.value) }));
+  }
+
+  private showValues(): void {
+    byId("queue-value", HTMLOutputElement).value = this.queue.value;
+    byId("speed-value", HTMLOutputElement).value = `${Number(this.speed.value).toFixed(2)} m/s`;
+  }
+
+  private listenToFile(): void {
+    byId("open-file", HTMLButtonElement).addEventListener("click", () => this.file.click());
+    this.file.addEventListener("change", () => {
+      const chosen = this.file.files?.[0];
+      if (chosen) this.listener.file(chosen);
+      this.file.value = "";
+    });
+  }
+
+  private listenToButtons(): void {
+    for (const name of BAR_ACTIONS) {
+      byId(name, HTMLButtonElement).addEventListener("click", () => this.listener.action(name));
+    }
+    byId("help-button", HTMLButtonElement).addEventListener("click", () => this.listener.action("help"));
+    this.button.addEventListener("click", () => this.setOpen(!this.isOpen));
+  }
+
+  private addOverlays(): void {
+    const host = byId("overlays", HTMLElement);
+    for (const name of OVERLAYS) {
+      const box = make("input", { type: "checkbox", id: `overlay-${name}` });
+      box.addEventListener("change", () => this.listener.overlay(name, box.checked));
+      this.checks.set(name, box);
+      host.append(make("label", {}, box, OVERLAY_TITLES[name], make("span", { class: `key key-${name}`, "aria-hidden": "true" })));
+    }
+  }
+
+  private bindPreferences(preferences: Preferences): void {
+    for (const name of ["steering", "quality", "theme"] as const) {
+      const select = byId(name, HTMLSelectElement);
+      select.value = preferences[name];
+      select.addEventListener("change", () => this.listener.preferences({ [name]: select.value }));
+    }
+    this.showOverlays(preferences.overlays);
+  }
+}

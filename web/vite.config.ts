@@ -1,0 +1,31 @@
+import { defineConfig } from "vite";
+
+/** Where `npm run dev` finds the Python server. */
+const SERVER = "http://127.0.0.1:8765";
+
+export default defineConfig({
+  base: "./",
+  build: {
+    outDir: "../src/elbowroom/client",
+    emptyOutDir: true,
+    target: "es2022",
+    license: { fileName: "licenses.md" },
+    chunkSizeWarningLimit: 800,
+    rolldownOptions: {
+      output: {
+        codeSplitting: {
+          groups: [
+            { name: "three", test: /node_modules[\\/]three[\\/]build/ },
+            { name: "vrm", test: /node_modules[\\/]@pixiv/ },
+          ],
+        },
+      },
+    },
+  },
+  server: {
+    proxy: {
+      "/api": SERVER,
+      "/ws": { target: SERVER.replace("http", "ws"), ws: true },
+    },
+  },
+});
