@@ -12,6 +12,7 @@ PROTOCOL = 1  # raised with every change that an older client would misread
 MAX_MESSAGE = 64 * 1024  # bytes in a client's text message
 MAX_UPLOAD = 64 * 1024 * 1024  # bytes in an avatar file dropped on the page
 QUEUE_SIZES = (3, 4, 5, 6, 7)
+WALK_SPEEDS = (0.2, 2.0)  # m/s, slowest and fastest
 INPUT_TIMEOUT = 1.0  # seconds without any message after which the keys count as released
 
 
@@ -64,7 +65,7 @@ class Configure:
     planner: Name | None = None
     queue_size: Annotated[int, Range(QUEUE_SIZES[0], QUEUE_SIZES[-1])] | None = None
     assist: bool | None = None  # False plays the canned walk, right through everything
-    walk_speed: Annotated[float, Range(0.2, 2.0)] | None = None  # m/s at forward = 1
+    walk_speed: Annotated[float, Range(*WALK_SPEEDS)] | None = None  # m/s at forward = 1
 
 
 @dataclass(frozen=True)
@@ -249,7 +250,7 @@ class GroupReport:
     """How the last plan of one group ended and what it cost."""
 
     group: GroupName
-    status: str  # "FOUND", "EXHAUSTED", "OUT_OF_BUDGET"
+    status: str  # "found", "exhausted", "out of budget"
     checks: int
     nodes: int
     enhanced: int
@@ -275,8 +276,8 @@ class Status:
     sim_time: float
     phase: PhaseName
     stuck: bool
-    root_kind: str  # "STRAIGHT", "DETOUR", "SHORTENED", "STOPPED"; "" before the first plan
-    plan_status: str  # "FOUND", "EXHAUSTED", "OUT_OF_BUDGET"; "" before the first plan
+    root_kind: str  # "straight", "detour", "shortened", "stopped"; "" before the first plan
+    plan_status: str  # "found", "exhausted", "out of budget"; "" before the first plan
     groups: list[GroupReport]
     plans: int  # local plans since the last reset
     plans_failed: int
@@ -294,18 +295,18 @@ class Status:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is planned ahead; sent when it changes and the overlay is on. Segments: ax, ay, az, bx, by, bz a capsule."""
+    """What is planned ahead, ten times a second while the overlay is on. Segments: ax, ay, az, bx, by, bz a capsule."""
 
     times: list[float]  # sim time of each key frame
     root: list[Vector]  # x, z, heading at each key frame
     ghosts: list[list[float]]  # capsule segments of the body at each key frame
-    goal: list[float]  # capsule segments of the wanted posture at the last key frame; empty without one
-    chosen: list[float]  # capsule segments of the posture chosen there
+    goal: list[float]  # capsule segments of the posture that the goal functions ask for now
+    chosen: list[float]  # capsule segments of the posture shown now
 
 
 @dataclass(frozen=True)
 class Loading:
-    """Something that takes a while has begun or ended; the avatar stands meanwhile."""
+    """Something that takes a while has begun or ended; what was there before goes on meanwhile."""
 
     what: Literal["scene", "avatar", "planner"]
     name: str

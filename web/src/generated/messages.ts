@@ -213,7 +213,7 @@ export interface AvatarMessage {
 /** How the last plan of one group ended and what it cost. */
 export interface GroupReport {
   group: "root" | "waist" | "leftArm" | "rightArm";
-  /** "FOUND", "EXHAUSTED", "OUT_OF_BUDGET" */
+  /** "found", "exhausted", "out of budget" */
   status: string;
   checks: number;
   nodes: number;
@@ -239,9 +239,9 @@ export interface Status {
   simTime: number;
   phase: "plan" | "play" | "reset";
   stuck: boolean;
-  /** "STRAIGHT", "DETOUR", "SHORTENED", "STOPPED"; "" before the first plan */
+  /** "straight", "detour", "shortened", "stopped"; "" before the first plan */
   rootKind: string;
-  /** "FOUND", "EXHAUSTED", "OUT_OF_BUDGET"; "" before the first plan */
+  /** "found", "exhausted", "out of budget"; "" before the first plan */
   planStatus: string;
   groups: GroupReport[];
   /** local plans since the last reset */
@@ -264,7 +264,7 @@ export interface Status {
   nearest: Nearest | null;
 }
 
-/** What is planned ahead; sent when it changes and the overlay is on. Segments: ax, ay, az, bx, by, bz a capsule. */
+/** What is planned ahead, ten times a second while the overlay is on. Segments: ax, ay, az, bx, by, bz a capsule. */
 export interface Plan {
   type: "plan";
   /** sim time of each key frame */
@@ -273,13 +273,13 @@ export interface Plan {
   root: [number, number, number][];
   /** capsule segments of the body at each key frame */
   ghosts: number[][];
-  /** capsule segments of the wanted posture at the last key frame; empty without one */
+  /** capsule segments of the posture that the goal functions ask for now */
   goal: number[];
-  /** capsule segments of the posture chosen there */
+  /** capsule segments of the posture shown now */
   chosen: number[];
 }
 
-/** Something that takes a while has begun or ended; the avatar stands meanwhile. */
+/** Something that takes a while has begun or ended; what was there before goes on meanwhile. */
 export interface Loading {
   type: "loading";
   what: "scene" | "avatar" | "planner";

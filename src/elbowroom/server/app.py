@@ -1,0 +1,137 @@
+"""The web application: the page, what it loads, and the WebSocket of a live session."""
+
+import contextlib
+import logging
+from collections.abc import AsyncIterator
+from importlib.resources import files
+from pathlib import Path
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+from starlette.websockets import WebSocket
+
+from elbowroom import __version__
+from elbowroom.errors import InputError
+from elbowroom.server.codec import encode, plain
+from elbowroom.server.guard import Guard
+from elbowroom.server.library import Library
+from elbowroom.server.messages import Notice
+from elbowroom.server.reports import scene_message
+from elbowroom.server.session import Session
+from elbowroom.server.uploads import UploadDesk
+from elbowroom.server.usage import process_usage
+
+LOG = logging.getLogger("elbowroom.server")
+
+MAX_SESSIONS = 8
+_TRY_AGAIN_LATER = 1013  # close code
+
+HOW_TO_BUILD = "The page is not built. In a checkout run `make env`; or install the package again with pip."
+_NO_CLIENT = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Elbowroom</title>
+<body style="font: 1.1rem/1.5 system-ui; max-width: 36rem; margin: 4rem auto; padding: 0 1rem">
+<h1>Elbowroom</h1><p>The server runs, but its page is missing.</p><p>{HOW_TO_BUILD}</p></body></html>"""
+
+
+def client_folder() -> Path:
+    """Where the built page lies in the package."""
+    return Path(str(files("elbowroom"))) / "client"
+
+
+def client_is_built() -> bool:
+    """Whether there is a page to serve."""
+    return (client_folder() / "index.html").is_file()
+
+
+def make_app(library: Library, bound_host: str = "127.0.0.1") -> Starlette:
+    """The application for one server; `bound_host` is the address that it listens on."""
+    handlers = _Handlers(library)
+    routes: list[BaseRoute] = [
+        Route("/api/health", handlers.health),
+        Route("/api/catalog", handlers.catalog),
+        Route("/api/scenes/{name}", handlers.scene),
+        Route("/api/avatars", UploadDesk(library.avatars).take, methods=["POST"]),
+        Route("/avatars/{avatar}.glb", handlers.avatar),
+        WebSocketRoute("/ws", handlers.session),
+        Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),
+    ]
+    if not client_is_built():
+        LOG.warning(HOW_TO_BUILD)
+    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host)], lifespan=handlers.lifespan)
+
+
+class _Handlers:
+    """What the routes do with the library."""
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+        self._sessions = 0
+
+    @contextlib.asynccontextmanager
+    async def lifespan(self, app: Starlette) -> AsyncIterator[None]:  # noqa: ARG002
+        yield
+        self._library.avatars.close()
+
+    async def health(self, request: Request) -> Response:  # noqa: ARG002
+        usage = process_usage()
+        return JSONResponse(
+            {
+                "status": "ok",
+                "version": __version__,
+                "sessions": self._sessions,
+                "wallSeconds": usage.wall_seconds,
+                "cpuSeconds": usage.cpu_seconds,
+                "residentBytes": usage.resident_bytes,
+            }
+        )
+
+    async def catalog(self, request: Request) -> Response:  # noqa: ARG002
+        return JSONResponse(plain(self._library.catalog()))
+
+    async def scene(self, request: Request) -> Response:
+        try:
+            return JSONResponse(plain(scene_message(self._library.find_scene(request.path_params["name"]))))
+        except InputError as error:
+            return JSONResponse({"error": str(error)}, 404)
+
+    def avatar(self, request: Request) -> Response:
+        try:
+            avatar = self._library.avatars.get(request.path_params["avatar"])
+        except InputError as error:
+            return JSONResponse({"error": str(error)}, 404)
+        if avatar.glb is None or not avatar.glb.is_file():
+            return JSONResponse({"error": "this avatar has no file"}, 404)
+        return FileResponse(avatar.glb, media_type="model/gltf-binary", headers={"cache-control": "no-cache"})
+
+    async def session(self, socket: WebSocket) -> None:
+        await socket.accept()
+        if self._sessions >= MAX_SESSIONS:
+            reason = f"this server has {MAX_SESSIONS} sessions already; try again later"
+            await socket.send_text(encode(Notice("error", reason)))
+            await socket.close(_TRY_AGAIN_LATER, reason)
+            return
+        self._sessions += 1
+        try:
+            await Session(socket, self._library).run()
+        finally:
+            self._sessions -= 1
+
+
+class _Page(StaticFiles):
+    """The built client: hashed assets may be kept for ever, the page itself is asked for again each time."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        if any(part.startswith(".") for part in Path(path).parts if part != "."):
+            path = "not-found"
+        response = await super().get_response(path, scope)
+        lasting = path.startswith("assets/") and response.status_code == 200
+        response.headers["cache-control"] = "public, max-age=31536000, immutable" if lasting else "no-cache"
+        return response
+
+
+async def _missing_page(request: Request) -> Response:  # noqa: ARG001
+    return HTMLResponse(_NO_CLIENT, 503)

@@ -1,0 +1,101 @@
+"""The avatars that a server knows: the stock one, one named on the command line, and a few dropped on the page."""
+
+import secrets
+import tempfile
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.errors import InputError
+from elbowroom.server.messages import AvatarChoice
+from elbowroom.server.pose import Poser
+
+STOCK = "stock"
+MAX_UPLOADS = 8  # the one that was used least recently goes first
+
+
+@dataclass(frozen=True, eq=False)
+class StoredAvatar:
+    """An avatar and the GLB that a page shows it with."""
+
+    id: str
+    humanoid: Humanoid
+    glb: Path | None  # None for a humanoid without a file
+
+    @property
+    def title(self) -> str:
+        """What the menu shows."""
+        return self.humanoid.meta.title or self.humanoid.name
+
+    @cached_property
+    def poser(self) -> Poser:
+        """The tables that pose it."""
+        return Poser(self.humanoid)
+
+
+class AvatarStore:
+    """Avatars by id; may be used from several threads. The files lie in a private folder that goes with `close`."""
+
+    def __init__(self) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="elbowroom-avatars-")
+        self._lock = threading.Lock()
+        self._kept: dict[str, StoredAvatar] = {}
+        self._uploads: OrderedDict[str, StoredAvatar] = OrderedDict()
+
+    def close(self) -> None:
+        """Remove the private folder."""
+        self._folder.cleanup()
+
+    def choices(self) -> list[AvatarChoice]:
+        """What the menu offers; the stock avatar is there even before it is read."""
+        with self._lock:
+            known = [*self._kept.values(), *self._uploads.values()]
+        stock = [] if any(avatar.id == STOCK for avatar in known) else [AvatarChoice(STOCK, "Stock avatar")]
+        return stock + [AvatarChoice(avatar.id, avatar.title) for avatar in known]
+
+    def get(self, avatar_id: str) -> StoredAvatar:
+        """The avatar with this id, read if need be; raises `InputError` if there is none. May take a while."""
+        with self._lock:
+            found = self._kept.get(avatar_id) or self._uploads.get(avatar_id)
+            if avatar_id in self._uploads:
+                self._uploads.move_to_end(avatar_id)
+        if found is None and avatar_id == STOCK:
+            return self._keep(STOCK, Humanoid.default())
+        if found is None:
+            raise InputError(f"avatar {avatar_id[:40]!r} is not known here (any more); drop its file on the page again")
+        return found
+
+    def add_file(self, path: Path) -> StoredAvatar:
+        """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
+        return self._keep(secrets.token_hex(8), Humanoid.load(path))
+
+    def add_upload(self, data: bytes, name: str) -> StoredAvatar:
+        """Keep an avatar that was sent as bytes; raises `InputError` if they hold no humanoid."""
+        from elbowroom.body.loading import load_humanoid_bytes
+
+        humanoid = load_humanoid_bytes(data, name)
+        avatar = self._stored(secrets.token_hex(8), humanoid, data)
+        with self._lock:
+            self._uploads[avatar.id] = avatar
+            dropped = [self._uploads.popitem(last=False)[1]] if len(self._uploads) > MAX_UPLOADS else []
+        for old in dropped:
+            if old.glb is not None:
+                old.glb.unlink(missing_ok=True)
+        return avatar
+
+    def _keep(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
+        avatar = self._stored(avatar_id, humanoid, humanoid.source)
+        with self._lock:
+            return self._kept.setdefault(avatar_id, avatar)
+
+    def _stored(self, avatar_id: str, humanoid: Humanoid, source: Path | bytes | None) -> StoredAvatar:
+        if source is None:
+            return StoredAvatar(avatar_id, humanoid, None)
+        from elbowroom.formats.packing import as_glb
+
+        path = Path(self._folder.name) / f"{avatar_id}.glb"
+        path.write_bytes(as_glb(source))
+        return StoredAvatar(avatar_id, humanoid, path)

@@ -1,0 +1,60 @@
+"""What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from elbowroom.errors import InputError
+from elbowroom.planning.planner import PLANNERS
+from elbowroom.server.avatar_store import STOCK, AvatarStore
+from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS, Catalog, SceneChoice
+from elbowroom.server.walk import WalkSettings
+from elbowroom.world.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """Scenes and avatars by name."""
+
+    avatars: AvatarStore
+    scenes: dict[str, Scene]
+    scene: str  # the names that a session begins with
+    avatar: str
+    walk: WalkSettings
+
+    @classmethod
+    def open(cls, scene: str = "a", avatar: Path | None = None, walk: WalkSettings | None = None) -> "Library":
+        """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
+        begin = walk or WalkSettings()
+        check_planner(begin.planner)
+        first = Scene.load(scene)
+        scenes = {name: Scene.load(name) for name in Scene.stock_names()}
+        avatars = AvatarStore()
+        chosen = STOCK if avatar is None else avatars.add_file(avatar).id
+        return cls(avatars, {first.name: first} | scenes | {first.name: first}, first.name, chosen, begin)
+
+    def find_scene(self, name: str) -> Scene:
+        """A scene of this server; raises `InputError` if there is none of this name."""
+        if name not in self.scenes:
+            raise InputError(f"scene {name[:40]!r} is not known here; there are {', '.join(self.scenes)}")
+        return self.scenes[name]
+
+    @cached_property
+    def _scene_choices(self) -> list[SceneChoice]:
+        return [SceneChoice(name, scene.title) for name, scene in self.scenes.items()]
+
+    def catalog(self) -> Catalog:
+        """What the menus offer now."""
+        return Catalog(
+            scenes=self._scene_choices,
+            avatars=self.avatars.choices(),
+            planners=list(PLANNERS),
+            queue_sizes=list(QUEUE_SIZES),
+            walk_speed=WALK_SPEEDS,
+        )
+
+
+def check_planner(name: str) -> None:
+    """Raises `InputError` if there is no planner of this name."""
+    if name not in PLANNERS:
+        raise InputError(f"planner {name[:40]!r} is unknown; there are {', '.join(PLANNERS)}")

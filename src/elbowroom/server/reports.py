@@ -1,0 +1,109 @@
+"""What a session tells its client, made from what it knows. No state."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DofGroup
+from elbowroom.control.body_check import configuration
+from elbowroom.control.frame import Frame, PlanReport
+from elbowroom.server.avatar_store import StoredAvatar
+from elbowroom.server.messages import (
+    AvatarCapsule,
+    AvatarMessage,
+    Bone,
+    Box,
+    Gate,
+    Ground,
+    GroupName,
+    GroupReport,
+    Place,
+    Plan,
+    SceneMessage,
+)
+from elbowroom.server.pose import placement
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+_GROUPS: dict[DofGroup, GroupName] = {
+    DofGroup.ROOT: "root",
+    DofGroup.WAIST: "waist",
+    DofGroup.LEFT_ARM: "leftArm",
+    DofGroup.RIGHT_ARM: "rightArm",
+}
+
+
+def scene_message(scene: Scene) -> SceneMessage:
+    """The scene as a client draws it."""
+    boxes = zip(
+        scene.box_names,
+        scene.boxes.centers.tolist(),
+        (2.0 * scene.boxes.half_sizes).tolist(),
+        scene.boxes.rotations.tolist(),
+        strict=True,
+    )
+    return SceneMessage(
+        name=scene.name,
+        title=scene.title,
+        description=scene.description,
+        ground=Ground(scene.ground_center, scene.ground_size),
+        boxes=[Box(name, tuple(center), tuple(size), tuple(turn)) for name, center, size, turn in boxes],
+        start=Place(scene.start.x, scene.start.z, scene.start.heading),
+        finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
+    )
+
+
+def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
+    """The avatar as a client draws and poses it."""
+    humanoid = avatar.humanoid
+    skeleton, capsules, rig = humanoid.skeleton, humanoid.capsules, humanoid.rig
+    shown = rig is not None and avatar.glb is not None
+    nodes = rig.nodes.tolist() if rig is not None else [-1] * len(skeleton.names)
+    return AvatarMessage(
+        id=avatar.id,
+        revision=revision,
+        title=avatar.title,
+        authors=list(humanoid.meta.authors),
+        licence=humanoid.meta.licence,
+        format=humanoid.meta.format,
+        url=f"avatars/{avatar.id}.glb" if shown else None,
+        bones=[Bone(name, node) for name, node in zip(skeleton.names, nodes, strict=True)],
+        placement=placement(rig),
+        capsules=[
+            AvatarCapsule(name, radius, _GROUPS[group])
+            for name, radius, group in zip(capsules.names, capsules.radii.tolist(), capsules.groups, strict=True)
+        ],
+        height=skeleton.height,
+    )
+
+
+def group_reports(plan: PlanReport | None) -> list[GroupReport]:
+    """What each group's search in the last plan cost."""
+    evidence = () if plan is None else plan.local.evidence
+    return [
+        GroupReport(_GROUPS[e.group], e.status.value, e.checks, e.nodes, e.enhanced, e.nanoseconds / 1e6)
+        for e in evidence
+    ]
+
+
+def plan_message(frame: Frame, avatar: StoredAvatar) -> Plan:
+    """The key frames that wait, and the wanted beside the chosen posture."""
+    keys, root = frame.key_frames, frame.root
+    waiting = [configuration(*key) for key in zip(keys.roots, keys.uppers, strict=True)]
+    postures = np.array([*waiting, configuration(root, frame.goal), frame.q])
+    segments = avatar.poser.segments(postures, np.array([*keys.roots, root, root]))
+    rows = np.round(segments.reshape(len(postures), -1).astype(np.float64), 4).tolist()
+    return Plan(
+        times=keys.times.tolist(),
+        root=[tuple(state) for state in np.round(keys.roots[:, :3], 4).tolist()],
+        ghosts=rows[:-2],
+        goal=rows[-2],
+        chosen=rows[-1],
+    )
+
+
+def finite(value: float) -> float | None:
+    """`value` for JSON, which has no infinity."""
+    return value if math.isfinite(value) else None

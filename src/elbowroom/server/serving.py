@@ -1,0 +1,90 @@
+"""Runs the application on a socket of our own choosing."""
+
+import asyncio
+import contextlib
+import errno
+import socket
+from collections.abc import Callable
+
+import uvicorn
+
+from elbowroom.errors import InputError
+from elbowroom.server.app import make_app
+from elbowroom.server.library import Library
+from elbowroom.server.messages import MAX_MESSAGE
+
+_PORTS_TRIED = 50
+_SEND_BUFFER = 128 * 1024  # bytes in the kernel's hands: a slow client must not collect seconds of old frames
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A listening socket on the port, or on the next free one (port 0: any); raises `InputError` where that fails."""
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+    except (OSError, UnicodeError):
+        raise InputError(
+            f"--host {host!r} is not a name or address of this machine; 127.0.0.1 is the default"
+        ) from None
+    for candidate in range(port, min(port + _PORTS_TRIED, 65536)):
+        found = _bound(family, (address[0], candidate, *address[2:]))
+        if found is not None:
+            return found
+    raise InputError(f"--port {port}: this and the next {_PORTS_TRIED - 1} ports of {host} are busy; name another")
+
+
+def _bound(family: int, address: tuple[object, ...]) -> socket.socket | None:
+    """A socket on the address; None if it is busy."""
+    opened = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER)
+        opened.bind(address)
+        opened.listen(128)
+    except OSError as error:
+        opened.close()
+        if error.errno == errno.EADDRINUSE:
+            return None
+        raise InputError(f"cannot listen on {address[0]} port {address[1]}: {error.strerror}; name another") from None
+    return opened
+
+
+def url_of(opened: socket.socket) -> str:
+    """The address to open in a browser on this machine."""
+    host, port = opened.getsockname()[:2]
+    shown = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
+    return f"http://{shown}:{port}"
+
+
+def serve(library: Library, opened: socket.socket, on_ready: Callable[[], None] = lambda: None) -> None:
+    """Serve until interrupted (then the KeyboardInterrupt passes through); `on_ready` is called once it answers."""
+    config = uvicorn.Config(
+        make_app(library, opened.getsockname()[0]),
+        ws="websockets-sansio",
+        ws_max_size=MAX_MESSAGE,
+        ws_per_message_deflate=False,
+        ws_ping_interval=5.0,
+        ws_ping_timeout=10.0,
+        timeout_graceful_shutdown=2,
+        lifespan="on",
+        access_log=False,
+        log_config=None,
+        server_header=False,
+    )
+    server = uvicorn.Server(config)
+    asyncio.run(_serve(server, opened, on_ready))
+
+
+async def _serve(server: uvicorn.Server, opened: socket.socket, on_ready: Callable[[], None]) -> None:
+    watch = asyncio.create_task(_when_started(server, on_ready))
+    try:
+        await server.serve(sockets=[opened])
+    finally:
+        watch.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await watch
+
+
+async def _when_started(server: uvicorn.Server, on_ready: Callable[[], None]) -> None:
+    while not server.started:
+        await asyncio.sleep(0.01)
+    on_ready()

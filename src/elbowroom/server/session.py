@@ -1,0 +1,280 @@
+"""One live session: a client's messages in, poses out at 60 Hz, on one WebSocket."""
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from starlette.types import Message
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from elbowroom import __version__
+from elbowroom.body.root import RootState
+from elbowroom.errors import InputError
+from elbowroom.server.codec import decode_client, encode
+from elbowroom.server.library import Library, check_planner
+from elbowroom.server.messages import (
+    INPUT_TIMEOUT,
+    PROTOCOL,
+    ClientMessage,
+    ClockMessage,
+    Configure,
+    Hello,
+    Input,
+    Loading,
+    Notice,
+    Overlays,
+    Ping,
+    Pong,
+    Reset,
+    ServerMessage,
+)
+from elbowroom.server.outbox import Outbox, SlowClientError
+from elbowroom.server.rate_limit import TokenBucket
+from elbowroom.server.reports import avatar_message, scene_message
+from elbowroom.server.stage import Stage
+from elbowroom.server.walk import Walk, WalkSettings
+
+LOG = logging.getLogger("elbowroom.server")
+
+INTERVAL = 1.0 / 60.0  # seconds between frames
+_SOON = 0.002  # seconds: an input so shortly after a frame is obeyed at the next tick
+_SELDOM = 0.1  # seconds between status messages, and between frames while paused
+_MESSAGE_RATE = 240.0  # messages a second that a client may send
+_PATIENCE = 200  # wrong or surplus messages before the connection is closed
+_WAITING_CHANGES = 16
+_TRY_AGAIN_LATER, _POLICY, _INTERNAL = 1013, 1008, 1011  # close codes, RFC 6455 and its registry
+
+
+class _DoneError(Exception):
+    """The session ends for a reason that the client is told."""
+
+    def __init__(self, code: int, reason: str) -> None:
+        super().__init__(reason)
+        self.code, self.reason = code, reason
+
+
+class Session:
+    """The living part of one connection."""
+
+    def __init__(self, socket: WebSocket, library: Library) -> None:
+        self._socket = socket
+        self._library = library
+        self._outbox = Outbox()
+        self._changes: asyncio.Queue[Configure] = asyncio.Queue(_WAITING_CHANGES)
+        self._bucket = TokenBucket(_MESSAGE_RATE, _MESSAGE_RATE)
+        self._wrong = 0
+        self._began = time.monotonic()
+        self._heard = 0.0
+        self._told = -_SELDOM  # when the last status went out
+
+    async def run(self) -> None:
+        """Serve the client until it leaves or fails."""
+        sender = asyncio.create_task(self._outbox.send_to(self._socket))
+        try:
+            await self._open()
+            await _first_of([sender, *map(asyncio.create_task, (self._read(), self._play(), self._change()))])
+        except (WebSocketDisconnect, OSError):
+            return
+        except (_DoneError, SlowClientError, InputError) as error:
+            await self._close(sender, error)
+        except Exception as error:
+            LOG.exception("a session failed")
+            await self._close(sender, error)
+        finally:
+            await _stop(sender)
+
+    def _now(self) -> float:
+        return time.monotonic() - self._began
+
+    async def _open(self) -> None:
+        library = self._library
+        self._outbox.put(Hello(__version__, PROTOCOL, library.catalog()))
+        self._outbox.put(Loading("avatar", library.avatar, True))
+        walk = await asyncio.to_thread(_made, library, library.scene, library.avatar, library.walk, None)
+        self._outbox.put(Loading("avatar", library.avatar, False))
+        self._stage = Stage(walk, self._now())
+        self._outbox.put(self._stage.settings())
+        self._outbox.put(scene_message(walk.scene))
+        self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
+        self._heard = self._now()
+
+    # --- messages in ---------------------------------------------------------------------------------------------
+
+    async def _read(self) -> None:
+        while True:
+            event = await self._socket.receive()
+            if event["type"] == "websocket.disconnect":
+                raise WebSocketDisconnect(event.get("code", 1005))
+            self._heard = self._now()
+            if not self._bucket.allows(self._heard):
+                self._complain("too many messages: at most 240 a second are read")
+                continue
+            try:
+                self._obey(_decoded(event))
+            except InputError as error:
+                self._complain(str(error))
+
+    def _complain(self, message: str) -> None:
+        self._wrong += 1
+        if self._wrong >= _PATIENCE:
+            raise _DoneError(_POLICY, f"too many wrong messages; the last: {message}")
+        if self._wrong <= 10 or self._wrong % 50 == 0:
+            self._outbox.put(Notice("error", message))
+
+    def _obey(self, message: ClientMessage) -> None:
+        if isinstance(message, Input):
+            if self._stage.obey(message) and self._stage.since_advance(self._now()) > _SOON:
+                self._show()
+        elif isinstance(message, Ping):
+            self._outbox.put(Pong(message.t, self._now()))
+        elif isinstance(message, Configure):
+            self._ask_change(message)
+        else:
+            self._control(message)
+            self._outbox.put(self._stage.settings())
+            self._send_frame()
+
+    def _control(self, message: ClockMessage | Reset | Overlays) -> None:
+        if isinstance(message, ClockMessage):
+            self._tell(self._stage.set_clock(message))
+        elif isinstance(message, Reset):
+            self._stage.reset()
+        else:
+            self._stage.overlays = message
+
+    def _ask_change(self, message: Configure) -> None:
+        try:
+            self._changes.put_nowait(message)
+        except asyncio.QueueFull:
+            raise InputError("configure: too many changes at once; wait until those before are done") from None
+
+    # --- changes that take a while -------------------------------------------------------------------------------
+
+    async def _change(self) -> None:
+        while True:
+            message = await self._changes.get()
+            try:
+                await self._configure(message)
+            except InputError as error:
+                self._outbox.put(Notice("error", str(error)))
+            self._outbox.put(self._stage.settings())
+
+    async def _configure(self, message: Configure) -> None:
+        walk = self._stage.walk
+        settings = _merged(walk.settings, message)
+        check_planner(settings.planner)
+        scene, avatar = message.scene or walk.scene.name, message.avatar or walk.avatar.id
+        rebuilt = (settings.planner, settings.queue_size) != (walk.settings.planner, walk.settings.queue_size)
+        if (scene, avatar) == (walk.scene.name, walk.avatar.id) and not rebuilt:
+            walk.adjust(settings)
+            return
+        await self._rebuild(scene, avatar, settings)
+
+    async def _rebuild(self, scene: str, avatar: str, settings: WalkSettings) -> None:
+        old = self._stage.walk
+        moved, dressed = scene != old.scene.name, avatar != old.avatar.id
+        notice = Loading("avatar", avatar, True) if dressed else Loading("scene", scene, True)
+        notice = notice if moved or dressed else Loading("planner", settings.planner, True)
+        self._outbox.put(notice)
+        try:
+            place = None if moved else old.place
+            walk = await asyncio.to_thread(_made, self._library, scene, avatar, settings, place)
+        finally:
+            self._outbox.put(replace(notice, active=False))
+        self._outbox.drop_frame()
+        self._stage.show(walk)
+        if moved:
+            self._outbox.put(scene_message(walk.scene))
+        if dressed:
+            self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
+
+    # --- poses out -----------------------------------------------------------------------------------------------
+
+    async def _play(self) -> None:
+        """Show a frame every 1/60 s by the clock, without drift; a tick more than a frame late is left out."""
+        due = self._now()
+        while True:
+            due = max(due + INTERVAL, self._now() - INTERVAL)
+            await asyncio.sleep(max(due - self._now(), 0.0))
+            if self._now() - self._heard > INPUT_TIMEOUT:
+                self._stage.release()
+            seldom = self._now() - self._told >= _SELDOM
+            if seldom or not self._stage.paused:
+                self._show()
+            if seldom:
+                self._report()
+
+    def _show(self) -> None:
+        self._tell(self._stage.advance(self._now()))
+        self._send_frame()
+
+    def _send_frame(self) -> None:
+        self._outbox.put_frame(self._stage.frame(self._now()))
+
+    def _report(self) -> None:
+        self._told = self._now()
+        self._outbox.put(self._stage.status(self._told))
+        if self._stage.overlays.plan:
+            self._outbox.put(self._stage.plan())
+
+    def _tell(self, events: Iterable[ServerMessage]) -> None:
+        for event in events:
+            self._outbox.put(event)
+
+    # --- the end -------------------------------------------------------------------------------------------------
+
+    async def _close(self, sender: "asyncio.Task[None]", error: Exception) -> None:
+        """Say why, if the client still listens, and close."""
+        code, reason = _farewell(error)
+        await _stop(sender)
+        with contextlib.suppress(Exception):
+            async with asyncio.timeout(2.0):
+                await self._socket.send_text(encode(Notice("error", reason)))
+                await self._socket.close(code, reason[:100])
+
+
+def _decoded(event: Message) -> ClientMessage:
+    text = event.get("text")
+    if text is None:
+        raise InputError("message: binary messages are not read here; send JSON text")
+    return decode_client(text)
+
+
+def _merged(settings: WalkSettings, message: Configure) -> WalkSettings:
+    wanted = {name: getattr(message, name) for name in ("planner", "queue_size", "assist", "walk_speed")}
+    return replace(settings, **{name: value for name, value in wanted.items() if value is not None})
+
+
+def _made(library: Library, scene: str, avatar: str, settings: WalkSettings, place: RootState | None) -> Walk:
+    """A walk; takes a while, so it is called in a worker thread."""
+    return Walk(library.avatars.get(avatar), library.find_scene(scene), settings, place)
+
+
+def _farewell(error: Exception) -> tuple[int, str]:
+    if isinstance(error, _DoneError):
+        return error.code, error.reason
+    if isinstance(error, SlowClientError):
+        return _TRY_AGAIN_LATER, "the client reads too slowly"
+    if isinstance(error, InputError):
+        return _INTERNAL, str(error)
+    return _INTERNAL, "the session failed inside the server; its log says more"
+
+
+async def _first_of(tasks: "Sequence[asyncio.Task[None]]") -> None:
+    """Wait until one of the tasks ends, end the others, and raise what ended it."""
+    try:
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        await _stop(*tasks)
+    for task in done:
+        if not task.cancelled():
+            task.result()
+
+
+async def _stop(*tasks: "asyncio.Task[None]") -> None:
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)

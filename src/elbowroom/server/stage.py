@@ -1,0 +1,197 @@
+"""What one client sees: a walk, the clock it runs by, the command that is held. Time is an argument, in seconds."""
+
+from collections import deque
+from time import perf_counter
+
+import numpy as np
+
+from elbowroom.control.frame import Phase
+from elbowroom.planning.command import Command
+from elbowroom.server import pose_frame
+from elbowroom.server.messages import ClockMessage, Crossed, Input, Nearest, Overlays, Plan, Settings, Status
+from elbowroom.server.nearest import nearest
+from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.reports import finite, group_reports, plan_message
+from elbowroom.server.walk import Walk
+
+STEP = 1.0 / 60.0  # seconds of a single step
+
+_LONGEST_GAP = 0.1  # seconds: what a late tick loses beyond this is not made up for
+_TIMED = 300  # frames whose computing time is remembered
+_PHASES = {phase: pose_frame.PHASES.index(phase.value) for phase in Phase}
+_NO_CAPSULES = np.empty((0, 6), np.float32)
+
+
+class Stage:
+    """Advances a walk by a clock that can be paused, slowed down and stepped, and packs what there is to see."""
+
+    def __init__(self, walk: Walk, now: float) -> None:
+        self.walk = walk
+        self.paused = False
+        self.speed = 1.0
+        self.overlays = Overlays()
+        self.command = Command()
+        self.revision = 1  # of the avatar
+        self._epoch = 0
+        self._index = 0
+        self._acknowledged = 0
+        self._advanced = now
+        self._stepping = 0.0  # seconds of computing since the last frame was packed
+        self._busy: deque[float] = deque(maxlen=_TIMED)
+
+    def show(self, walk: Walk) -> None:
+        """Go on with another walk; the counters of crossings go with the session, not with the walk."""
+        walk.crossed, walk.stuck_times = self.walk.crossed, self.walk.stuck_times
+        self.revision = (self.revision + (walk.avatar is not self.walk.avatar)) % 2**16
+        self.walk = walk
+        self._jump()
+
+    def reset(self) -> None:
+        """Back to the start."""
+        self.walk.reset()
+        self._jump()
+
+    def obey(self, message: Input) -> bool:
+        """Hold what an input asks for; whether that is something else than before."""
+        command = Command(message.forward, message.strafe, message.turn, message.direction, message.run)
+        changed = command != self.command
+        self.command, self._acknowledged = command, message.seq
+        return changed
+
+    def release(self) -> None:
+        """Hold nothing."""
+        self.command = Command()
+
+    def set_clock(self, message: ClockMessage) -> list[Crossed]:
+        """Pause, go on, change speed, or take single steps."""
+        if message.paused is not None:
+            self.paused = message.paused
+        if message.speed is not None:
+            self.speed = message.speed
+        if message.steps is None:
+            return []
+        self.paused = True
+        return [event for _ in range(message.steps) for event in self._step(STEP)]
+
+    def advance(self, now: float) -> list[Crossed]:
+        """Go on to `now`, unless paused; what is worth telling."""
+        elapsed = min(max(now - self._advanced, 0.0), _LONGEST_GAP)
+        self._advanced = now
+        return [] if self.paused else self._step(elapsed * self.speed)
+
+    def since_advance(self, now: float) -> float:
+        """Seconds since the last `advance`."""
+        return now - self._advanced
+
+    def frame(self, now: float) -> bytes:
+        """The pose shown now, as it travels."""
+        began = perf_counter()
+        walk, frame = self.walk, self.walk.frame
+        poser, root = walk.avatar.poser, frame.root
+        posed = poser.node_pose(frame.q, root)
+        self._index += 1
+        packed = pose_frame.pack(
+            PoseFrame(
+                flags=self._flags(),
+                index=self._index % 2**32,
+                time=now,
+                sim_time=frame.time,
+                acknowledged=self._acknowledged,
+                epoch=self._epoch,
+                avatar_revision=self.revision,
+                phase=_PHASES[frame.phase],
+                queue_fill=min(frame.fill, 255),
+                x=root[0],
+                y=0.0,
+                z=root[1],
+                heading=root[2],
+                forward=root[3],
+                lateral=root[4],
+                turn=root[5],
+                gait=root[6],
+                clearance=frame.clearance,
+                hips_x=posed.hips[0],
+                hips_y=posed.hips[1],
+                hips_z=posed.hips[2],
+                rotations=posed.rotations,
+                capsules=poser.segments(frame.q, root)[0] if self.overlays.capsules else _NO_CAPSULES,
+            )
+        )
+        self._busy.append(self._stepping + perf_counter() - began)
+        self._stepping = 0.0
+        return packed
+
+    def status(self, now: float) -> Status:
+        """The state in numbers."""
+        walk, frame = self.walk, self.walk.frame
+        plan = frame.plan
+        groups = group_reports(plan)
+        median, slow = np.percentile(self._busy or [0.0], [50, 95]) * 1e3
+        return Status(
+            time=now,
+            sim_time=frame.time,
+            phase=frame.phase.value,
+            stuck=frame.stuck,
+            root_kind="" if plan is None else plan.root.kind.value,
+            plan_status="" if plan is None else plan.local.status.value,
+            groups=groups,
+            plans=walk.plans,
+            plans_failed=walk.plans_failed,
+            checks=sum(group.checks for group in groups),
+            planning_ms=sum(group.ms for group in groups),
+            frame_ms_p50=float(median),
+            frame_ms_p95=float(slow),
+            queue_fill=frame.fill,
+            queue_size=walk.settings.queue_size,
+            crossed=walk.crossed,
+            stuck_times=walk.stuck_times,
+            clearance=finite(frame.clearance),
+            nearest=self._nearest(),
+        )
+
+    def plan(self) -> Plan:
+        """What is planned ahead."""
+        return plan_message(self.walk.frame, self.walk.avatar)
+
+    def settings(self) -> Settings:
+        """The choices in force."""
+        walk = self.walk
+        return Settings(
+            scene=walk.scene.name,
+            avatar=walk.avatar.id,
+            planner=walk.settings.planner,
+            queue_size=walk.settings.queue_size,
+            assist=walk.settings.assist,
+            walk_speed=walk.settings.walk_speed,
+            paused=self.paused,
+            speed=self.speed,
+            capsules=self.overlays.capsules,
+            plan=self.overlays.plan,
+        )
+
+    def _step(self, dt: float) -> list[Crossed]:
+        began = perf_counter()
+        seconds = self.walk.step(self.command, dt)
+        self._stepping += perf_counter() - began
+        if seconds is None:
+            return []
+        return [Crossed(seconds, self.walk.stuck_since_start, self.walk.crossed)]
+
+    def _jump(self) -> None:
+        self._epoch = (self._epoch + 1) % 2**16
+
+    def _flags(self) -> int:
+        walk, bits = self.walk, pose_frame.FLAGS
+        return (
+            bits["stuck"] * walk.frame.stuck
+            | bits["touching"] * walk.frame.touching
+            | bits["paused"] * self.paused
+            | bits["assist"] * walk.settings.assist
+            | bits["finished"] * walk.finished
+        )
+
+    def _nearest(self) -> Nearest | None:
+        walk, frame = self.walk, self.walk.frame
+        capsules = walk.avatar.humanoid.capsules
+        segments = walk.avatar.poser.segments(frame.q, frame.root)[0]
+        return nearest(segments, capsules.radii, capsules.names, walk.scene)

@@ -1,0 +1,133 @@
+"""One avatar on its way through one scene: the controller, and what a session counts about it. No clock, no socket."""
+
+from dataclasses import dataclass, replace
+
+from elbowroom.body.root import RootState
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.errors import InputError
+from elbowroom.planning.command import Command
+from elbowroom.server.avatar_store import StoredAvatar
+from elbowroom.world.scene import Scene
+
+_BACK_AT_START = 1.0  # metres: so near to the start the next crossing counts again
+
+
+@dataclass(frozen=True)
+class WalkSettings:
+    """What the menus choose about planning."""
+
+    planner: str = "figure6"
+    queue_size: int = 5
+    assist: bool = True
+    walk_speed: float = 1.2  # m/s at forward = 1
+
+
+class Walk:
+    """A living walk; `step` advances it."""
+
+    def __init__(
+        self, avatar: StoredAvatar, scene: Scene, settings: WalkSettings, place: RootState | None = None
+    ) -> None:
+        """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`."""
+        self.avatar = avatar
+        self.scene = scene
+        self.settings = settings
+        self._controller = self._made(place)
+        self.crossed = 0
+        self.stuck_times = 0
+        self._begin()
+
+    def _made(self, place: RootState | None) -> Controller:
+        try:
+            return self._controller_at(place)
+        except InputError:
+            if place is None:
+                raise
+            return self._controller_at(None)
+
+    def _controller_at(self, place: RootState | None) -> Controller:
+        return Controller(
+            self.avatar.humanoid,
+            self.scene,
+            planner=self.settings.planner,
+            queue_size=self.settings.queue_size,
+            assist=self.settings.assist,
+            start=place,
+        )
+
+    def _begin(self) -> None:
+        self._armed = True
+        self._stuck_since_start = 0
+        self._started = 0.0
+        self._plan_number = 0
+        self.plans_failed = 0
+        self.frame: Frame = self._controller.step(Command(), 0.0)
+
+    def reset(self) -> None:
+        """Back to the start of the scene; the counters of crossings stay."""
+        self._controller.start = self.scene.start
+        self._controller.reset()
+        self._controller.assist = self.settings.assist
+        self._begin()
+
+    def adjust(self, settings: WalkSettings) -> None:
+        """Take over what can change while walking: assistance and walking speed."""
+        self.settings = replace(self.settings, assist=settings.assist, walk_speed=settings.walk_speed)
+        self._controller.assist = settings.assist
+
+    def step(self, command: Command, dt: float) -> float | None:
+        """Go on by `dt` seconds; the seconds that the crossing took if the finish was passed just now."""
+        was_stuck = self.frame.stuck
+        self.frame = self._controller.step(self._scaled(command), dt)
+        if self.frame.stuck and not was_stuck:
+            self.stuck_times += 1
+            self._stuck_since_start += 1
+        self._count_plans()
+        return self._crossing()
+
+    @property
+    def place(self) -> RootState:
+        """Where the avatar is."""
+        return self._controller.root
+
+    @property
+    def plans(self) -> int:
+        """Local plans since the last reset."""
+        return self._plan_number
+
+    @property
+    def finished(self) -> bool:
+        """Whether the finish has been passed since the avatar was last at the start."""
+        return not self._armed
+
+    @property
+    def stuck_since_start(self) -> int:
+        """Times stuck since the avatar was last at the start."""
+        return self._stuck_since_start
+
+    def _scaled(self, command: Command) -> Command:
+        return command
+
+    def _count_plans(self) -> None:
+        report = self.frame.plan
+        if report is not None and report.number != self._plan_number:
+            self._plan_number = report.number
+            self.plans_failed += not report.found
+
+    def _crossing(self) -> float | None:
+        root, start = self._controller.root, self.scene.start
+        if (root.x - start.x) ** 2 + (root.z - start.z) ** 2 < _BACK_AT_START**2:
+            self._wait_for_start(root)
+            return None
+        if not self._armed or not self.scene.finished(root):
+            return None
+        self._armed = False
+        self.crossed += 1
+        return self.frame.time - self._started
+
+    def _wait_for_start(self, root: RootState) -> None:
+        """Time and counters of a crossing run from the moment when the avatar sets off."""
+        standing = root.forward == 0.0 and root.lateral == 0.0
+        if not self._armed or standing:
+            self._armed, self._stuck_since_start, self._started = True, 0, self.frame.time
