@@ -26,7 +26,7 @@ _CADENCE = 64.8 / 60.0  # strides/s at one stature per second
 _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
 _STILL = 1e-3  # m/s: below, the phase rests
 _LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
-_DUTY, _RUN_DUTY = 0.62, 0.45  # stance fraction of the cycle, walking and running
+_DUTY, _REACH = 0.62, 1.02  # stance fraction of the cycle; longest stance path in leg lengths, beyond it the body runs
 _HEEL_STRIKE, _TOE_OFF = math.radians(18.0), math.radians(42.0)  # foot pitch
 _LIFT = 0.05  # metres, of the swinging foot on a standard leg
 _MID_DROP = 0.4  # pelvis drop in mid-stance as a part of that in double support
@@ -54,30 +54,36 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
 
 
 @inlined
-def _cadence(forward: float, lateral: float, turn: float, scale: float) -> float:
+def _cadence(forward: float, lateral: float, turn: float) -> float:
     """Strides per second, not yet resting at standstill."""
-    side, spin = _LATERAL * lateral, _TURN * scale * turn
+    side, spin = _LATERAL * lateral, _TURN * turn
     ahead = forward if forward >= 0.0 else _BACK * forward
-    relative = (ahead * ahead + side * side + spin * spin) / (_STATURE * scale) ** 2
+    relative = (ahead * ahead + side * side + spin * spin) / _STATURE**2
     return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
 @kernel
-def phase_rate(forward: float, lateral: float, turn: float, scale: float = 1.0) -> float:
-    """Strides per second for root velocities in m/s and rad/s; `scale` as in `GaitShape`; 0 at standstill.
+def phase_rate(forward: float, lateral: float, turn: float) -> float:
+    """Strides per second for root velocities in m/s and rad/s; 0 at standstill. The same for every body.
 
     D. W. Grieve & R. J. Gear, "The relationships between length of stride, step frequency, time of swing and speed of
     walking for children and adults", Ergonomics 9 (1966): cadence 64.8 (speed / stature)^0.57 strides a minute.
     """
     if abs(forward) + abs(lateral) + abs(turn) < _STILL:
         return 0.0
-    return _cadence(forward, lateral, turn, scale)
+    return _cadence(forward, lateral, turn)
 
 
 @kernel
-def stride_length(speed: float, scale: float = 1.0) -> float:
-    """Length in metres of a stride (two steps) when walking forward at `speed` m/s; `scale` as in `GaitShape`."""
-    return abs(speed) / _cadence(speed, 0.0, 0.0, scale)
+def stride_length(speed: float) -> float:
+    """Length in metres of a stride (two steps) when walking forward at `speed` m/s."""
+    return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
+
+
+@inlined
+def _stance_part(stride: float, scale: float) -> float:
+    """The part of the cycle that a foot stands: less where strides of this length outgrow the legs."""
+    return float(_DUTY * (1.0 + (_DUTY / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
 
 
 @inlined
@@ -131,9 +137,9 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> fl
 def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     forward, lateral, turn = root[3], root[4], root[5]
-    period = 1.0 / _cadence(forward, lateral, turn, scale)
+    period = 1.0 / _cadence(forward, lateral, turn)
     speed = np.sqrt(forward * forward + lateral * lateral)
-    duty = _DUTY + (_RUN_DUTY - _DUTY) * _smooth((speed / scale - 1.3) / 1.3)
+    duty = _stance_part(speed * period, scale)
     stride = forward * period / (1.1 * scale)
     travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
     ahead = min(max(stride, -1.2), 1.2)
@@ -200,7 +206,7 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     for n in range(len(roots)):
         root = roots[n]
         speed = np.sqrt(root[3] * root[3] + root[4] * root[4])
-        duty = _DUTY + (_RUN_DUTY - _DUTY) * _smooth((speed / scale - 1.3) / 1.3)
+        duty = _stance_part(speed / _cadence(root[3], root[4], root[5]), scale)
         stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(speed / scale)
         low = 0.0
         for side in range(2):
