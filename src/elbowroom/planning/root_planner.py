@@ -1,0 +1,337 @@
+"""From a command to a short, collision-free root path for what cannot bend: the legs and the pelvis.
+
+Straight where the way is free, round the obstacle where it is not, a stop before it where there is no way. The upper
+body is not looked at: what only it would touch diverts nobody.
+
+A path is accepted if the posed legs and the pelvis are free at dense samples of exactly the motion that playback will
+show, and if from each of its key frames a stop would be free too. So the next plan always has a way out: to brake.
+"""
+
+import math
+import time
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.planning.command import Command
+from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_motion import (
+    MotionBounds,
+    RootMotionSettings,
+    Travel,
+    brake,
+    dense_states,
+    follow,
+    steer,
+    stopping_states,
+)
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_route import RouteSettings, find_route
+from elbowroom.world.scene import Scene
+from elbowroom.world.walkable import walkable_window
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+
+class RootPlanKind(Enum):
+    """How a root path answers its command."""
+
+    STRAIGHT = "straight"  # as commanded
+    DETOUR = "detour"  # round an obstacle, at full speed
+    SHORTENED = "shortened"  # slower than commanded, or ending early
+    STOPPED = "stopped"  # no way on
+
+
+@dataclass(frozen=True)
+class RootPlannerSettings:
+    """How far the root planner looks and how close it goes. Metres, seconds."""
+
+    motion: RootMotionSettings = field(default_factory=RootMotionSettings)
+    route: RouteSettings = field(default_factory=RouteSettings)
+    sight: float = 3.2  # how far ahead the way is looked at
+    widest_detour: float = 1.6  # how far from the line of travel a way round may lead
+    cell: float = 0.08  # of the map on which ways round are searched
+    margins: tuple[float, ...] = (0.10, 0.02)  # clearance of a way round: wished for, and enough
+    skin: float = 0.01  # clearance that posed legs keep along a path
+    spacing: float = 0.0125  # seconds between checked states
+    slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
+
+
+@dataclass(frozen=True, eq=False)
+class RootPlan:
+    """A root path and how it came about."""
+
+    path: RootPath
+    kind: RootPlanKind
+    goal: tuple[float, float]  # x, z of the short-term goal: where the looked-at route ends
+    checks: int  # postures and places whose clearance was computed
+    nanoseconds: int
+
+
+class TravelLine(NamedTuple):
+    """The straight line that a held command asks for; a way round leads back to it."""
+
+    asked: tuple[float, ...]  # what the command says about the direction; the line lives while it stays the same
+    x: float
+    z: float
+    heading: float  # direction of travel
+    facing: float  # heading of the body
+    turns: bool  # whether the body turns to where it goes
+
+    def coordinates(self, x: float, z: float) -> tuple[float, float]:
+        """Metres ahead and to the left of the line's first point."""
+        sine, cosine = math.sin(self.heading), math.cos(self.heading)
+        dx, dz = x - self.x, z - self.z
+        return dx * sine + dz * cosine, dx * cosine - dz * sine
+
+    def point(self, ahead: float, left: float = 0.0) -> tuple[float, float]:
+        """The place on the ground with these coordinates."""
+        sine, cosine = math.sin(self.heading), math.cos(self.heading)
+        return self.x + ahead * sine + left * cosine, self.z + ahead * cosine - left * sine
+
+
+class RootPlanner:
+    """Plans root paths for one humanoid in one scene.
+
+    It remembers one thing between plans: the line of travel of the command that is being held, and where the last path
+    led. `reset` forgets it; a start that does not continue the last path does so too.
+    """
+
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings | None = None) -> None:
+        self.settings = settings or RootPlannerSettings()
+        self.body = LowerBody(humanoid, scene.boxes)
+        motion = self.settings.motion
+        self._bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
+        self._line: TravelLine | None = None
+        self._last: Floats | None = None
+
+    def reset(self) -> None:
+        """Forget the line of travel."""
+        self._line = self._last = None
+
+    def plan(
+        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> RootPlan:
+        """A path of `horizon` key intervals of `interval` seconds that starts exactly in the state `start`."""
+        began = time.perf_counter_ns()
+        query = _Query(self, start, horizon, interval)
+        if command.idle:
+            self._line = None
+            states, kind, goal = *query.stop(RootPlanKind.STRAIGHT), (start.x, start.z)
+        elif command.turn != 0.0 and command.direction is None:
+            self._line = None
+            states, kind, goal = query.steered(_steering(command, self.settings.motion))
+        else:
+            self._line = self._travel_line(start, command)
+            states, kind, goal = query.travelled(self._line, _speed(command, self.settings.motion))
+        self._last = states
+        path = RootPath(start_time, interval, states)
+        return RootPlan(path, kind, goal, query.checks, time.perf_counter_ns() - began)
+
+    def _travel_line(self, start: RootState, command: Command) -> TravelLine:
+        """The line that is being followed, or a new one from here if the command or the place has changed."""
+        line, asked = self._line, _asked(command)
+        if line is not None and line.asked == asked and self._continues(start, line):
+            return line
+        if command.direction is not None:
+            return TravelLine(asked, start.x, start.z, command.direction, command.direction, True)
+        settling = 0.5 * start.turn * abs(start.turn) / self.settings.motion.turn_acceleration
+        facing = start.heading + settling
+        way = facing + math.atan2(command.strafe, command.forward)
+        ahead = command.forward > 0.0 and command.strafe == 0.0
+        return TravelLine(asked, start.x, start.z, way, facing, ahead)
+
+    def _continues(self, start: RootState, line: TravelLine) -> bool:
+        """Whether a start goes on from the last path, within the breadth of a way round."""
+        if self._last is None or abs(line.coordinates(start.x, start.z)[1]) >= self.settings.widest_detour:
+            return False
+        return bool(np.min(np.hypot(self._last[:, 0] - start.x, self._last[:, 1] - start.z)) < 0.5)
+
+
+def _asked(command: Command) -> tuple[float, ...]:
+    """What a command says about the direction of travel, speed aside."""
+    if command.direction is not None:
+        return (command.direction,)
+    return (round(math.atan2(command.strafe, command.forward), 3), 0.0)
+
+
+def _speed(command: Command, motion: RootMotionSettings) -> float:
+    """The wanted speed along the line of travel: the ellipse through forward, backward and sideways speeds."""
+    ahead = motion.run_speed if command.run else motion.walk_speed
+    if command.direction is not None:
+        return ahead * min(max(command.forward, 0.0), 1.0)
+    along = (ahead if command.forward > 0.0 else motion.back_speed) * min(max(command.forward, -1.0), 1.0)
+    return math.hypot(along, motion.strafe_speed * min(max(command.strafe, -1.0), 1.0))
+
+
+def _steering(command: Command, motion: RootMotionSettings) -> Floats:
+    """Wanted velocities forward, to the left, and heading rate, of a command that turns."""
+    ahead = motion.run_speed if command.run else motion.walk_speed
+    along = ahead if command.forward > 0.0 else motion.back_speed
+    wanted = np.array([command.forward, command.strafe, command.turn])
+    velocities: Floats = np.clip(wanted, -1.0, 1.0) * np.array([along, motion.strafe_speed, motion.turn_rate])
+    return velocities
+
+
+Answer = tuple[Floats, RootPlanKind, tuple[float, float]]
+
+
+class _Query:
+    """One plan in the making: the start, the boxes within reach, and the count of checks."""
+
+    def __init__(self, planner: RootPlanner, start: RootState, horizon: int, interval: float) -> None:
+        self.settings, self.body, self.bounds = planner.settings, planner.body, planner._bounds
+        self.start, self.horizon, self.interval = start, horizon, interval
+        run = self.settings.motion.run_speed
+        reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
+        self.table = self.body.boxes_near(start.x, start.z, reach)
+        self.checks = 0
+        at_start = self._clearance(start.as_array()[None])
+        self.skin = min(self.settings.skin, 0.5 * float(at_start[0])) if at_start[0] > 0.0 else 0.0
+
+    def _clearance(self, states: Floats) -> Floats32:
+        if not len(self.table) or not len(states):
+            return np.full(len(states), np.inf, np.float32)
+        self.checks += len(states)
+        return self.body.clearance(self.table, states)
+
+    def _blank(self) -> Floats:
+        states = np.empty((self.horizon + 1, ROOT_STATE))
+        states[0] = self.start
+        return states
+
+    def _free(self, states: Floats, skin: float) -> bool:
+        """Whether the shown motion is free, and a stop from each of its key frames."""
+        shown = dense_states(states, self.interval, self.settings.spacing)
+        if np.any(self._clearance(shown) < skin):
+            return False
+        tails = stopping_states(states, self.interval, self.bounds, self.settings.spacing)
+        return not np.any(self._clearance(tails) < skin)
+
+    def stop(self, kind: RootPlanKind) -> tuple[Floats, RootPlanKind]:
+        """Brake, harder if need be; at last stand still at once."""
+        for hard in (1.0, 2.0, 4.0):
+            states = self._blank()
+            bounds = self.bounds._replace(
+                braking=hard * self.bounds.braking, turn_acceleration=hard * self.bounds.turn_acceleration
+            )
+            brake(states, 0, self.interval, bounds)
+            shown = dense_states(states, self.interval, self.settings.spacing)
+            if not np.any(self._clearance(shown) < 0.0):
+                return states, kind
+        states = self._blank()
+        states[:] = states[0]
+        states[:, 3:6] = 0.0
+        return states, RootPlanKind.STOPPED
+
+    def steered(self, wanted: Floats) -> Answer:
+        """Hold the wanted velocities in the body's own axes, slower if need be."""
+        for share in self.settings.slower:
+            states = self._blank()
+            steer(states, wanted * np.array([share, share, 1.0]), self.interval, self.bounds)
+            if self._free(states, self.skin):
+                kind = RootPlanKind.STRAIGHT if share == 1.0 else RootPlanKind.SHORTENED
+                return states, kind, _place(states[-1])
+        states = self._blank()
+        steer(states, wanted, self.interval, self.bounds)
+        return self._cut_short(states)
+
+    def travelled(self, line: TravelLine, speed: float) -> Answer:
+        """Walk along the line of travel, or round what stands in it."""
+        route, detour, stops = self._route(line)
+        for share in self.settings.slower:
+            states = self._blank()
+            self._follow(states, route, line, share * speed, stops)
+            if self._free(states, self.skin):
+                return states, self._kind(states, detour, share < 1.0), _place(route[-1])
+        states = self._blank()
+        self._follow(states, route, line, speed, stops)
+        return self._cut_short(states)
+
+    def _follow(self, states: Floats, route: Floats, line: TravelLine, speed: float, stops: bool) -> None:
+        look_ahead = 0.3 + 0.3 * speed
+        follow(states, route, Travel(speed, line.facing, line.turns, stops, look_ahead), self.interval, self.bounds)
+
+    def _kind(self, states: Floats, detour: bool, slower: bool) -> RootPlanKind:
+        moved = math.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
+        turned = abs(states[-1, 2] - states[0, 2])
+        if moved < 0.02 and turned < 0.05:
+            return RootPlanKind.STOPPED
+        if slower:
+            return RootPlanKind.SHORTENED
+        return RootPlanKind.DETOUR if detour else RootPlanKind.STRAIGHT
+
+    def _cut_short(self, wished: Floats) -> Answer:
+        """As much of a path as is free with a stop after it."""
+        for kept in range(self.horizon - 1, 0, -1):
+            states = wished.copy()
+            brake(states, kept, self.interval, self.bounds)
+            if self._free(states, self.skin):
+                return states, RootPlanKind.SHORTENED, _place(states[-1])
+        states, kind = self.stop(RootPlanKind.STOPPED)
+        return states, kind, _place(states[-1])
+
+    def _route(self, line: TravelLine) -> tuple[Floats, bool, bool]:
+        """Corner points of the way to go; whether it is a way round; whether it ends before an obstacle."""
+        ahead, left = line.coordinates(self.start.x, self.start.z)
+        sight = self.settings.sight
+        back = ahead + max(0.6, 1.5 * abs(left))
+        straight = np.array(
+            [[self.start.x, self.start.z], line.point(back), line.point(max(ahead + sight, back + 0.1))]
+        )
+        free = self._free_length(straight)
+        if free >= sight:
+            return straight, False, False
+        for margin in self.settings.margins:
+            route = self._way_round(line, ahead, left, margin)
+            gained = line.coordinates(*route[-1])[0] - ahead
+            if gained > 0.8 * sight:
+                return route, True, False
+        return _truncated(straight, max(0.0, free - 0.05)), False, True
+
+    def _free_length(self, route: Floats) -> float:
+        """Metres along the route before the standing figure would touch; infinite if it never does."""
+        if not len(self.table):
+            return math.inf
+        points, along = _dense_points(route, 0.04)
+        clear = self.body.standing_clearance(self.table, points[:, 0], points[:, 1])
+        self.checks += len(points)
+        leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
+        blocked = np.flatnonzero((clear < self.settings.margins[-1]) & ~leaving)
+        return float(along[blocked[0]]) if len(blocked) else math.inf
+
+    def _way_round(self, line: TravelLine, ahead: float, left: float, margin: float) -> Floats:
+        cell, wide = self.settings.cell, self.settings.widest_detour
+        half = math.ceil(wide / cell)
+        behind = 8 * cell
+        origin = line.point(ahead - behind, -half * cell)
+        shape = (math.ceil((behind + self.settings.sight) / cell) + 1, 2 * half + 1)
+        window = walkable_window(self.table, self.body.stance, origin, line.heading, shape, cell)
+        self.checks += window.clearance.size
+        return find_route(window, (behind, left + half * cell), half * cell, margin, self.settings.route)
+
+
+def _place(row: Floats) -> tuple[float, float]:
+    """The first two components of a state or of a route's point: x and z."""
+    return float(row[0]), float(row[1])
+
+
+def _dense_points(route: Floats, spacing: float) -> tuple[Floats, Floats]:
+    """Points (N, 2) on a route at most `spacing` apart, and their distances (N,) along it."""
+    ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route, axis=0).T))])
+    along = np.linspace(0.0, ends[-1], max(2, math.ceil(ends[-1] / spacing) + 1))
+    points = np.stack([np.interp(along, ends, route[:, 0]), np.interp(along, ends, route[:, 1])], axis=1)
+    return points, along
+
+
+def _truncated(route: Floats, length: float) -> Floats:
+    """The first `length` metres of a route."""
+    points, along = _dense_points(route, 0.04)
+    keep = max(1, int(np.searchsorted(along, length, side="right")))
+    return points[:keep] if keep > 1 else points[[0, 0]]
