@@ -1,0 +1,56 @@
+"""Goal functions GF_x(t): the configuration a group would like to have at each key time (paper, section 4.2).
+
+They guide the search (soft constraint); obstacles overrule them. The paper's two kinds: fixed (the waist, upright) and
+periodic (an arm, swinging with the stride).
+"""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.stock_clips import arm_swing_goal
+from elbowroom.planning.root_path import RootPath
+
+Floats = NDArray[np.float64]
+
+
+class GoalFunction(Protocol):
+    """Gives a group's goal configurations along a root path."""
+
+    def __call__(self, path: RootPath) -> Floats:
+        """Goal configurations (n+1, d) at the path's key times, radians."""
+
+
+def fixed_goal(configuration: ArrayLike) -> GoalFunction:
+    """Always the same configuration (d,)."""
+    fixed = np.array(configuration, np.float64)
+
+    def goals(path: RootPath) -> Floats:
+        return np.tile(fixed, (len(path.states), 1))
+
+    return goals
+
+
+def periodic_goal(group: DofGroup) -> GoalFunction:
+    """The arm swing of `group`, in time with the gait phase, as wide as the speed asks for; hanging at standstill."""
+
+    def goals(path: RootPath) -> Floats:
+        return np.asarray(arm_swing_goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
+
+    return goals
+
+
+def natural_walk() -> Mapping[DofGroup, GoalFunction]:
+    """The goal functions of the paper's system: waist upright, arms swinging."""
+    return {
+        group: fixed_goal(np.zeros(group.size)) if group is DofGroup.WAIST else periodic_goal(group)
+        for group in LOCAL_GROUPS
+    }
+
+
+def goal_configurations(goals: Mapping[DofGroup, GoalFunction], path: RootPath) -> Floats:
+    """The goals of all local groups side by side: (n+1, 10) waist, left arm, right arm."""
+    return np.concatenate([goals[group](path) for group in LOCAL_GROUPS], axis=1)

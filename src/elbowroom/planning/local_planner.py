@@ -1,0 +1,171 @@
+"""The local planner: upper-body motion for a root path, group after group (paper, sections 3.1 and 5.1)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.clip import MotionClip
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
+from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
+from elbowroom.planning import figure6
+from elbowroom.planning.activity_graph import ActivityGraph
+from elbowroom.planning.frames import compose
+from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
+from elbowroom.planning.limb import limb_of, pose
+from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus, SearchResult
+from elbowroom.planning.roadmap import PosedGraph, Roadmap
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.self_contact import clear_of_trunk
+from elbowroom.world.boxes import tables_in_frames
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+_SWING_SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
+UPPER_DOF = sum(group.size for group in LOCAL_GROUPS)
+
+
+@dataclass(frozen=True)
+class GroupSettings:
+    """How the activity graph of a group is made."""
+
+    samples_per_clip: int  # k
+    radius: float  # r, radians: also the farthest move from one key frame to the next
+
+
+@dataclass(frozen=True)
+class LocalPlannerSettings:
+    """Settings of the local planner.
+
+    The radii allow, with key frames 0.2 s apart, 2 rad/s at the waist and 3 rad/s over an arm's joints together: what
+    a brisk swing of the arms and a quick but human evasion need.
+    """
+
+    waist: GroupSettings = field(default=GroupSettings(samples_per_clip=6, radius=0.4))
+    arm: GroupSettings = field(default=GroupSettings(samples_per_clip=8, radius=0.6))
+    margin: float = 0.01  # metres of clearance that count as free
+    budget: int = 20_000  # collision checks for each group and plan
+    capacity: int = 384  # vertices of a graph; a plan that begins with a full graph begins it anew
+
+    def of(self, group: DofGroup) -> GroupSettings:
+        """The settings of a local group."""
+        return self.waist if group is DofGroup.WAIST else self.arm
+
+
+class LocalPlanner:
+    """Dresses root paths with upper-body motion: waist, then left arm, then right arm.
+
+    Each arm hangs on the waist motion chosen before it, and no group is reconsidered: the first that finds no way ends
+    the plan (decoupled planning, as in the paper). The activity graphs live here and grow from plan to plan; equal
+    calls after `reset` give equal plans.
+    """
+
+    def __init__(
+        self,
+        humanoid: Humanoid,
+        scene: Scene,
+        settings: LocalPlannerSettings | None = None,
+        goals: Mapping[DofGroup, GoalFunction] | None = None,
+    ) -> None:
+        self.settings = settings or LocalPlannerSettings()
+        self.goals = goals or natural_walk()
+        self._model = body_model(humanoid)
+        self._posed = {group: self._posed_graph(group) for group in LOCAL_GROUPS}
+        self._reach = self._upper_body_reach()
+        self.use_scene(scene)
+
+    def use_scene(self, scene: Scene) -> None:
+        """Plan among the boxes of another scene, with the same graphs."""
+        self._boxes = scene.boxes.table
+        self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
+
+    def reset(self) -> None:
+        """Forget the vertices that searches have added."""
+        for posed in self._posed.values():
+            posed.graph.reset()
+
+    def graph(self, group: DofGroup) -> ActivityGraph:
+        """The activity graph of a local group."""
+        return self._posed[group].graph
+
+    def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
+        """Find motion along `path` that begins at `start` (10,): waist, left arm, right arm, radians.
+
+        `start` is taken as it is; every later key frame of the result keeps the margin from all boxes at its key time.
+        """
+        goals = goal_configurations(self.goals, path)
+        configurations = np.empty_like(goals)
+        evidence: list[GroupEvidence] = []
+        positions, rotations = pelvis_frames(self._model, path.states)
+        boxes = self._near(positions)
+        tables = tables_in_frames(boxes, positions, rotations)
+        for group in LOCAL_GROUPS:
+            columns = _columns(group)
+            result = self._search(group, tables, start[columns], goals[:, columns], rng)
+            evidence.append(_evidence(group, result))
+            if result.status is not PlanStatus.FOUND:
+                return LocalPlan(result.status, configurations[:0], goals, tuple(evidence))
+            configurations[:, columns] = result.path
+            if group is DofGroup.WAIST:
+                tables = self._chest_tables(boxes, positions, rotations, result.path)
+        return LocalPlan(PlanStatus.FOUND, configurations, goals, tuple(evidence))
+
+    def _search(
+        self, group: DofGroup, tables: NDArray[np.float32], start: Floats, goals: Floats, rng: np.random.Generator
+    ) -> SearchResult:
+        posed = self._posed[group]
+        if posed.graph.full:
+            posed.graph.reset()
+        roadmap = Roadmap(posed, tables, start)
+        return figure6.search(roadmap, goals, rng, self.settings.margin, self.settings.budget)
+
+    def _chest_tables(self, boxes: Floats, positions: Floats, rotations: Floats, waist: Floats) -> NDArray[np.float32]:
+        """The boxes in the chest frame at each key time, for the chosen waist motion (n+1, 2)."""
+        chest_positions, chest_rotations = chest_frames(self._model, waist)
+        return tables_in_frames(boxes, *compose(positions, rotations, chest_positions, chest_rotations))
+
+    def _near(self, pelvis: Floats) -> Floats:
+        """The rows of the boxes that the upper body could reach at any key time."""
+        gaps = np.linalg.norm(self._boxes[:, None, :3] - pelvis, axis=2).min(axis=1, initial=np.inf) - self._box_radii
+        near: Floats = self._boxes[gaps < self._reach + self.settings.margin]
+        return near
+
+    def _posed_graph(self, group: DofGroup) -> PosedGraph:
+        chosen, limb = self.settings.of(group), limb_of(self._model, group)
+
+        def accept(configurations: Floats) -> NDArray[np.bool_]:
+            return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
+
+        graph = ActivityGraph.from_clips(
+            _clips(group), chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept
+        )
+        return PosedGraph(limb, graph)
+
+    def _upper_body_reach(self) -> float:
+        """No capsule of the upper body gets farther than this from the hips, metres."""
+        waist = self._posed[DofGroup.WAIST]
+        places, _ = chest_frames(self._model, waist.graph.vertices)
+        shoulders = 2.0 * float(np.linalg.norm(places, axis=1).max())
+        return max(waist.reach, *(shoulders + self._posed[group].reach for group in LOCAL_GROUPS[1:]))
+
+
+def _clips(group: DofGroup) -> tuple[MotionClip, ...]:
+    """The clips of a group's graph: the stock clips, and for an arm its swing at other speeds."""
+    if group is DofGroup.WAIST:
+        return stock_clips(group)
+    phases = np.linspace(0.0, 1.0, 33)
+    swings = (arm_swing_goal(group, phases, np.full(len(phases), speed)) for speed in _SWING_SPEEDS)
+    return stock_clips(group) + tuple(MotionClip("arm_swing", group, phases, swing, loop=True) for swing in swings)
+
+
+def _columns(group: DofGroup) -> slice:
+    """The group's columns of a configuration without the root (10,)."""
+    first = DofGroup.WAIST.value.start
+    return slice(group.value.start - first, group.value.stop - first)
+
+
+def _evidence(group: DofGroup, result: SearchResult) -> GroupEvidence:
+    return GroupEvidence(group, result.status, result.checks, result.nodes, result.enhanced, result.nanoseconds)

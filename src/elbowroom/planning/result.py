@@ -1,0 +1,67 @@
+"""What a search hands back: how it ended, what it found, and what that cost."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DofGroup
+
+
+class PlanStatus(Enum):
+    """How a search ended."""
+
+    FOUND = "found"
+    EXHAUSTED = "exhausted"  # every way was tried
+    OUT_OF_BUDGET = "out of budget"  # stopped after the allowed number of collision checks
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult:
+    """The outcome of one search in a C-T roadmap."""
+
+    status: PlanStatus
+    path: NDArray[np.float64]  # (n+1, d) configurations at the key times, radians; (0, d) unless FOUND
+    vertices: NDArray[np.int32]  # (n+1,) their vertices in the activity graph; (0,) unless FOUND
+    checks: int  # collision checks: one for each candidate that was tested
+    nodes: int  # nodes taken from the stack
+    enhanced: int  # vertices added to the activity graph
+    nanoseconds: int  # wall time of the search, its validity tables included
+
+
+@dataclass(frozen=True)
+class GroupEvidence:
+    """What the search for one group cost."""
+
+    group: DofGroup
+    status: PlanStatus
+    checks: int
+    nodes: int
+    enhanced: int
+    nanoseconds: int
+
+
+@dataclass(frozen=True, eq=False)
+class LocalPlan:
+    """Upper-body motion for a root path, or the status of the first group that found none."""
+
+    status: PlanStatus
+    configurations: NDArray[np.float64]  # (n+1, 10) waist, left arm, right arm at the key times; (0, 10) unless FOUND
+    goals: NDArray[np.float64]  # (n+1, 10) what the goal functions asked for
+    evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
+
+    @property
+    def checks(self) -> int:
+        """Collision checks of all groups."""
+        return sum(group.checks for group in self.evidence)
+
+    @property
+    def nodes(self) -> int:
+        """Nodes taken from the stack in all groups."""
+        return sum(group.nodes for group in self.evidence)
+
+    @property
+    def enhanced(self) -> int:
+        """Vertices added to the activity graphs."""
+        return sum(group.enhanced for group in self.evidence)
