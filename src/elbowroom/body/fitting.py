@@ -134,13 +134,20 @@ def _slimmest(points: Floats, start: Floats, end: Floats, share: float, evaluati
 
 
 def _first_guesses(points: Floats, start: Floats, end: Floats) -> list[Floats]:
-    """The capsule of average proportions moved into the points, and their longest extent."""
+    """Capsules through the middle of the points, along the average proportions' axis and along their longest extent."""
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    reach = 0.5 * np.ptp(points @ axes[0]) - 0.5 * np.ptp(points @ axes[1])
-    shift = middle - 0.5 * (start + end)
-    pairs = [(start + shift, end + shift), (middle - reach * axes[0], middle + reach * axes[0])]
-    return [np.concatenate(pair) for pair in pairs]
+    _, _, axes = np.linalg.svd(points - middle, full_matrices=False)
+    along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
+    return [np.concatenate([middle - half, middle + half]) for half in (_half(points, d) for d in (along, axes[0]))]
+
+
+def _half(points: Floats, direction: Floats) -> Floats:
+    """Half the axis of a capsule in this direction that is as long and as thick as the points reach."""
+    lengths = points @ direction
+    across = points - lengths[:, None] * direction
+    thickness = float(np.linalg.norm(np.ptp(across, axis=0))) / np.sqrt(2.0)
+    half: Floats = 0.5 * max(float(np.ptp(lengths)) - thickness, 0.0) * direction
+    return half
 
 
 def _search(points: Floats, first: Floats, share: float, evaluations: int) -> Floats:

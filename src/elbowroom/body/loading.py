@@ -52,15 +52,20 @@ class _Figure:
 
 def load_humanoid(path: Path) -> Humanoid:
     """Read a VRM 0.x, VRM 1.0 or glTF/GLB humanoid; raises `InputError`."""
-    return _humanoid(read_gltf(path), path)
+    return _humanoid(read_gltf(path), path)[0]
 
 
 def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     """The same for the bytes of a file that was sent to us; it must not refer to other files."""
-    return _humanoid(parse_gltf(data, name), None)
+    return _humanoid(parse_gltf(data, name), None)[0]
 
 
-def _humanoid(gltf: Gltf, source: Path | None) -> Humanoid:
+def load_with_surface(path: Path) -> tuple[Humanoid, BodyPoints | None]:
+    """The humanoid and the points of its own surface (None without a readable mesh), to judge its capsules by."""
+    return _humanoid(read_gltf(path), path)
+
+
+def _humanoid(gltf: Gltf, source: Path | None) -> tuple[Humanoid, BodyPoints | None]:
     tree = read_nodes(gltf)
     vrm = read_vrm(gltf, len(tree))
     named = vrm.bones if vrm else bones_by_name(tree, skin_joints(gltf, tree))
@@ -71,7 +76,9 @@ def _humanoid(gltf: Gltf, source: Path | None) -> Humanoid:
     points = body_points(tree, list(figure.bones.values()), springs, surface, figure.matrices)
     rig = _rig(figure, points)
     skeleton = _skeleton(figure, rig)
-    capsules, capsule_notes = _capsules(skeleton, rig, points)
+    if points is not None:
+        points = BodyPoints(rig.to_model(points.positions), points.joints)
+    capsules, capsule_notes = _capsules(skeleton, points)
     meta = AvatarMeta(
         title=vrm.title if vrm else "",
         authors=vrm.authors if vrm else (),
@@ -79,7 +86,7 @@ def _humanoid(gltf: Gltf, source: Path | None) -> Humanoid:
         format=vrm.version if vrm else "glTF 2.0",
         notes=notes + surface_notes + capsule_notes,
     )
-    return Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(gltf))
+    return Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(gltf)), points
 
 
 def _figure(place: str, tree: NodeTree, bones: dict[str, int], vrm: Vrm | None) -> _Figure:
@@ -184,12 +191,12 @@ def _check_lengths(place: str, skeleton: Skeleton) -> None:
                     raise InputError(f"{place}: the bones {side}{a} and {side}{b} are at the same place")
 
 
-def _capsules(skeleton: Skeleton, rig: Rig, points: BodyPoints | None) -> tuple[Capsules, tuple[str, ...]]:
+def _capsules(skeleton: Skeleton, points: BodyPoints | None) -> tuple[Capsules, tuple[str, ...]]:
     """The collision body, and notes on what of it has average proportions."""
     average = proportional_capsules(skeleton)
     if points is None:
         return average, ("the collision body has average proportions",)
-    capsules, bare = fit_capsules(skeleton, BodyPoints(rig.to_model(points.positions), points.joints))
+    capsules, bare = fit_capsules(skeleton, points)
     if 2 * len(bare) > len(capsules.names):
         return average, ("no mesh on most of the bones: the collision body has average proportions",)
     return capsules, (f"without mesh, of average proportions: {', '.join(bare)}",) if bare else ()

@@ -59,9 +59,7 @@ def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
 def skin_joints(gltf: Gltf, tree: NodeTree) -> set[int]:
     """The nodes that are joints of any skin."""
     return {
-        joint.integer(0, len(tree) - 1)
-        for skin in gltf.root.at("skins").items()
-        for joint in skin.at("joints").items(len(tree))
+        joint.integer(0, len(tree) - 1) for skin in gltf.root.at("skins").items() for joint in skin.at("joints").items()
     }
 
 

@@ -68,6 +68,8 @@ class NodeTree:
 def read_nodes(gltf: Gltf) -> NodeTree:
     """The node tree; raises `InputError` for cycles, shared children, wrong numbers, too many or too deep nodes."""
     fields = gltf.root.at("nodes").items(MAX_NODES)
+    if not fields:
+        raise InputError(f"{gltf.name} has no nodes: there is nothing in it")
     parents = _parents(fields)
     transforms = [_transform(field) for field in fields]
     meshes = len(gltf.root.at("meshes").items()) - 1

@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+
+from elbowroom.body.fitting import BodyPoints, coverage, fit_capsules, part_of_points
+from elbowroom.body.loading import load_with_surface
+from elbowroom.body.proportions import proportional_capsules, proportional_skeleton
+from shared_data import SHARED, needs_shared
+
+SKELETON = proportional_skeleton(1.7)
+
+
+def _surface_of_capsules(rng: np.random.Generator, each: int) -> BodyPoints:
+    """Points on capsules half as thick again as the average."""
+    capsules = proportional_capsules(SKELETON)
+    points, joints = [], []
+    for joint, start, end, radius in zip(capsules.joints, capsules.starts, capsules.ends, capsules.radii, strict=True):
+        where = rng.uniform(0.0, 1.0, (each, 1))
+        outward = rng.normal(size=(each, 3))
+        outward *= 1.5 * radius / np.linalg.norm(outward, axis=1, keepdims=True)
+        points.append(SKELETON.positions[joint] + start + where * (end - start) + outward)
+        joints.append(np.full(each, joint))
+    return BodyPoints(np.concatenate(points), np.concatenate(joints))
+
+
+def test_capsules_are_found_again_from_their_surface() -> None:
+    points = _surface_of_capsules(np.random.default_rng(0), 300)
+    capsules, bare = fit_capsules(SKELETON, points)
+    average = proportional_capsules(SKELETON)
+    assert bare == ()
+    assert capsules.names == average.names
+    assert coverage(SKELETON, capsules, points) > 0.97
+    thick = capsules.radii / average.radii
+    assert np.all((thick > 1.1) & (thick < 1.75))
+
+
+def test_parts_without_points_keep_average_proportions() -> None:
+    head = SKELETON.index("head")
+    ball = 0.1 * np.random.default_rng(1).normal(size=(200, 3)) + SKELETON.positions[head]
+    capsules, bare = fit_capsules(SKELETON, BodyPoints(ball, np.full(200, head)))
+    average = proportional_capsules(SKELETON)
+    assert set(bare) == set(average.names) - {"head"}
+    others = [i for i, name in enumerate(average.names) if name != "head"]
+    assert np.array_equal(capsules.radii[others], average.radii[others])
+
+
+def test_points_belong_to_the_part_of_their_bone() -> None:
+    average = proportional_capsules(SKELETON)
+    bones = ["hips", "leftToes", "rightFoot", "jaw", "leftShoulder", "rightLowerArm", "head"]
+    expected = ["pelvis", "leftFoot", "rightFoot", None, "chest", "rightForearm", "head"]
+    for bone, name in zip(bones, expected, strict=True):
+        if not SKELETON.has(bone):
+            continue
+        joint = SKELETON.index(bone)
+        part = part_of_points(SKELETON, average, BodyPoints(SKELETON.positions[[joint]], np.array([joint])))[0]
+        assert average.names[part] == name
+
+
+@needs_shared
+@pytest.mark.parametrize(
+    "name", ["glb/m2m_human-male.glb", "glb/m2m_human-zombie.glb", "vrm0/Robot.vrm", "vrm0/Godette_vrm_v4.vrm"]
+)
+def test_real_avatars_are_covered(name: str) -> None:
+    assert SHARED is not None
+    humanoid, points = load_with_surface(SHARED / "avatars" / name)
+    assert points is not None
+    assert coverage(humanoid.skeleton, humanoid.capsules, points) >= 0.95
+    limbs = [i for i, part in enumerate(humanoid.capsules.names) if part.endswith(("Arm", "Forearm", "Thigh", "Shin"))]
+    lengths = np.linalg.norm(humanoid.capsules.ends - humanoid.capsules.starts, axis=1)
+    assert np.all(humanoid.capsules.radii[limbs] < 0.15 * humanoid.skeleton.height)
+    assert np.all(lengths < 0.4 * humanoid.skeleton.height)
+
+
+def test_the_fit_repeats_exactly() -> None:
+    points = _surface_of_capsules(np.random.default_rng(2), 60)
+    once, again = fit_capsules(SKELETON, points)[0], fit_capsules(SKELETON, points)[0]
+    assert np.array_equal(once.radii, again.radii)
+    assert np.array_equal(once.ends, again.ends)
