@@ -1,0 +1,35 @@
+"""The planners of upper-body motion by name: one registry for controller, experiments, command line and page."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.errors import InputError
+from elbowroom.planning.local_planner import LocalPlanner
+from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root_path import RootPath
+from elbowroom.world.scene import Scene
+
+
+class Planner(Protocol):
+    """Finds upper-body motion for root paths; it may learn from plan to plan."""
+
+    def plan(self, path: RootPath, start: NDArray[np.float64], rng: np.random.Generator) -> LocalPlan:
+        """Motion along `path` that begins at `start` (10,): waist, left arm, right arm, radians."""
+
+
+PlannerFactory = Callable[[Humanoid, Scene], Planner]
+
+PLANNERS: dict[str, PlannerFactory] = {
+    "figure6": LocalPlanner,  # the paper's own search
+}
+
+
+def make_planner(name: str, humanoid: Humanoid, scene: Scene) -> Planner:
+    """A new planner of this name for a humanoid in a scene. Raises `InputError` if there is none of this name."""
+    if name not in PLANNERS:
+        raise InputError(f"planner {name[:40]!r} is unknown; there are {', '.join(PLANNERS)}")
+    return PLANNERS[name](humanoid, scene)
