@@ -61,9 +61,9 @@ def tables_in_frames(table: ArrayLike, positions: ArrayLike, rotations: ArrayLik
     """
     rows = np.ascontiguousarray(table, np.float64)
     places = np.ascontiguousarray(positions, np.float64)
-    matrices = np.ascontiguousarray(quaternion.to_matrix(rotations))
+    turns = np.ascontiguousarray(rotations, np.float64)
     out = np.empty((len(places), len(rows), BOX_ROW), np.float32)
-    _move_tables(rows, places, matrices, out)
+    _move_tables(rows, places, turns, out)
     return out
 
 
@@ -71,12 +71,28 @@ def tables_in_frames(table: ArrayLike, positions: ArrayLike, rotations: ArrayLik
 def _move_tables(
     table: NDArray[np.float64],
     positions: NDArray[np.float64],
-    matrices: NDArray[np.float64],
+    rotations: NDArray[np.float64],
     out: NDArray[np.float32],
 ) -> None:
     """With R, p the frame and M, c the box: x_box = M (R x + p - c) = (M R) (x - R'(c - p))."""
+    frame = np.empty((3, 3))
     for n in range(positions.shape[0]):
-        frame = matrices[n]
+        x, y, z, w = rotations[n, 0], rotations[n, 1], rotations[n, 2], rotations[n, 3]
+        frame[0, 0], frame[0, 1], frame[0, 2] = (
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - w * z),
+            2.0 * (x * z + w * y),
+        )
+        frame[1, 0], frame[1, 1], frame[1, 2] = (
+            2.0 * (x * y + w * z),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - w * x),
+        )
+        frame[2, 0], frame[2, 1], frame[2, 2] = (
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        )
         for b in range(table.shape[0]):
             row = table[b]
             x, y, z = row[0] - positions[n, 0], row[1] - positions[n, 1], row[2] - positions[n, 2]
