@@ -2,7 +2,7 @@
 
 import dataclasses
 import json
-import math
+import sys
 import types
 from collections.abc import Callable
 from functools import cache
@@ -77,6 +77,8 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     return value
 
+
+_LARGEST = sys.float_info.max  # also of whole numbers, which Python reads at any length
 
 Reader = Callable[[Any, str], Any]
 
@@ -163,7 +165,7 @@ def _tuple_reader(arguments: tuple[Any, ...]) -> Reader:
 
 
 def _number(value: Any, place: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
         _fail(place, value, "a finite number")
     return float(value)
 

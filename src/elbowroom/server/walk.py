@@ -7,9 +7,11 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.world.scene import Scene
 
+_MOTION = RootMotionSettings()
 _BACK_AT_START = 1.0  # metres: so near to the start the next crossing counts again
 
 
@@ -20,7 +22,7 @@ class WalkSettings:
     planner: str = "figure6"
     queue_size: int = 5
     assist: bool = True
-    walk_speed: float = 1.2  # m/s at forward = 1
+    walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it
 
 
 class Walk:
@@ -79,7 +81,7 @@ class Walk:
     def step(self, command: Command, dt: float) -> float | None:
         """Go on by `dt` seconds; the seconds that the crossing took if the finish was passed just now."""
         was_stuck = self.frame.stuck
-        self.frame = self._controller.step(self._scaled(command), dt)
+        self.frame = self._controller.step(at_speed(command, self.settings.walk_speed), dt)
         if self.frame.stuck and not was_stuck:
             self.stuck_times += 1
             self._stuck_since_start += 1
@@ -106,9 +108,6 @@ class Walk:
         """Times stuck since the avatar was last at the start."""
         return self._stuck_since_start
 
-    def _scaled(self, command: Command) -> Command:
-        return command
-
     def _count_plans(self) -> None:
         report = self.frame.plan
         if report is not None and report.number != self._plan_number:
@@ -131,3 +130,14 @@ class Walk:
         standing = root.forward == 0.0 and root.lateral == 0.0
         if not self._armed or standing:
             self._armed, self._stuck_since_start, self._started = True, 0, self.frame.time
+
+
+def at_speed(command: Command, walk_speed: float) -> Command:
+    """The command that makes the root planner, which has speeds of its own, walk at `walk_speed` m/s or run faster."""
+    factor = walk_speed * (_MOTION.run_speed / _MOTION.walk_speed if command.run else 1.0)
+    speed = max(command.forward, 0.0) * factor
+    share = min(factor / _MOTION.walk_speed, 1.0)  # of what goes back and sideways
+    runs = speed > _MOTION.walk_speed
+    ahead = min(speed / (_MOTION.run_speed if runs else _MOTION.walk_speed), 1.0)
+    forward = ahead if command.forward > 0.0 else command.forward * share
+    return replace(command, forward=forward, strafe=command.strafe * share, run=runs)

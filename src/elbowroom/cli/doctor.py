@@ -1,0 +1,147 @@
+"""`elbowroom doctor`: what is installed, what is compiled, and what a live session costs."""
+
+import os
+import platform
+from dataclasses import asdict
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from elbowroom.cli.output import print_json
+
+EXAMPLES = "Examples:  elbowroom doctor  |  elbowroom doctor --session --seconds 20 --json"
+
+_PACKAGES = ("numpy", "numba", "scipy", "pygltflib", "starlette", "uvicorn", "websockets", "typer", "rich")
+WHEEL_BUDGET_MB = 5.0
+
+
+def doctor(
+    *,
+    session: Annotated[bool, typer.Option("--session", help="Measure the cost of one live session.")] = False,
+    seconds: Annotated[float, typer.Option(min=2.0, max=600.0, help="How long to measure.")] = 10.0,
+    scene: Annotated[str, typer.Option(help="The scene of the measured session.")] = "a",
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
+    from rich.console import Console
+
+    facts = installation_facts()
+    if session:
+        from elbowroom.cli.session_cost import measure_session
+
+        with Console(stderr=True).status(f"Measuring a live session for {seconds:g} s ..."):
+            facts["session"] = asdict(measure_session(seconds, scene))
+    faults = _faults(facts)
+    facts["faults"] = faults
+    if json:
+        print_json(facts)
+    else:
+        typer.echo(_as_text(facts))
+    if faults:
+        raise typer.Exit(1)
+
+
+def installation_facts() -> dict[str, Any]:
+    """What can be said without running anything."""
+    from elbowroom import __version__
+    from elbowroom.server.app import client_folder, client_is_built
+
+    return {
+        "elbowroom": __version__,
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "packages": {name: _version(name) for name in _PACKAGES},
+        "processor": _processor(),
+        "kernels": _kernels(),
+        "client": {"built": client_is_built(), "megabytes": _megabytes(client_folder())},
+        "wheel": _wheel(),
+    }
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _processor() -> dict[str, Any]:
+    import llvmlite.binding
+
+    features = llvmlite.binding.get_host_cpu_features()
+    widths = {"avx512f": 512, "avx2": 256, "avx": 256, "neon": 128, "sse2": 128}
+    bits = next((bits for feature, bits in widths.items() if features.get(feature)), 0)
+    return {"name": llvmlite.binding.get_host_cpu_name(), "cores": os.cpu_count(), "vector_bits": bits}
+
+
+def _kernels() -> dict[str, Any]:
+    """How many kernels there are, how many of them are compiled already, and where they are kept."""
+    import elbowroom.server.session  # noqa: F401  (brings in every module that has kernels)
+    from elbowroom.server.kernel_cache import cache_folders, kept_kernels, kernels
+
+    return {"known": len(kernels()), "kept": len(kept_kernels()), "folders": cache_folders()}
+
+
+def _wheel() -> dict[str, Any] | None:
+    """The newest wheel in `dist/` of this checkout or this folder."""
+    import elbowroom
+
+    places = [Path(elbowroom.__file__).parents[2] / "dist", Path.cwd() / "dist"]
+    wheels = [wheel for place in places for wheel in place.glob("elbowroom-*.whl")]
+    if not wheels:
+        return None
+    newest = max(wheels, key=lambda wheel: wheel.stat().st_mtime)
+    return {"file": newest.name, "megabytes": _megabytes(newest), "budget_megabytes": WHEEL_BUDGET_MB}
+
+
+def _megabytes(path: Path) -> float:
+    files = [path] if path.is_file() else [file for file in path.rglob("*") if file.is_file()]
+    return round(sum(file.stat().st_size for file in files) / 1e6, 2)
+
+
+def _faults(facts: dict[str, Any]) -> list[str]:
+    faults = [f"package {name} is missing" for name, found in facts["packages"].items() if found is None]
+    if not facts["client"]["built"]:
+        from elbowroom.server.app import HOW_TO_BUILD
+
+        faults.append(HOW_TO_BUILD)
+    if facts["wheel"] and facts["wheel"]["megabytes"] > WHEEL_BUDGET_MB:
+        faults.append(f"the wheel is larger than {WHEEL_BUDGET_MB:g} MB")
+    cost = facts.get("session")
+    if cost and cost["cpu_percent"] > cost["cpu_budget_percent"]:
+        faults.append("a live session needs more processor time than its budget")
+    if cost and cost["resident_megabytes"] > cost["resident_budget_megabytes"]:
+        faults.append("a live session needs more memory than its budget")
+    return faults
+
+
+def _as_text(facts: dict[str, Any]) -> str:
+    processor, kernels, client, wheel = facts["processor"], facts["kernels"], facts["client"], facts["wheel"]
+    rows = [
+        ("elbowroom", f"{facts['elbowroom']} on Python {facts['python']}, {facts['system']}"),
+        ("packages", ", ".join(f"{name} {found or 'MISSING'}" for name, found in facts["packages"].items())),
+        ("processor", f"{processor['name']}, {processor['cores']} cores, vectors of {processor['vector_bits']} bits"),
+        ("kernels", f"{kernels['kept']} of {kernels['known']} compiled and kept in {', '.join(kernels['folders'])}"),
+        ("page", f"built, {client['megabytes']} MB" if client["built"] else "not built"),
+        (
+            "wheel",
+            f"{wheel['file']}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})" if wheel else "none in dist/",
+        ),
+        *_session_rows(facts.get("session")),
+        *(("fault", fault) for fault in facts["faults"]),
+    ]
+    return "\n".join(f"{name:<10} {text}" for name, text in rows)
+
+
+def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
+    if cost is None:
+        return []
+    cpu = f"{cost['cpu_percent']:.1f} % of one core (budget {cost['cpu_budget_percent']:g})"
+    memory = f"{cost['resident_megabytes']:.0f} MB (budget {cost['resident_budget_megabytes']:g})"
+    rate = f"{cost['frames_per_second']:.1f} frames/s, computing one takes {cost['frame_ms_p50']:.2f} ms"
+    return [
+        ("session", f"{cpu}, {memory}"),
+        ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),
+    ]

@@ -1,0 +1,91 @@
+"""`elbowroom play`: the page, and the server behind it."""
+
+import contextlib
+import logging
+import os
+import sys
+import threading
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    import socket
+
+    from rich.console import Console
+
+    from elbowroom.server.library import Library
+
+EXAMPLES = "Examples:  elbowroom play --scene d  |  elbowroom play --avatar alice.vrm --port 9000 --no-open"
+
+
+def play(
+    *,
+    host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; the next free one if busy, 0: any.")] = 8765,
+    open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
+    scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
+    avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
+    planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
+    queue: Annotated[int, typer.Option(min=3, max=7, help="Size of the key-frame queue, |Q|.")] = 5,
+) -> None:
+    """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
+    from rich.console import Console
+
+    from elbowroom.server.library import Library
+    from elbowroom.server.serving import listen, serve, url_of
+    from elbowroom.server.walk import WalkSettings
+
+    console = Console(stderr=True, highlight=False)
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
+    with contextlib.suppress(KeyboardInterrupt), listen(host, port) as opened:
+        library = Library.open(scene, avatar, WalkSettings(planner=planner, queue_size=queue))
+        warm_up_with_progress(library, console)
+        _tell_port(console, opened, port)
+        _tell_openness(console, opened)
+        serve(library, opened, on_ready=lambda: _ready(url_of(opened), open_page))
+    console.print("Stopped.")
+
+
+def warm_up_with_progress(library: "Library", console: "Console") -> None:
+    """Compile what is not compiled yet, and show what; quick and silent when everything is."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from elbowroom.server.kernel_cache import kernels
+    from elbowroom.server.warmup import warm_up
+
+    columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
+        task = progress.add_task("", total=len(kernels()), visible=False)
+        warm_up(library, lambda name, done: progress.update(task, completed=done, description=name, visible=True))
+
+
+def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None:
+    found = opened.getsockname()[1]
+    if wanted not in (0, found):
+        console.print(f"[yellow]Port {wanted} is busy; using {found} instead.[/yellow]")
+
+
+def _tell_openness(console: "Console", opened: "socket.socket") -> None:
+    from elbowroom.server.guard import is_loopback
+
+    address = opened.getsockname()[0]
+    if not is_loopback(address):
+        console.print(
+            f"[yellow]Warning: listening on {address}. Everyone who can reach this machine over the network can open "
+            "the page, load avatars into this server and use its processor; there is no password.[/yellow]"
+        )
+
+
+def _ready(url: str, open_page: bool) -> None:
+    print(f"Elbowroom is at {url}  (Ctrl-C ends it)", flush=True)
+    if open_page and _has_display():
+        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def _has_display() -> bool:
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
