@@ -8,7 +8,7 @@ import { byId, make, setOptions } from "./dom";
 /** What the user does with the menu. */
 export interface MenuListener {
   configure(change: Omit<Configure, "type">): void;
-  preferences(change: Partial<Preferences>): void;
+  prefer(change: Partial<Preferences>): void;
   overlay(name: OverlayName, on: boolean): void;
   file(file: File): void;
   action(action: "assist" | "pause" | "step" | "slow" | "reset" | "help"): void;
@@ -142,7 +142,7 @@ export class Menu {
     for (const name of ["steering", "quality", "theme"] as const) {
       const select = byId(name, HTMLSelectElement);
       select.value = preferences[name];
-      select.addEventListener("change", () => this.listener.preferences({ [name]: select.value }));
+      select.addEventListener("change", () => this.listener.prefer({ [name]: select.value }));
     }
     this.showOverlays(preferences.overlays);
   }

@@ -1,0 +1,254 @@
+/** The page: brings session, picture, controls and panels together, a frame at a time. */
+
+import { uploadAvatar } from "./avatar/upload";
+import { FrameStats } from "./frame_stats";
+import type { AvatarMessage, Catalog, Crossed, Loading, Notice, Plan, SceneMessage, Settings, Status } from "./generated/messages";
+import { Controls } from "./input/controls";
+import type { Action } from "./input/keyboard";
+import { PointerInput } from "./input/pointer";
+import type { ConnectionState } from "./net/connection";
+import { sessionUrl } from "./net/endpoints";
+import type { ShownPose } from "./net/pose_timeline";
+import { Session, type SessionListener } from "./net/session";
+import { OVERLAYS, type OverlayName } from "./overlays/overlay_names";
+import { Picture } from "./picture";
+import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
+import { byId } from "./ui/dom";
+import { listenForFiles } from "./ui/file_drop";
+import { Help } from "./ui/help";
+import { Hud } from "./ui/hud";
+import { Menu, type MenuListener } from "./ui/menu";
+import { Notices } from "./ui/notices";
+import { StatusLine } from "./ui/status_line";
+import { Veil } from "./ui/veil";
+
+const LONGEST_FRAME = 0.1;
+const SLOW_MOTION = 0.25;
+const DEFAULT_OVERLAYS: readonly OverlayName[] = ["path", "ghosts", "nearest"];
+
+export class App implements SessionListener, MenuListener {
+  readonly preferences: Preferences;
+  readonly session: Session;
+  readonly picture: Picture;
+  readonly controls: Controls;
+  readonly stats = new FrameStats();
+  pose: ShownPose | null = null;
+  sceneMessage: SceneMessage | null = null;
+  avatarTitle = "";
+  framesDrawn = 0;
+  private bodyIsAvatar = false;
+  private readonly menu: Menu;
+  private readonly pointer: PointerInput;
+  private readonly hud = new Hud();
+  private readonly help = new Help();
+  private readonly notices = new Notices();
+  private readonly statusLine = new StatusLine();
+  private readonly veil = new Veil();
+  private readonly view = byId("view", HTMLElement);
+  private readonly calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+  private readonly dark = window.matchMedia("(prefers-color-scheme: dark)");
+  private lastOverlays: readonly OverlayName[] = DEFAULT_OVERLAYS;
+  private lastFrame = performance.now() / 1000;
+
+  constructor() {
+    const query = new URLSearchParams(location.search);
+    const wishes = readWishes(query);
+    this.preferences = readPreferences(query);
+    const label = byId("nearest-label", HTMLElement);
+    this.picture = new Picture(this.view, label, this.preferences.quality, () => this.calm.matches);
+    this.applyTheme();
+    this.dark.addEventListener("change", () => this.applyTheme());
+    this.menu = new Menu(this, this.preferences);
+    this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement));
+    this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
+    listenForFiles((file) => this.file(file));
+    document.body.classList.toggle("bare", !wishes.showUi);
+    this.session = new Session(sessionUrl(), this, wishes);
+    this.subscribe();
+    requestAnimationFrame(() => this.frame());
+  }
+
+  // What the server says.
+
+  connection(state: ConnectionState): void {
+    this.veil.connection(state);
+    if (state === "open") this.controls.repeat();
+  }
+
+  catalog(catalog: Catalog): void {
+    this.menu.showCatalog(catalog);
+  }
+
+  settings(settings: Settings): void {
+    this.menu.showSettings(settings);
+    this.subscribe();
+  }
+
+  scene(scene: SceneMessage): void {
+    this.sceneMessage = scene;
+    this.picture.showScene(scene);
+    this.statusLine.restart();
+    byId("place", HTMLElement).textContent = scene.title;
+    document.title = `${scene.title} · Elbowroom`;
+  }
+
+  avatar(message: AvatarMessage): void {
+    this.bodyIsAvatar = message.url === null;
+    this.menu.addAvatar(message.id, message.title);
+    this.subscribe();
+    this.veil.download(true);
+    this.picture
+      .showAvatar(message)
+      .then(() => (this.avatarTitle = message.title))
+      .catch((error: unknown) => this.notices.show("error", `${message.title} cannot be shown: ${words(error)}`))
+      .finally(() => this.veil.download(false));
+  }
+
+  status(status: Status): void {
+    const { stats } = this;
+    const page = {
+      fps: stats.fps, frameMsP50: stats.percentileMs(0.5), frameMsP95: stats.percentileMs(0.95),
+      roundTripMs: this.session.roundTripMs, clearance: this.pose?.clearance ?? Infinity,
+    };
+    this.hud.update(status, page, this.preferences.overlays.has("plan"));
+  }
+
+  plan(plan: Plan): void {
+    this.picture.setPlan(plan);
+  }
+
+  loading(loading: Loading): void {
+    this.veil.loading(loading);
+  }
+
+  crossed(crossed: Crossed): void {
+    this.statusLine.crossed(crossed, performance.now() / 1000);
+    this.picture.world.gate.flash();
+  }
+
+  notice(level: Notice["level"], message: string): void {
+    this.notices.show(level, message);
+  }
+
+  // What the user does.
+
+  configure(change: Parameters<Session["configure"]>[0]): void {
+    this.session.configure(change);
+  }
+
+  prefer(change: Partial<Preferences>): void {
+    Object.assign(this.preferences, change);
+    for (const name of ["steering", "quality", "theme"] as const) this.menu.showPreference(name, this.preferences[name]);
+    if (change.theme) this.applyTheme();
+    if (change.quality) this.picture.setQuality(change.quality);
+    storePreferences(this.preferences);
+  }
+
+  overlay(name: OverlayName, on: boolean): void {
+    if (on) this.preferences.overlays.add(name);
+    else this.preferences.overlays.delete(name);
+    this.overlaysChanged();
+  }
+
+  file(file: File): void {
+    this.veil.upload(file.name);
+    uploadAvatar(file)
+      .then(({ id, title }) => {
+        this.menu.addAvatar(id, title);
+        this.session.configure({ avatar: id });
+      })
+      .catch((error: unknown) => this.notices.show("error", words(error)))
+      .finally(() => this.veil.upload(null));
+  }
+
+  action(action: Action): void {
+    this.actions[action]();
+  }
+
+  private readonly actions: Readonly<Record<Action, () => void>> = {
+    reset: () => this.session.send({ type: "reset" }),
+    pause: () => this.session.send({ type: "clock", paused: !this.session.settings?.paused }),
+    step: () => this.session.send({ type: "clock", steps: 1 }),
+    slow: () => this.session.send({ type: "clock", speed: (this.session.settings?.speed ?? 1) < 1 ? 1 : SLOW_MOTION }),
+    assist: () => this.session.configure({ assist: !(this.session.settings?.assist ?? true) }),
+    cameraMode: () => this.prefer({ steering: this.preferences.steering === "camera" ? "tank" : "camera" }),
+    recenter: () => this.picture.camera.recenter(),
+    pointerLock: () => this.pointer.toggleLock(),
+    overlays: () => this.toggleAllOverlays(),
+    hideUi: () => document.body.classList.toggle("bare"),
+    menu: () => this.menu.setOpen(!this.menu.isOpen),
+    help: () => this.help.toggle(),
+    escape: () => {
+      document.body.classList.remove("bare");
+      this.view.focus();
+    },
+  };
+
+  private controlsHost(): ConstructorParameters<typeof Controls>[0] {
+    return {
+      send: (input) => this.session.send(input),
+      action: (action) => this.action(action),
+      look: (yaw, pitch) => this.picture.camera.turn(yaw, pitch),
+      cameraHeading: () => this.picture.camera.heading,
+      steering: () => this.preferences.steering,
+    };
+  }
+
+  private toggleAllOverlays(): void {
+    const { overlays } = this.preferences;
+    const shown = OVERLAYS.filter((name) => overlays.has(name));
+    if (shown.length > 0) this.lastOverlays = shown;
+    overlays.clear();
+    if (shown.length === 0) for (const name of this.lastOverlays) overlays.add(name);
+    this.overlaysChanged();
+  }
+
+  private overlaysChanged(): void {
+    this.menu.showOverlays(this.preferences.overlays);
+    storePreferences(this.preferences);
+    this.subscribe();
+  }
+
+  /** Asks only for the data that is drawn. */
+  private subscribe(): void {
+    const { overlays } = this.preferences;
+    const assist = this.session.settings?.assist ?? true;
+    this.session.subscribe({
+      capsules: !assist || this.bodyIsAvatar || overlays.has("capsules") || overlays.has("nearest"),
+      plan: overlays.has("path") || overlays.has("ghosts") || overlays.has("goal"),
+    });
+  }
+
+  private applyTheme(): void {
+    const { theme } = this.preferences;
+    const shown = theme === "auto" ? (this.dark.matches ? "dark" : "light") : theme;
+    document.documentElement.dataset["theme"] = shown;
+    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#263142" : "#eee9df");
+    this.picture.setTheme(shown);
+  }
+
+  private frame(): void {
+    requestAnimationFrame(() => this.frame());
+    const now = performance.now() / 1000;
+    const elapsed = now - this.lastFrame;
+    this.lastFrame = now;
+    this.stats.add(elapsed);
+    this.picture.measure(elapsed);
+    const dt = Math.min(elapsed, LONGEST_FRAME);
+    this.controls.update(dt);
+    this.pose = this.session.poseAt(now) ?? this.pose;
+    const { intent } = this.controls;
+    const { settings, status } = this.session;
+    if (intent.forward !== 0 || intent.right !== 0 || intent.strafe !== 0) this.statusLine.moved();
+    this.statusLine.update(this.pose, status, settings, now);
+    this.picture.draw(this.pose, {
+      status, intent, steering: this.preferences.steering, shown: this.preferences.overlays,
+      markTouching: settings?.assist === false,
+    }, dt);
+    this.framesDrawn++;
+  }
+}
+
+function words(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

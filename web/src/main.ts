@@ -1,0 +1,20 @@
+/** Starts the page, or says in one sentence why it cannot start. */
+
+import { App } from "./app";
+import { exposeState } from "./probe";
+
+try {
+  exposeState(new App());
+} catch (error) {
+  const message = document.createElement("p");
+  message.className = "fatal";
+  message.textContent = webglWorks()
+    ? `The page could not start: ${error instanceof Error ? error.message : String(error)}`
+    : "This browser offers no WebGL 2, which the picture needs. Switch on hardware acceleration or try another browser.";
+  document.body.append(message);
+  console.error(error);
+}
+
+function webglWorks(): boolean {
+  return document.createElement("canvas").getContext("webgl2") !== null;
+}

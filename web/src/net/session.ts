@@ -1,0 +1,147 @@
+/** The live session as the page sees it: the server's latest words, the poses, and what to say after a reconnect. */
+
+import {
+  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type Configure, type Crossed, type Loading,
+  type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
+} from "../generated/messages";
+import type { SessionWishes } from "../preferences";
+import { Connection, type ConnectionState } from "./connection";
+import { PoseTimeline, type ShownPose } from "./pose_timeline";
+import { ServerClock } from "./server_clock";
+
+/** Who is told what the server says. */
+export interface SessionListener {
+  connection(state: ConnectionState): void;
+  catalog(catalog: Catalog): void;
+  settings(settings: Settings): void;
+  scene(scene: SceneMessage): void;
+  avatar(avatar: AvatarMessage): void;
+  status(status: Status): void;
+  plan(plan: Plan): void;
+  loading(loading: Loading): void;
+  crossed(crossed: Crossed): void;
+  notice(level: Notice["level"], message: string): void;
+}
+
+/** Extra data that the page wants in the stream. */
+export interface Subscriptions {
+  readonly capsules: boolean;
+  readonly plan: boolean;
+}
+
+export class Session {
+  state: ConnectionState = "connecting";
+  settings: Settings | null = null;
+  status: Status | null = null;
+  framesReceived = 0;
+  private readonly timeline = new PoseTimeline();
+  private readonly clock = new ServerClock();
+  private readonly connection: Connection;
+  private subscriptions: Subscriptions = { capsules: false, plan: false };
+  private choices: Omit<Configure, "type">;
+
+  constructor(url: string, private readonly listener: SessionListener, wishes: SessionWishes) {
+    const { scene, avatar, planner, queueSize, assist } = wishes;
+    this.choices = { scene, avatar, planner, queueSize, assist };
+    this.connection = new Connection(url, {
+      pose: (frame) => this.receivePose(frame),
+      message: (message) => this.receive(message),
+      state: (state) => this.changeState(state),
+    });
+  }
+
+  get roundTripMs(): number {
+    return this.connection.roundTripMs;
+  }
+
+  /** Seconds by which the picture stays behind the newest pose. */
+  get delay(): number {
+    return this.clock.delay;
+  }
+
+  get newestPose(): PoseFrame | null {
+    return this.timeline.newest;
+  }
+
+  send(message: ClientMessage): void {
+    this.connection.send(message);
+  }
+
+  /** Changes settings, and keeps them for the next connection. */
+  configure(change: Omit<Configure, "type">): void {
+    this.choices = { ...this.choices, ...change };
+    this.send({ type: "configure", ...change });
+  }
+
+  subscribe(wanted: Subscriptions): void {
+    if (wanted.capsules === this.subscriptions.capsules && wanted.plan === this.subscriptions.plan) return;
+    this.subscriptions = wanted;
+    this.send({ type: "overlays", ...wanted });
+  }
+
+  /** The pose to show now (`localTime` in seconds); null before the first. */
+  poseAt(localTime: number): ShownPose | null {
+    return this.timeline.sample(this.clock.now(localTime));
+  }
+
+  private changeState(state: ConnectionState): void {
+    this.state = state;
+    if (state === "lost") {
+      this.timeline.clear();
+      this.clock.reset();
+    }
+    this.listener.connection(state);
+  }
+
+  private receivePose(frame: PoseFrame): void {
+    this.framesReceived++;
+    this.clock.arrived(frame.time, performance.now() / 1000);
+    this.timeline.push(frame);
+  }
+
+  private greet(protocol: number): void {
+    if (protocol !== PROTOCOL) {
+      this.listener.notice("error", "This page and its server are of different versions: reload the page.");
+    }
+    if (Object.values(this.choices).some((choice) => choice !== null)) this.send({ type: "configure", ...this.choices });
+    this.send({ type: "overlays", ...this.subscriptions });
+  }
+
+  private receive(message: ServerMessage): void {
+    const { listener } = this;
+    switch (message.type) {
+      case "hello":
+        listener.catalog(message.catalog);
+        this.greet(message.protocol);
+        break;
+      case "settings":
+        this.settings = message;
+        listener.settings(message);
+        break;
+      case "status":
+        this.status = message;
+        listener.status(message);
+        break;
+      case "scene":
+        listener.scene(message);
+        break;
+      case "avatar":
+        listener.avatar(message);
+        break;
+      case "plan":
+        listener.plan(message);
+        break;
+      case "loading":
+        listener.loading(message);
+        break;
+      case "crossed":
+        listener.crossed(message);
+        break;
+      case "notice":
+        listener.notice(message.level, message.message);
+        break;
+      case "pong":
+        break;
+    }
+  }
+}

@@ -1,0 +1,130 @@
+/** Everything that is drawn: stage, scene, avatar, overlays, and the camera that sees them. */
+
+import { AvatarView } from "./avatar/avatar_view";
+import { ThirdPersonCamera, type Followed } from "./camera/third_person";
+import type { AvatarMessage, Plan, SceneMessage, Status } from "./generated/messages";
+import type { Intent, SteeringMode } from "./input/steering";
+import type { ShownPose } from "./net/pose_timeline";
+import { OverlayDrawing, type Moment } from "./overlays/overlays";
+import type { Theme } from "./stage/palette";
+import { cheaper, fixedQuality, QualityGovernor, startingQuality, type QualityName } from "./stage/quality";
+import { Stage } from "./stage/stage";
+import { World } from "./stage/world";
+
+const EYE_BELOW_HEAD = 0.06;
+const DEFAULT_EYE = 1.45;
+const JUMP = 1;
+
+/** What the picture needs to know besides the pose. */
+export interface Scenery extends Omit<Moment, "pose" | "bodyIsAvatar"> {
+  readonly status: Status | null;
+  readonly intent: Intent;
+  readonly steering: SteeringMode;
+}
+
+export class Picture {
+  readonly stage: Stage;
+  readonly world = new World();
+  readonly avatar = new AvatarView();
+  readonly camera: ThirdPersonCamera;
+  readonly overlays: OverlayDrawing;
+  private readonly governor = new QualityGovernor();
+  private automatic: boolean;
+  private message: AvatarMessage | null = null;
+  private loads = 0;
+  private epoch = -1;
+  private last: readonly [number, number] = [Infinity, Infinity];
+
+  constructor(
+    private readonly host: HTMLElement, label: HTMLElement, quality: QualityName, private readonly calm: () => boolean,
+  ) {
+    this.automatic = quality === "auto";
+    this.stage = new Stage(host, fixedQuality(quality === "auto" ? "high" : quality, devicePixelRatio));
+    if (this.automatic) this.setQuality("auto");
+    this.camera = new ThirdPersonCamera(calm);
+    this.overlays = new OverlayDrawing(() => this.stage.palette, label);
+    this.stage.scene.add(this.world.group, this.avatar.group, this.overlays.group);
+  }
+
+  setQuality(name: QualityName): void {
+    this.automatic = name === "auto";
+    const quality = this.automatic
+      ? startingQuality(this.stage.rendererName, devicePixelRatio)
+      : fixedQuality(name as Exclude<QualityName, "auto">, devicePixelRatio);
+    this.stage.setQuality(quality);
+  }
+
+  setTheme(theme: Theme): void {
+    this.stage.paint(theme);
+    this.world.repaint(this.stage.palette);
+    this.overlays.repaint();
+  }
+
+  showScene(scene: SceneMessage): void {
+    this.world.show(scene, this.stage.palette);
+    this.overlays.setScene(this.world.boxes, scene.boxes.map((box) => box.name));
+    this.last = [Infinity, Infinity];
+  }
+
+  /** Fetches the avatar's file and shows it; the newest call wins. @throws Error when the file cannot be shown */
+  async showAvatar(message: AvatarMessage): Promise<void> {
+    const load = ++this.loads;
+    this.message = message;
+    this.overlays.setBody(message.capsules);
+    if (message.url === null) {
+      this.avatar.show(message, null, null);
+      return;
+    }
+    const { loadAvatarFile, disposeAvatarFile } = await import("./avatar/avatar_file");
+    const file = await loadAvatarFile(new URL(message.url, document.baseURI).href);
+    if (load !== this.loads) disposeAvatarFile(file);
+    else this.avatar.show(message, file, disposeAvatarFile);
+  }
+
+  setPlan(plan: Plan | null): void {
+    this.overlays.setPlan(plan);
+  }
+
+  /** Draws one frame; `pose` is null before the first has come. */
+  draw(pose: ShownPose | null, scenery: Scenery, dt: number): void {
+    if (pose) this.place(pose, scenery, dt);
+    this.world.gate.update(dt);
+    const { camera } = this.stage;
+    camera.position.set(...this.camera.position);
+    camera.lookAt(...this.camera.target);
+    camera.updateMatrixWorld();
+    this.stage.render();
+    this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
+  }
+
+  /** Notes how long a frame took; on `auto`, gives up some quality where that is too long. */
+  measure(seconds: number): void {
+    if (!this.governor.frame(seconds) || !this.automatic) return;
+    const next = cheaper(this.stage.currentQuality);
+    if (next) this.stage.setQuality(next);
+  }
+
+  private place(pose: ShownPose, scenery: Scenery, dt: number): void {
+    if (pose.avatarRevision === this.avatar.revision) this.avatar.pose(pose);
+    this.avatar.update(dt, this.calm());
+    const followed = this.followed(pose, scenery);
+    const jumped = Math.hypot(pose.x - this.last[0], pose.z - this.last[1]) > JUMP;
+    if (pose.epoch !== this.epoch && jumped) this.camera.snap(followed);
+    this.epoch = pose.epoch;
+    this.last = [pose.x, pose.z];
+    this.camera.update(followed, this.world.boxes, dt);
+    this.avatar.fade(this.camera.avatarOpacity);
+    this.stage.follow(pose.x, pose.z);
+    this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.url === null });
+  }
+
+  private followed(pose: ShownPose, { intent, steering }: Scenery): Followed {
+    const eye = this.message ? this.message.height - EYE_BELOW_HEAD : DEFAULT_EYE;
+    const moving = intent.forward !== 0 || intent.right !== 0 || intent.strafe !== 0;
+    return {
+      x: pose.x, z: pose.z, heading: pose.heading, eye: pose.y + eye,
+      sideways: steering === "camera" && intent.strafe === 0 ? intent.right : 0,
+      trail: steering === "tank" && moving,
+    };
+  }
+}

@@ -1,0 +1,85 @@
+/** The page's state for tests and the curious, as `window.__app`. */
+
+import type { App } from "./app";
+import { POSE_FLAGS } from "./generated/messages";
+
+/** A plain snapshot; every read takes a new one. */
+export interface AppState {
+  readonly connected: boolean;
+  readonly connection: string;
+  readonly framesReceived: number;
+  readonly framesDrawn: number;
+  readonly fps: number;
+  readonly root: { readonly x: number; readonly z: number; readonly heading: number } | null;
+  readonly simTime: number;
+  readonly acknowledged: number;
+  readonly sent: number;
+  readonly scene: string | null;
+  readonly avatar: string | null;
+  readonly avatarTitle: string;
+  readonly avatarLoaded: boolean;
+  readonly settings: unknown;
+  readonly crossed: number;
+  readonly stuck: number;
+  readonly stuckNow: boolean;
+  readonly touching: boolean;
+  readonly touchingParts: readonly string[];
+  readonly finished: boolean;
+  readonly paused: boolean;
+  readonly clearance: number;
+  readonly camera: readonly number[];
+  readonly cameraHeading: number;
+  readonly heldKeys: number;
+  readonly overlays: readonly string[];
+  readonly quality: unknown;
+  readonly delayMs: number;
+  readonly roundTripMs: number;
+}
+
+declare global {
+  interface Window {
+    readonly __app: AppState;
+  }
+}
+
+/** Makes `window.__app`. */
+export function exposeState(app: App): void {
+  Object.defineProperty(window, "__app", { get: () => snapshot(app) });
+}
+
+function snapshot(app: App): AppState {
+  const { session, picture, pose, controls } = app;
+  const { settings, status } = session;
+  const flag = (bit: number) => ((pose?.flags ?? 0) & bit) !== 0;
+  return {
+    connected: session.state === "open",
+    connection: session.state,
+    framesReceived: session.framesReceived,
+    framesDrawn: app.framesDrawn,
+    fps: app.stats.fps,
+    root: pose && { x: pose.x, z: pose.z, heading: pose.heading },
+    simTime: pose?.simTime ?? 0,
+    acknowledged: session.newestPose?.acknowledged ?? 0,
+    sent: controls.lastSequence,
+    scene: app.sceneMessage?.name ?? null,
+    avatar: settings?.avatar ?? null,
+    avatarTitle: app.avatarTitle,
+    avatarLoaded: picture.avatar.loaded,
+    settings,
+    crossed: status?.crossed ?? 0,
+    stuck: status?.stuckTimes ?? 0,
+    stuckNow: flag(POSE_FLAGS.stuck),
+    touching: flag(POSE_FLAGS.touching),
+    touchingParts: picture.overlays.touching,
+    finished: flag(POSE_FLAGS.finished),
+    paused: flag(POSE_FLAGS.paused),
+    clearance: pose?.clearance ?? Infinity,
+    camera: [...picture.camera.position],
+    cameraHeading: picture.camera.heading,
+    heldKeys: controls.heldKeys,
+    overlays: [...app.preferences.overlays],
+    quality: picture.stage.currentQuality,
+    delayMs: 1000 * session.delay,
+    roundTripMs: session.roundTripMs,
+  };
+}

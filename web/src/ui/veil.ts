@@ -1,0 +1,52 @@
+/** One line in the middle of the page while something takes a while or the line to the server is down. */
+
+import type { Loading } from "../generated/messages";
+import type { ConnectionState } from "../net/connection";
+import { byId } from "./dom";
+
+const PATIENCE_MS = 180;
+const WHAT: Readonly<Record<Loading["what"], string>> = {
+  scene: "Preparing the scene", avatar: "Reading the avatar", planner: "Building the planner",
+};
+
+export class Veil {
+  private readonly element = byId("veil", HTMLElement);
+  private readonly text = this.element.firstElementChild as HTMLElement;
+  private readonly reasons = new Map<string, string>();
+  private timer = 0;
+
+  connection(state: ConnectionState): void {
+    if (state === "lost") {
+      for (const what of Object.keys(WHAT)) this.reasons.delete(what);
+      this.set("connection", "The server is gone; trying again");
+    } else this.set("connection", state === "connecting" ? "Connecting" : null);
+  }
+
+  loading({ what, active }: Loading): void {
+    this.set(what, active ? WHAT[what] : null);
+  }
+
+  /** A file on its way to the server; null when it is through. */
+  upload(name: string | null): void {
+    this.set("upload", name === null ? null : `Sending ${name}`);
+  }
+
+  /** The avatar's own file on its way to the page. */
+  download(active: boolean): void {
+    this.set("download", active ? "Loading the avatar" : null);
+  }
+
+  private set(reason: string, text: string | null): void {
+    if (text === null) this.reasons.delete(reason);
+    else this.reasons.set(reason, text);
+    window.clearTimeout(this.timer);
+    // What is over in a moment does not flash.
+    this.timer = window.setTimeout(() => this.show(), this.element.hidden ? PATIENCE_MS : 0);
+  }
+
+  private show(): void {
+    const [text] = this.reasons.values();
+    this.element.hidden = text === undefined;
+    if (text !== undefined) this.text.textContent = `${text} …`;
+  }
+}
