@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom import __version__
-from elbowroom.cli import replay, walk
+from elbowroom.cli import doctor, play, replay, walk
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -82,5 +82,7 @@ def _one_line(error: Any) -> str:
     return f"{message} (see {context.command_path} --help)" if context is not None else message
 
 
+app.command("play", epilog=play.EXAMPLES)(play.play)
 app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
 app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
+app.command("doctor", epilog=doctor.EXAMPLES)(doctor.doctor)
