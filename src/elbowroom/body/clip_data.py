@@ -1,9 +1,9 @@
 """Clips as JSON: how they are written and how they are checked.
 
 A file holds `{"part": "waist" | "arm", "clips": [clip, ...]}`. A clip is
-`{"name": str, "source": str, "loop": bool, "keys": [[time, angle, ...], ...]}`: times increase from 0, angles are degrees
-in the order of the group's degrees of freedom (`body/dof.py`). Arm clips are written once, for both sides: equal values
-make mirrored gestures. A loop's last key repeats its first angles.
+`{"name": str, "source": str, "loop": bool, "keys": [[time, angle, ...], ...]}`: times increase from 0, angles are
+degrees in the order of the group's degrees of freedom (`body/dof.py`). Arm clips are written once, for both sides:
+equal values make mirrored gestures. A loop's last key repeats its first angles.
 """
 
 import json

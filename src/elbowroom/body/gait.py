@@ -168,7 +168,7 @@ def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, ou
         sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
         x -= min(max(sag, -0.1 * scale), 0.1 * scale) * bump
         lift = _LIFT * scale * effort * bump
-        fade = (2.0 * w - 1.0) ** 2
+        fade = 1.0 - bump
     if ahead >= 0.0:
         pitch = ahead * _pitch_ahead(u, duty)
     else:

@@ -1,0 +1,163 @@
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body import kinematics
+from elbowroom.body.gait import foot_poses, phase_rate, stride_length
+from elbowroom.body.kinematics import BodyModel, body_model
+from elbowroom.body.legs import leg_rotations
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.geometry import quaternion
+from naive_pose import joint_frames, segment_gap
+
+Floats = NDArray[np.float64]
+
+# Forward, lateral, turn.
+MOTIONS = [
+    (0.3, 0.0, 0.0),
+    (0.8, 0.0, 0.0),
+    (1.2, 0.0, 0.0),
+    (1.6, 0.0, 0.0),
+    (2.5, 0.0, 0.0),
+    (1.2, 0.0, 0.8),
+    (-0.6, 0.0, 0.0),
+    (0.0, 0.6, 0.0),
+    (0.0, -0.8, 0.0),
+    (0.0, 0.0, 1.5),
+    (0.8, 0.5, -0.5),
+]
+HEIGHTS = [1.3, 1.72, 2.0]
+
+
+def steady_walk(motion: tuple[float, float, float], strides: float, n: int) -> Floats:
+    """Root states (n, 7) of a constant motion, integrated exactly."""
+    forward, lateral, turn = motion
+    rate = phase_rate(*motion)
+    t = np.linspace(0.0, strides / rate, n)
+    heading = turn * t
+    along = t if turn == 0.0 else np.sin(heading) / turn
+    across = 0.0 * t if turn == 0.0 else (1.0 - np.cos(heading)) / turn
+    x, z = forward * across + lateral * along, forward * along - lateral * across
+    columns = [x, z, heading, forward + 0 * t, lateral + 0 * t, turn + 0 * t, rate * t]
+    return np.stack(columns, axis=-1)
+
+
+def legs(model: BodyModel, roots: Floats) -> Floats:
+    feet, drops = foot_poses(model.gait.legs, model.gait.scale, roots)
+    return leg_rotations(model.leg_rest, feet, drops)
+
+
+def sole_points(height: float, roots: Floats) -> tuple[BodyModel, Floats]:
+    """World places (n, 2, 3, 3) of heel, ball and toe tip of both feet, by forward kinematics."""
+    humanoid = proportional_humanoid(height)
+    model, skeleton = body_model(humanoid), humanoid.skeleton
+    out = np.empty((len(roots), 2, 3, 3))
+    for n, root in enumerate(roots):
+        local = kinematics.local_rotations(model, np.zeros(13), root)
+        places, turns = joint_frames(skeleton, local, kinematics.hips_position(model, root), root)
+        for i, side in enumerate(("left", "right")):
+            foot, toes = skeleton.index(f"{side}Foot"), skeleton.index(f"{side}Toes")
+            ankle = float(skeleton.positions[foot, 1])
+            ball, heel = model.gait.legs[i, 6:8]
+            out[n, i, 0] = places[foot] + quaternion.rotate(turns[foot], [0.0, -ankle, -heel])
+            out[n, i, 1] = places[foot] + quaternion.rotate(turns[foot], [0.0, -ankle, ball])
+            out[n, i, 2] = out[n, i, 1] + quaternion.rotate(turns[toes], [0.0, 0.0, 0.035 * height])
+    return model, out
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("height", HEIGHTS)
+def test_the_standing_foot_stands_still_on_the_ground(motion: tuple[float, float, float], height: float) -> None:
+    roots = steady_walk(motion, 2.0, 240)
+    model, soles = sole_points(height, roots)
+    feet, _ = foot_poses(model.gait.legs, model.gait.scale, roots)
+    assert soles[..., 1].min() > -0.01
+    cycle = np.mod(roots[:, 6, None] + np.array([0.0, 0.5]), 1.0)
+    stride = np.hypot(motion[0], motion[1]) / phase_rate(*motion) / model.gait.legs[0, 8:10].sum()
+    on_ground = 0.93 * min(0.62, 1.02 / max(stride, 0.1))  # at least this part of the cycle
+    for side in range(2):
+        starts = np.flatnonzero(np.diff(cycle[:, side]) < 0.0) + 1
+        for start in starts:
+            stance = start + np.flatnonzero(cycle[start : start + 100, side] < on_ground)
+            pitch = feet[stance, side, 4]
+            for point, carries in ((0, pitch <= 0.0), (1, pitch >= 0.0)):
+                held = soles[stance[carries], side, point]
+                if len(held):
+                    assert np.ptp(held[:, [0, 2]], axis=0).max() < 0.01
+                    assert abs(held[:, 1]).max() < 0.01
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_legs_do_not_pass_through_each_other(motion: tuple[float, float, float]) -> None:
+    humanoid = proportional_humanoid()
+    model, names, radii = body_model(humanoid), humanoid.capsules.names, humanoid.capsules.radii
+    segments = kinematics.leg_capsules(model, steady_walk(motion, 1.0, 24)).astype(np.float64)
+    for n in range(segments.shape[2]):
+        for a in ("Thigh", "Shin", "Foot"):
+            for b in ("Thigh", "Shin", "Foot"):
+                i, j = names.index("left" + a), names.index("right" + b)
+                gap = segment_gap(segments[i, :, n], segments[j, :, n]) - radii[i] - radii[j]
+                assert gap > (-0.02 if a == b == "Thigh" else -0.005), (a, b, n)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_joints_move_without_jumps_and_knees_bend_forward(motion: tuple[float, float, float]) -> None:
+    model = body_model(proportional_humanoid())
+    rotations = legs(model, steady_walk(motion, 1.0, 1001))
+    steps = quaternion.to_rotation_vector(quaternion.multiply(quaternion.conjugate(rotations[:-1]), rotations[1:]))
+    assert np.linalg.norm(steps, axis=-1).max() < np.deg2rad(1.5)
+    knees = quaternion.to_rotation_vector(rotations[:, :, 1])
+    assert knees[..., 0].min() > -1e-6
+    assert knees[..., 0].max() < np.deg2rad(100.0)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.2, 0.4, 0.6, 0.8])
+def test_joints_follow_the_speed_without_jumps(phase: float) -> None:
+    model = body_model(proportional_humanoid())
+    for column, low, high in ((3, -1.0, 2.5), (4, -0.8, 0.8), (5, -2.0, 2.0)):
+        roots = np.zeros((801, 7))
+        roots[:, column], roots[:, 6] = np.linspace(low, high, 801), phase
+        rotations = legs(model, roots)
+        steps = quaternion.to_rotation_vector(quaternion.multiply(quaternion.conjugate(rotations[:-1]), rotations[1:]))
+        assert np.linalg.norm(steps, axis=-1).max() < np.deg2rad(4.0)
+
+
+def test_a_resting_body_stands_as_in_its_file_at_any_phase() -> None:
+    humanoid = proportional_humanoid()
+    model = body_model(humanoid)
+    roots = np.zeros((50, 7))
+    roots[:, 6] = np.linspace(-2.0, 3.0, 50)
+    rotations = legs(model, roots)
+    assert np.linalg.norm(quaternion.to_rotation_vector(rotations), axis=-1).max() < np.deg2rad(8.0)
+    _, drops = foot_poses(model.gait.legs, model.gait.scale, roots)
+    assert 0.0 <= drops.min() <= drops.max() < 0.005
+    assert phase_rate(0.0, 0.0, 0.0) == 0.0
+
+
+@pytest.mark.parametrize("motion", [(1.2, 0.0, 0.0), (-0.7, 0.0, 0.0), (2.2, 0.0, 0.0)])
+def test_half_a_cycle_later_left_and_right_change_places(motion: tuple[float, float, float]) -> None:
+    model = body_model(proportional_humanoid())
+    roots = np.zeros((40, 7))
+    roots[:, 3:6], roots[:, 6] = motion, np.linspace(0.0, 1.0, 40)
+    later = roots + np.array([0, 0, 0, 0, 0, 0, 0.5])
+    a, b = legs(model, roots), legs(model, later)
+    mirror = np.array([1.0, -1.0, -1.0, 1.0])  # a rotation seen in the mirror of the plane x = 0
+    np.testing.assert_allclose(b[:, ::-1] * mirror, a, atol=1e-9)
+
+
+def test_cadence_is_that_of_grieve_and_gear() -> None:
+    for speed in (0.8, 1.2, 1.8):
+        published = 64.8 / 60.0 * (speed / 1.72) ** 0.57
+        assert phase_rate(speed, 0.0, 0.0) == pytest.approx(published, rel=0.06)
+        assert stride_length(speed) * phase_rate(speed, 0.0, 0.0) == pytest.approx(speed)
+    assert 1.25 < stride_length(1.2) < 1.45
+    assert stride_length(0.0) == 0.0
+    lengths = [stride_length(v) for v in np.linspace(0.0, 2.5, 60)]
+    assert np.all(np.diff(lengths) > 0.0)
+
+
+def test_the_pelvis_bobs_a_little() -> None:
+    model = body_model(proportional_humanoid())
+    heights = [kinematics.hips_position(model, root)[1] for root in steady_walk((1.2, 0.0, 0.0), 1.0, 60)]
+    assert 0.01 < np.ptp(heights) < 0.05
+    assert max(heights) <= model.offsets[0, 1]
