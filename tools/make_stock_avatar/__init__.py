@@ -1,6 +1,7 @@
 """Writes the stock avatar: a VRM 1.0 figure sculpted from distance fields.
 
-Run from the repository root: ``PYTHONPATH=tools:src python -m make_stock_avatar [OUT]``. The same source gives the same bytes.
-Reading order: `rest` (joints), `fields` and `loft` (clay), `polygonise` (clay to mesh), then the parts of the figure
-(`body_fields`, `clothes`, `hand`, `head`, `hair`, `eyes`, `features`), `weights` (skin), `shading`, and `vrm` (the file).
+Run from the repository root: ``PYTHONPATH=tools:src python -m make_stock_avatar [OUT]``. The same source gives the
+same bytes. Reading order: `rest` (joints), `fields` and `loft` (clay), `polygonise` and `simplify` (clay to mesh), then
+the parts of the figure (`clothes`, `hand`, `head`, `hair`, `eyes`, `features`), `weights` (skin), `shading`, `palette`
+and `about`, and last `assemble` and `vrm` (the file).
 """

@@ -42,12 +42,12 @@ def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
 
 
 def _body() -> tuple[Part, ...]:
-    arm = _bare(left_arm_mesh(2500), clothes.shirt, 0.010)
-    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0115, 2400)
-    collar = _clay(clothes.collar, (-0.10, 1.41, -0.11), (0.10, 1.49, 0.08), 0.0056, 420)
-    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2300)
+    arm = _bare(left_arm_mesh(2420), clothes.shirt, 0.010)
+    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0090, 2350)
+    collar = _clay(clothes.collar, (-0.10, 1.41, -0.11), (0.10, 1.49, 0.08), 0.0040, 430)
+    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2200)
     shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), 0.0070, 850)
-    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0065, 420)
+    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0048, 440)
     shirt = _bare(shirt, clothes.trousers, 0.018)
     trousers = _bare(trousers, clothes.shirt, 0.030)
     shoe = _bare(_bare(shoe, clothes.sole, 0.004), clothes.trousers, 0.012)
@@ -63,12 +63,12 @@ def _body() -> tuple[Part, ...]:
 
 def _head() -> tuple[Part, ...]:
     skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), 0.0050, 3600)
-    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0058, 2500)
+    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0055, 2250)
     skin = _bare(_bare(skin, hair, 0.006), clothes.shirt, 0.012)
     locks_colours = tinted(locks, lambda p: np.minimum(hair(p), figure(p)), 0.8, np.array([0.45, 0.35, 0.3]))
     left, right = eyeball(1.0), mirrored_sheet(eyeball(-1.0))
     return (
-        _skin_part(skin),
+        _skin_part(skin, 0.4),
         _part(locks, palette.HAIR, locks_colours, lambda p: rigid(p, "head")),
         *(
             _part(eye.mesh, palette.EYES, eye.colours, lambda p, b=bone: rigid(p, b))  # type: ignore[misc]
@@ -82,7 +82,7 @@ def _face() -> dict[str, tuple[Part, ...]]:
     white = np.ones(3)
     return {
         "Eyelids": (_face_part(_paired(lids(white)), palette.LIDS), _face_part(_paired([lash(white)]), palette.LASHES)),
-        "Brows": (_face_part(_paired([brow(white)]), palette.LASHES),),
+        "Brows": (_face_part(_paired([brow(white)]), palette.BROWS),),
         "Mouth": (_face_part(mouth(white), palette.MOUTH),),
     }
 
@@ -112,8 +112,8 @@ def _both(mesh: Mesh) -> Mesh:
     )
 
 
-def _skin_part(mesh: Mesh) -> Part:
-    colours = blush(mesh.points, tinted(mesh, figure, 0.75, np.array(palette.CREASE)))
+def _skin_part(mesh: Mesh, depth: float = 0.7) -> Part:
+    colours = blush(mesh.points, tinted(mesh, figure, depth, np.array(palette.CREASE)))
     return _part(mesh, palette.SKIN, colours, body_weights)
 
 

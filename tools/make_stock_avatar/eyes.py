@@ -4,13 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from make_stock_avatar.fields import Array
 from make_stock_avatar.polygonise import Mesh
 from make_stock_avatar.rest import EYE_CENTRE
 
-EYE_RADIUS = 0.0190  # metres
-_CORNER = 57.0  # azimuth of the corners of the eye, degrees
+EYE_RADIUS = 0.0235  # metres
+_CORNER = 50.0  # azimuth of the corners of the eye, degrees
 _CLOSED = -13.0  # elevation at which the lids meet, degrees
 
 Edge = Callable[[Array], Array]  # azimuths (N,) -> elevations of a lid's edge (N,), degrees
@@ -49,7 +50,7 @@ def closed_edge(azimuth: Array) -> Array:
     return np.asarray(-4.0 + 3.0 * u + (_CLOSED + 4.0) * (1.0 - u * u))
 
 
-def _grid_triangles(rows: int, columns: int) -> Array:
+def _grid_triangles(rows: int, columns: int) -> NDArray[np.int64]:
     """Two triangles for every cell of a (rows, columns) grid of points, (T, 3)."""
     i = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = i[:-1, :-1].ravel(), i[:-1, 1:].ravel(), i[1:, 1:].ravel(), i[1:, :-1].ravel()
@@ -62,10 +63,10 @@ def sheet_mesh(points: Array, rows: int, columns: int, outward: Array) -> Mesh:
     normal = _vertex_normals(points, triangles)
     if (normal @ outward).mean() < 0:
         triangles, normal = triangles[:, ::-1], -normal
-    return Mesh(points, normal, triangles.astype(np.int64))
+    return Mesh(points, normal, triangles)
 
 
-def _vertex_normals(points: Array, triangles: Array) -> Array:
+def _vertex_normals(points: Array, triangles: NDArray[np.int64]) -> Array:
     a, b, c = (points[triangles[:, i]] for i in range(3))
     face = np.cross(b - a, c - a)
     total = np.zeros_like(points)
@@ -76,9 +77,9 @@ def _vertex_normals(points: Array, triangles: Array) -> Array:
     return np.where(flat, np.array([0.0, 0.0, 1.0]), total / np.where(flat, 1.0, length))
 
 
-_LID_AZIMUTHS = np.concatenate([[-88, -74, -64], np.linspace(-_CORNER, _CORNER, 19), [64, 74, 88]])
+_LID_AZIMUTHS = np.concatenate([[-84, -70, -59], np.linspace(-_CORNER, _CORNER, 19), [59, 70, 84]])
 _LID_STEPS = np.array([0.0, 0.0, 0.035, 0.16, 0.38, 0.68, 1.0])  # from edge to back
-_LID_HEIGHTS = np.array([0.985, 1.050, 1.075, 1.075, 1.070, 1.05, 1.02])  # of the eye radius
+_LID_HEIGHTS = np.array([0.985, 1.030, 1.050, 1.055, 1.050, 1.03, 1.0])  # of the eye radius
 
 
 def _lid(edge: Edge, back: float) -> Array:
@@ -94,7 +95,7 @@ def _lash(edge: Edge) -> Array:
     azimuth = u * (_CORNER + 1.0) + 2.0 * (u > 0.9)
     low = edge(azimuth) - 1.0
     thick = 1.5 + 5.5 * np.clip(1.0 - np.abs(u - 0.25) ** 3.0, 0.0, 1.0) * (0.55 + 0.45 * (u + 1) / 2)
-    rows = [direction(azimuth, low + thick * s) * EYE_RADIUS * h for s, h in ((0, 1.06), (0.5, 1.105), (1, 1.085))]
+    rows = [direction(azimuth, low + thick * s) * EYE_RADIUS * h for s, h in ((0, 1.035), (0.5, 1.075), (1, 1.06))]
     return np.array(EYE_CENTRE) + np.concatenate(rows)
 
 
@@ -114,10 +115,7 @@ _SHAPES: dict[str, tuple[float, float]] = {
 def _lid_sheet(shape: Callable[[Edge], Array], edge: Edge, rows: int, colour: Array, which: int) -> Sheet:
     points = shape(edge)
     mesh = sheet_mesh(points, rows, len(points) // rows, np.array([0.0, 0.0, 1.0]))
-    targets = {
-        name: shape(_between(edge, closed_edge, shares[which])) - points
-        for name, shares in _SHAPES.items()
-    }
+    targets = {name: shape(_between(edge, closed_edge, shares[which])) - points for name, shares in _SHAPES.items()}
     return Sheet(mesh, np.tile(colour, (len(points), 1)), targets)
 
 
@@ -166,8 +164,9 @@ def _cap(
     corner = unit[triangles]
     facing = (np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) * corner[:, 0]).sum(axis=1)
     triangles = np.where((facing < 0)[:, None], triangles[:, ::-1], triangles)[np.abs(facing) > 1e-9]
-    mesh = Mesh(unit * height, unit, triangles.astype(np.int64))
-    return mesh, np.repeat(np.array(colours), slices + 1, axis=0)
+    used = np.unique(triangles)
+    mesh = Mesh(unit[used] * height, unit[used], np.searchsorted(used, triangles))
+    return mesh, np.repeat(np.array(colours), slices + 1, axis=0)[used]
 
 
 def _moved(piece: tuple[Mesh, Array], azimuth: float, elevation: float) -> tuple[Mesh, Array]:

@@ -18,12 +18,12 @@ def _laid(xy: Array, lift: Array) -> Array:
 
 def _brow_points(raise_inner: float = 0.0, raise_outer: float = 0.0) -> Array:
     u = np.linspace(0.0, 1.0, 17)
-    x = 0.0145 + 0.0435 * u
-    y = 1.6235 + 0.0105 * np.sin(np.pi * (0.12 + 0.74 * u) ** 1.15) - 0.0035 * u
+    x = 0.0135 + 0.0445 * u
+    y = 1.6240 + 0.0105 * np.sin(np.pi * (0.12 + 0.74 * u) ** 1.15) - 0.0035 * u
     y = y + raise_inner * (1 - u) + raise_outer * u
-    half = 0.0042 * np.clip(1.0 - u**2.6, 0.0, 1.0) * np.clip((u + 0.05) / 0.16, 0.35, 1.0) + 0.0002
+    half = 0.0042 * np.clip(1.0 - u**2.6, 0.0, 1.0) * np.sqrt(np.clip((u + 0.01) / 0.14, 0.0, 1.0)) + 0.0002
     rows = []
-    for side, lift in ((-1.0, -0.0004), (-0.45, 0.0022), (0.45, 0.0022), (1.0, -0.0004)):
+    for side, lift in ((-1.0, -0.0006), (-0.45, 0.0014), (0.45, 0.0014), (1.0, -0.0006)):
         rows.append(_laid(np.column_stack([x, y + side * half]), np.full(len(u), lift)))
     return np.concatenate(rows)
 
@@ -41,8 +41,8 @@ def brow(colour: Array) -> Sheet:
 
 # half width, height of the corners over the middle, upper and lower opening in the middle (metres)
 _MOUTHS: dict[str, tuple[float, float, float, float]] = {
-    "rest": (0.0215, 0.0052, 0.0009, 0.0012),
-    "smile": (0.0265, 0.0085, 0.0010, 0.0110),
+    "rest": (0.0235, 0.0068, 0.0008, 0.0016),
+    "smile": (0.0275, 0.0095, 0.0010, 0.0115),
     "aa": (0.0190, 0.0020, 0.0035, 0.0150),
     "ih": (0.0220, 0.0030, 0.0020, 0.0060),
     "ou": (0.0095, 0.0000, 0.0035, 0.0055),

@@ -19,14 +19,14 @@ def mirrored(points: Array) -> Array:
 
 
 def sphere(p: Array, centre: ArrayLike, radius: float) -> Array:
-    return np.linalg.norm(p - np.asarray(centre), axis=1) - radius
+    return np.asarray(np.linalg.norm(p - np.asarray(centre), axis=1) - radius)
 
 
 def ellipsoid(p: Array, centre: ArrayLike, radii: ArrayLike) -> Array:
     q = (p - np.asarray(centre)) / np.asarray(radii)
     k = np.sqrt((q * q).sum(axis=1))
     slope = np.sqrt(((q / np.asarray(radii)) ** 2).sum(axis=1))
-    return k * (k - 1.0) / np.maximum(slope, 1e-9)
+    return np.asarray(k * (k - 1.0) / np.maximum(slope, 1e-9))
 
 
 def round_cone(p: Array, a: ArrayLike, b: ArrayLike, ra: float, rb: float) -> Array:
@@ -44,7 +44,8 @@ def round_cone(p: Array, a: ArrayLike, b: ArrayLike, ra: float, rb: float) -> Ar
     cone = (np.sqrt(x2 * a2 / length2) + y * step) / length2 - ra
     near_b = np.sqrt(x2 + z2) / length2 - rb
     near_a = np.sqrt(x2 + y2) / length2 - ra
-    return np.where(np.sign(z) * a2 * z2 > k, near_b, np.where(np.sign(y) * a2 * y2 < k, near_a, cone))
+    round_end = np.where(np.sign(y) * a2 * y2 < k, near_a, cone)
+    return np.asarray(np.where(np.sign(z) * a2 * z2 > k, near_b, round_end))
 
 
 def chain(p: Array, joints: ArrayLike, radii: Sequence[float], k: float = 0.0) -> Array:
@@ -87,4 +88,4 @@ def gradient(field: Field, points: Array, step: float = 4e-4) -> Array:
 def normals(field: Field, points: Array) -> Array:
     """Outward unit normals of a field's level sets, (N, 3)."""
     slope = gradient(field, points)
-    return slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-12)
+    return np.asarray(slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-12))

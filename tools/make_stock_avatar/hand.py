@@ -41,12 +41,12 @@ def arm(p: Array) -> Array:
     thumb = finger_joints("Thumb")
     ball = round_cone(p, thumb[0] + [0.004, 0.0, 0.002], thumb[1], 0.0180, 0.0140)
     limb = union(limb, ball, 0.016)
-    limb = union(limb, chain(p, thumb[1:], (0.0132, 0.0118, 0.0088), 0.006), 0.008)
+    limb = union(limb, chain(p, thumb[1:], (0.0132, 0.0118, 0.0088), 0.001), 0.008)
     heel = ellipsoid(p, (0.735, 1.392, -0.036), (0.032, 0.014, 0.016))
     limb = union(limb, heel, 0.012)
     fingers = np.full(len(p), np.inf)
     for finger, radii in _FINGER_RADII.items():
-        fingers = np.minimum(fingers, chain(p, finger_joints(finger), radii, 0.005))
+        fingers = np.minimum(fingers, chain(p, finger_joints(finger), radii, 0.001))
     return union(limb, fingers, 0.009)
 
 

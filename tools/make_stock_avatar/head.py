@@ -10,9 +10,9 @@ from make_stock_avatar.rest import EYE_CENTRE
 _NECK: tuple[Row, ...] = (
     (1.360, 0.0900, 0.0620, 0.0, -0.020),
     (1.420, 0.0620, 0.0560, 0.0, -0.020),
-    (1.450, 0.0520, 0.0520, 0.0, -0.018),
-    (1.490, 0.0485, 0.0510, 0.0, -0.012),
-    (1.540, 0.0490, 0.0530, 0.0, -0.004),
+    (1.450, 0.0500, 0.0510, 0.0, -0.022),
+    (1.490, 0.0460, 0.0490, 0.0, -0.020),
+    (1.540, 0.0460, 0.0500, 0.0, -0.016),
 )
 
 
@@ -28,23 +28,24 @@ def head(p: Array) -> Array:
     """Head, neck and the hidden plate under the shirt."""
     q = mirrored(p)
     body = skull(q)
-    chin = sphere(q, (0.007, 1.4975, 0.066), 0.0185)
-    cheek = ellipsoid(q, (0.036, 1.556, 0.056), (0.030, 0.028, 0.030))
-    body = union(union(body, chin, 0.03), cheek, 0.025)
-    brow = round_cone(q, (0.0, 1.622, 0.076), (0.045, 1.622, 0.058), 0.012, 0.010)
+    chin = sphere(q, (0.007, 1.4995, 0.0680), 0.0190)
+    cheek = ellipsoid(q, (0.036, 1.553, 0.055), (0.030, 0.029, 0.030))
+    orbit = ellipsoid(q, (0.041, 1.590, 0.048), (0.0265, 0.032, 0.0245))
+    body = union(union(union(body, chin, 0.03), cheek, 0.025), orbit, 0.025)
+    brow = round_cone(q, (0.0, 1.626, 0.0725), (0.045, 1.624, 0.056), 0.011, 0.010)
     body = union(body, brow, 0.03)
-    socket = ellipsoid(q, (EYE_CENTRE[0], 1.5945, 0.096), (0.0250, 0.0180, 0.0150))
-    body = carved(body, socket, 0.016)
-    nose = round_cone(q, (0.0, 1.598, 0.0800), (0.0, 1.5615, 0.0985), 0.0070, 0.0105)
-    wing = sphere(q, (0.0090, 1.5580, 0.0905), 0.0078)
-    body = union(body, union(nose, wing, 0.010), 0.014)
-    lips = ellipsoid(q, (0.0, 1.5245, 0.0785), (0.021, 0.0125, 0.0085))
-    body = union(body, lips, 0.012)
+    socket = ellipsoid(q, (EYE_CENTRE[0] - 0.002, EYE_CENTRE[1], 0.096), (0.0280, 0.0190, 0.0170))
+    body = carved(body, socket, 0.018)
+    nose = round_cone(q, (0.0, 1.594, 0.0790), (0.0, 1.5600, 0.0975), 0.0060, 0.0100)
+    wing = sphere(q, (0.0080, 1.5570, 0.0900), 0.0070)
+    body = union(body, union(nose, wing, 0.010), 0.016)
+    lips = ellipsoid(q, (0.0, 1.5255, 0.0770), (0.022, 0.0120, 0.0090))
+    body = union(body, lips, 0.016)
     ear = ellipsoid(_turned(q, (0.0775, 1.583, -0.014)), (0.0, 0.0, 0.0), (0.0085, 0.0300, 0.0185))
     bowl = ellipsoid(_turned(q, (0.0865, 1.585, -0.010)), (0.0, 0.0, 0.0), (0.0055, 0.0195, 0.0105))
     body = union(body, carved(ear, bowl, 0.005), 0.007)
     neck = common(loft(q, 1, _NECK), np.maximum(1.395 - q[:, 1], q[:, 1] - 1.56), 0.02)
-    return union(body, neck, 0.022)
+    return union(body, neck, 0.018)
 
 
 def _turned(q: Array, centre: tuple[float, float, float]) -> Array:

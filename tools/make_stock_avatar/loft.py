@@ -45,6 +45,6 @@ def loft(p: Array, axis: int, rows: Sequence[Row], grow: float = 0.0, power: flo
     return np.asarray((k - 1.0) / np.maximum(slope, 1e-9))
 
 
-def between(at: Array, low: float, high: float) -> Array:
+def between(at: Array, low: float | Array, high: float | Array) -> Array:
     """The slab low < at < high."""
     return np.maximum(low - at, at - high)

@@ -4,10 +4,11 @@ Segment lengths follow Drillis and Contini (1966) for this stature, the head a l
 """
 
 import numpy as np
-from elbowroom.body.bones import PARENTS
 from numpy.typing import NDArray
 
-EYE_CENTRE = (0.0335, 1.5945, 0.0655)  # metres, left
+from elbowroom.body.bones import PARENTS
+
+EYE_CENTRE = (0.0332, 1.5900, 0.0622)  # metres, left
 WRIST = 0.69  # x of the left wrist, metres
 ARM_HEIGHT = 1.40  # y of the outstretched arms, metres
 

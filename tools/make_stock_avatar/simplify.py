@@ -50,8 +50,7 @@ def _quadrics(points: Array, triangles: Index) -> Array:
 
 def _candidates(points: Array, triangles: Index, quadrics: Array) -> tuple[Index, Array, Array]:
     """Edges (E, 2), the best place for each edge's one point (E, 3), and the cost of collapsing it (E,)."""
-    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges = np.unique(sides, axis=0)
+    edges = _distinct_pairs(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
     q = quadrics[edges].sum(axis=1)
     middle = points[edges].mean(axis=1)
     weight = np.trace(q[:, :3, :3], axis1=1, axis2=2)[:, None, None] * 0.02
@@ -62,6 +61,14 @@ def _candidates(points: Array, triangles: Index, quadrics: Array) -> tuple[Index
     error = np.einsum("ei,eij,ej->e", homogeneous, q, homogeneous)
     length2 = ((points[edges[:, 0]] - points[edges[:, 1]]) ** 2).sum(axis=1)
     return edges, places, np.abs(error) + _EVENNESS * length2 * length2
+
+
+def _distinct_pairs(pairs: Index) -> Index:
+    """Unordered pairs of point numbers, each once, the smaller number first."""
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    base = int(high.max()) + 1
+    keys = np.unique(low * base + high)
+    return np.column_stack([keys // base, keys % base])
 
 
 def _independent(edges: Index, costs: Array, count: int, most: int) -> Index:
@@ -97,22 +104,22 @@ def _safe(points: Array, triangles: Index, edges: Index, places: Array) -> NDArr
     turned = stays & ((n0 * n1).sum(axis=1) < 0.35 * size)
     bad = np.zeros(len(edges), bool)
     bad[own[turned]] = True
-    return ~bad & (_shared_neighbours(corners, inside, own, edges) == 2)
+    return np.asarray(~bad & (_shared_neighbours(corners, inside, own, edges) == 2))
 
 
 def _shared_neighbours(corners: Index, inside: NDArray[np.bool_], own: Index, edges: Index) -> Index:
     """How many points neighbour both ends of each edge."""
     first = corners == edges[own][:, :1]
     second = corners == edges[own][:, 1:]
-    pairs = []
+    base = int(corners.max()) + 1
+    keys = []
     for end in (first, second):
         has = end.any(axis=1)
-        rows = np.repeat(own[has], 3)
-        others = corners[has].ravel()
-        outside = ~inside[has].ravel()
-        pairs.append(np.unique(np.column_stack([rows[outside], others[outside]]), axis=0))
-    both, times = np.unique(np.concatenate(pairs), axis=0, return_counts=True)
-    return np.bincount(both[times == 2, 0], minlength=len(edges)).astype(np.int64)
+        outside = ~inside[has]
+        rows = np.broadcast_to(own[has][:, None], outside.shape)
+        keys.append(np.unique(rows[outside] * base + corners[has][outside]))
+    both, times = np.unique(np.concatenate(keys), return_counts=True)
+    return np.bincount(both[times == 2] // base, minlength=len(edges)).astype(np.int64)
 
 
 def _collapsed(

@@ -4,6 +4,8 @@ A point's weights are a product of shares along the hierarchy (trunk or limb, th
 bone only ever shares with its neighbours and the clothes bend as the skin below them does.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,7 +38,7 @@ def body_weights(points: Array) -> Array:
 def arm_share(points: Array) -> Array:
     """How much a point belongs to an arm: a ramp through the shoulder joint that leans away from the flank."""
     x, y = np.abs(points[:, 0]), points[:, 1]
-    return ramp(x + 1.1 * np.minimum(0.0, y - 1.385), 0.168, 0.062)
+    return ramp(x + 1.1 * np.minimum(0.0, y - 1.385), 0.158, 0.072)
 
 
 def leg_share(points: Array) -> Array:
@@ -104,7 +106,7 @@ def _hand(weights: Array, side: str, own: Array, share: Array) -> None:
 
 def _distance_to_line(points: Array, joints: Array) -> Array:
     best = np.full(len(points), np.inf)
-    for a, b in zip(joints[:-1], joints[1:], strict=True):
+    for a, b in pairwise(joints):
         axis = b - a
         u = np.clip((points - a) @ axis / (axis @ axis), 0.0, 1.0)
         best = np.minimum(best, np.linalg.norm(points - a - u[:, None] * axis, axis=1))
