@@ -1,7 +1,6 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +9,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, configuration
+from elbowroom.control.canned import canned_walk, standing_posture
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.rehearsal import frozen_motion, is_playable
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -25,6 +26,7 @@ Floats = NDArray[np.float64]
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
 _SETTLE = 0.05  # seconds: time constant with which the legs come to a stand where the avatar is held
+_LEAD_OVER = 0.1  # seconds: the same where motion goes on
 _STILL = 0.02  # m/s and rad/s: slower is standing
 _SAME = 1e-6  # radians
 
@@ -63,6 +65,7 @@ class Controller:
     def reset(self) -> None:
         """Back to the start, as if newly made."""
         self._rng = np.random.default_rng(self.settings.seed)
+        self._root_planner.reset()
         self._planner = make_planner(self.settings.planner, self.humanoid, self.scene)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._assist = self.settings.assist
@@ -70,11 +73,12 @@ class Controller:
         self._command = Command()
         self._flow = self._next = Phase.PLAN
         self._held = self._resting = False
+        self._stance = np.zeros(3)
         self._stand_at_start()
 
     def _stand_at_start(self) -> None:
         root = self.start._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
-        upper = self._planner.goals(RootPath(0.0, self.settings.interval, np.stack([root, root])))[0]
+        upper = standing_posture(root)
         clearance = self._check.clearance(root, upper)
         if clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
@@ -151,18 +155,29 @@ class Controller:
         """Flow A: a root path, its upper-body motion; on success the queue is refilled, else it keeps what it has."""
         time, root, upper = self._planning_start(command)
         horizon, interval = self.settings.queue_size, self.settings.interval
-        root_plan = self._root_planner.plan(RootState(*root.tolist()), command, horizon, interval)
-        path = replace(root_plan.path, start_time=time)
-        search = self._planner.plan if self._assist else self._planner.canned
-        local = search(path, upper, self._rng)
+        root_plan = self._root_planner.plan(RootState(*root.tolist()), command, horizon, interval, time)
+        path = root_plan.path
+        local = self._planner.plan(path, upper, self._rng) if self._assist else canned_walk(path)
         number = 1 if self._plan_report is None else self._plan_report.number + 1
-        report = PlanReport(number, self._queue.time, replace(root_plan, path=path), local)
+        report = PlanReport(number, self._queue.time, root_plan, local)
         self._command, self._plan_report, self._next = command, report, Phase.PLAY
         self._resting = False
         self._queue.start_count()
-        if report.found:
-            self._queue.refill(path, local.configurations, self._shown)
-            self._resting = command.idle and self._stands_still(path, local.configurations)
+        motions = [local.configurations] if report.found else []
+        if self._held and self._assist:
+            motions = self._ways_out(path, motions)
+        if motions:
+            self._queue.refill(path, motions[0], self._shown)
+            self._resting = command.idle and self._stands_still(path, motions[0])
+
+    def _ways_out(self, path: RootPath, motions: list[Floats]) -> list[Floats]:
+        """Of the motions that could follow a contact, those that do not touch again at once.
+
+        Hard against an obstacle nearly every move of a limb touches it, so keeping the pose while the root moves is
+        tried as well: whoever walked in can walk out.
+        """
+        motions = [*motions, frozen_motion(path, self._shown.upper)]
+        return [motion for motion in motions if is_playable(self._queue, path, motion, self._shown, self._check)]
 
     def _planning_start(self, command: Command) -> tuple[float, Floats, Floats]:
         """Time, root state and upper body from which to plan.
@@ -175,7 +190,8 @@ class Controller:
             return float(coming.times[0]), coming.roots[0], coming.uppers[0]
         root = self._shown.root.copy()
         if self._held:
-            root[3:6] = 0.0
+            self._stance = root[3:6].copy()
+        root[3:6] -= self._stance
         return self._queue.time, root, self._shown.upper
 
     def _stands_still(self, path: RootPath, uppers: Floats) -> bool:
@@ -191,7 +207,7 @@ class Controller:
         if ended:
             self._hold(dt)
             return
-        playback = self._queue.sample()
+        playback = self._blended(self._queue.sample(), dt)
         clearance = self._check.clearance(playback.root, playback.upper)
         if clearance < 0.0 and self._assist:
             self._hold(dt)
@@ -200,6 +216,13 @@ class Controller:
         self._show(playback, clearance)
         if self._queue.empty:
             self._next = Phase.RESET
+
+    def _blended(self, playback: Playback, dt: float) -> Playback:
+        """Lead the legs over from the stance in which they were held: only it is left of that motion, not its speed."""
+        self._stance *= math.exp(-dt / _LEAD_OVER)
+        self._stance[np.abs(self._stance) < _STILL] = 0.0
+        playback.root[3:6] += self._stance
+        return playback
 
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""

@@ -1,0 +1,181 @@
+"""Recordings: what is written is read back, a torn file up to its last whole chunk, a hostile one not at all."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.control import recording as recordings
+from elbowroom.control.controller import Controller
+from elbowroom.control.recording import MAGIC, STEP, STEPS_PER_CHUNK, Recorder, Recording, command_of
+from elbowroom.control.replay import replay
+from elbowroom.errors import InputError
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+
+HUMANOID = proportional_humanoid(1.72)
+STEPS = 150
+
+
+def record(path: Path, steps: int = STEPS, scene: str = "empty") -> list[tuple[Command, float, np.ndarray]]:
+    controller = Controller(HUMANOID, Scene.load(scene), seed=3, queue_size=4)
+    rng = np.random.default_rng(1)
+    shown = []
+    with Recorder(path, controller) as recorder:
+        command = Command(forward=1.0)
+        for i in range(steps):
+            if i % 40 == 39:
+                command = Command(*rng.uniform(-1, 1, 3), rng.choice([None, 0.5]), bool(rng.integers(2)))
+            dt = float(rng.uniform(0.0, 0.05))
+            frame = controller.step(command, dt)
+            recorder.append(command, dt, frame)
+            shown.append((command, dt, frame.q))
+    return shown
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[tuple[Command, float, np.ndarray]]]:
+    path = tmp_path_factory.mktemp("runs") / "run.elbow"
+    return path, record(path)
+
+
+def test_steps_come_back_bit_for_bit(run: tuple[Path, list[tuple[Command, float, np.ndarray]]]) -> None:
+    path, shown = run
+    recording = Recording(path)
+    steps = recording.steps()
+    assert recording.note is None
+    assert len(steps) == len(shown)
+    for step, (command, dt, q) in zip(steps, shown, strict=True):
+        assert command_of(step) == command
+        assert step["dt"] == dt
+        assert step["q"].tobytes() == q.tobytes()
+
+
+def test_the_header_tells_what_the_run_depends_on(run: tuple[Path, object]) -> None:
+    header = Recording(run[0]).header
+    assert header.settings.queue_size == 4
+    assert header.settings.seed == 3
+    assert Scene.from_dict(header.scene).name == "empty"
+    assert header.machine["numba"]
+
+
+def test_a_replay_is_identical(run: tuple[Path, object]) -> None:
+    result = replay(Recording(run[0]), HUMANOID)
+    assert result.identical
+    assert result.frames == STEPS
+
+
+def test_a_replay_finds_the_first_frame_that_differs(run: tuple[Path, object], tmp_path: Path) -> None:
+    recording = Recording(run[0])
+    steps = recording.steps().copy()
+    steps["q"][100, 7] += 1e-9
+    forged = tmp_path / "forged.elbow"
+    data = zlib.compress(steps.tobytes())
+    header = recording.header.to_json()
+    head = MAGIC + struct.pack("<I", len(header)) + header + struct.pack("<I", zlib.crc32(header))
+    forged.write_bytes(head + struct.pack("<4sIII", b"CHNK", len(steps), len(data), zlib.crc32(data)) + data)
+    result = replay(Recording(forged), HUMANOID)
+    assert result.difference is not None
+    assert result.difference.frame == 100
+    assert result.difference.angle == pytest.approx(1e-9, rel=1e-3)
+
+
+@pytest.mark.parametrize("cut", [1, 7, 500])
+def test_a_torn_file_is_read_to_its_last_whole_chunk(run: tuple[Path, object], tmp_path: Path, cut: int) -> None:
+    torn = tmp_path / "torn.elbow"
+    torn.write_bytes(run[0].read_bytes()[:-cut])
+    recording = Recording(torn)
+    assert len(recording.steps()) == 2 * STEPS_PER_CHUNK
+    assert recording.note is not None
+    assert replay(recording, HUMANOID).frames == 2 * STEPS_PER_CHUNK
+
+
+def test_a_flipped_bit_ends_the_reading(run: tuple[Path, object], tmp_path: Path) -> None:
+    data = bytearray(run[0].read_bytes())
+    data[-20] ^= 4
+    damaged = tmp_path / "damaged.elbow"
+    damaged.write_bytes(data)
+    recording = Recording(damaged)
+    assert len(recording.steps()) == 2 * STEPS_PER_CHUNK
+    assert recording.note is not None
+
+
+def test_steps_are_on_disk_before_the_recorder_is_closed(tmp_path: Path) -> None:
+    path = tmp_path / "crash.elbow"
+    controller = Controller(HUMANOID, Scene.load("empty"))
+    recorder = Recorder(path, controller)
+    for _ in range(STEPS_PER_CHUNK + 5):
+        recorder.append(Command(), 0.01, controller.step(Command(), 0.01))
+    assert len(Recording(path).steps()) == STEPS_PER_CHUNK
+    recorder.close()
+    recorder.close()
+    assert len(Recording(path).steps()) == STEPS_PER_CHUNK + 5
+
+
+def test_a_recording_is_replaced_and_another_file_is_not(tmp_path: Path) -> None:
+    path = tmp_path / "run.elbow"
+    record(path, 5)
+    record(path, 3)
+    assert len(Recording(path).steps()) == 3
+    letter = tmp_path / "letter.txt"
+    letter.write_text("Dear reader,")
+    with pytest.raises(InputError, match="no recording"):
+        record(letter, 3)
+    assert letter.read_text() == "Dear reader,"
+
+
+def test_a_folder_that_is_not_there_is_a_plain_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be written"):
+        record(tmp_path / "nowhere" / "run.elbow", 3)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"hello",
+        MAGIC,
+        MAGIC + b"\xff\xff\xff\xff",
+        MAGIC + struct.pack("<I", 2) + b"{}" + struct.pack("<I", zlib.crc32(b"{}")),
+        MAGIC + struct.pack("<I", 2) + b"{}" + b"0000",
+        MAGIC + struct.pack("<I", 10) + b"{}",
+    ],
+)
+def test_hostile_headers_are_plain_errors(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "hostile.elbow"
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"hostile\.elbow"):
+        Recording(path)
+
+
+def test_nested_json_in_a_header_is_a_plain_error(tmp_path: Path) -> None:
+    text = b"[" * 100_000
+    path = tmp_path / "deep.elbow"
+    path.write_bytes(MAGIC + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text)))
+    with pytest.raises(InputError, match=r"deep\.elbow"):
+        Recording(path)
+
+
+def test_a_missing_file_is_a_plain_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be read"):
+        Recording(tmp_path / "none.elbow")
+
+
+def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> None:
+    whole = run[0].read_bytes()
+    header_end = len(MAGIC) + 4 + struct.unpack_from("<I", whole, len(MAGIC))[0] + 4
+    bomb = zlib.compress(bytes(50_000_000), 9)
+    for count in (1, recordings.MAX_CHUNK_STEPS, 2**32 - 1):
+        path = tmp_path / f"bomb{count}.elbow"
+        chunk = struct.pack("<4sIII", b"CHNK", count, len(bomb), zlib.crc32(bomb)) + bomb
+        path.write_bytes(whole[:header_end] + chunk)
+        recording = Recording(path)
+        assert len(recording.steps()) == 0
+        assert recording.note is not None
+
+
+def test_the_step_record_is_fixed() -> None:
+    assert STEP.itemsize == 202
