@@ -89,6 +89,13 @@ def test_a_whole_glb_is_packed_unchanged() -> None:
     assert as_glb(GLB) is GLB
 
 
+def test_a_picture_on_the_network_is_refused(tmp_path: Path) -> None:
+    content = json_of(GLB) | {"images": [{"uri": "https://example.org/face.png"}]}
+    (tmp_path / "figure.vrm").write_bytes(write_glb(content, _binary(GLB)))
+    with pytest.raises(InputError, match="same folder"):
+        as_glb(tmp_path / "figure.vrm")
+
+
 def test_scattered_buffers_and_images_are_packed_into_one_glb(tmp_path: Path) -> None:
     binary = _binary(GLB)
     content = json_of(GLB)

@@ -30,6 +30,8 @@ _TALLEST, _SMALLEST = 3.0, 0.3  # metres from the lowest joint to the head joint
 _TYPICAL = 1.5
 _UNITS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)  # metres per unit, where the file is not in metres
 _BARE_SOLE = 0.026  # height of the lowest joint above the ground where no mesh shows it, of the head joint's height
+_THICKEST_SOLE = 0.35  # of the head joint's height; what hangs lower is not a foot
+_FARTHEST = 3.0  # distance of a joint from the hips, of the head joint's height
 _UNIFORM = 1e-4  # relative difference of scales that still counts as one scale
 
 
@@ -161,9 +163,11 @@ def _ground(figure: _Figure, points: BodyPoints | None, height: float) -> float:
     """Height of the ground in file units: the lowest point of the feet, or a little below the lowest joint."""
     names = list(figure.bones)
     soles = [i for i, bone in enumerate(names) if bone.endswith(("LowerLeg", "Foot", "Toes"))]
-    if points is not None and np.isin(points.joints, soles).any():
-        return float(points.positions[np.isin(points.joints, soles), 1].min())
     lowest = min(float(figure.matrices[figure.bones[names[i]], 1, 3]) for i in soles)
+    if points is not None and np.isin(points.joints, soles).any():
+        mesh = float(points.positions[np.isin(points.joints, soles), 1].min())
+        if lowest - mesh < _THICKEST_SOLE * height:
+            return mesh
     if 0.0 <= lowest <= 0.12 * height:  # the file itself stands on y = 0
         return 0.0
     return lowest - _BARE_SOLE * height
@@ -183,6 +187,10 @@ def _skeleton(figure: _Figure, rig: Rig) -> Skeleton:
 
 
 def _check_lengths(place: str, skeleton: Skeleton) -> None:
+    reach = np.linalg.norm(skeleton.positions - skeleton.positions[0], axis=1)
+    if reach.max() > _FARTHEST * skeleton.height:
+        bone = skeleton.names[int(np.argmax(reach))]
+        raise InputError(f"{place}: the bone {bone} is {reach.max():.3g} m from the hips: that is no humanoid")
     for side in ("left", "right"):
         for limb in (("UpperArm", "LowerArm", "Hand"), ("UpperLeg", "LowerLeg", "Foot")):
             for a, b in pairwise(limb):

@@ -1,5 +1,6 @@
 """The surface of an asset as points, each riding rigidly on one node: the joint with the greatest weight."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.nodes import NodeTree
 
 _MAX_POINTS = 5_000_000
+_MAX_PRIMITIVES = 100_000
 _COMPRESSION = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
@@ -24,6 +26,12 @@ class SurfacePoints:
     skinned: NDArray[np.bool_]  # (P,) False for a mesh that hangs on its node as a whole
 
 
+@dataclass(frozen=True, eq=False)
+class _Skin:
+    joints: NDArray[np.int64]  # (S,) node of each slot
+    inverse_binds: NDArray[np.float64]  # (S, 4, 4), maybe more than slots
+
+
 def compression(gltf: Gltf) -> str | None:
     """The name of a mesh compression that the file uses and we do not read, if there is one."""
     used = {field.text() for key in ("extensionsRequired", "extensionsUsed") for field in gltf.root.at(key).items()}
@@ -32,23 +40,21 @@ def compression(gltf: Gltf) -> str | None:
 
 def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
     """All vertices of all meshes that nodes show; vertices shared by several primitives are taken once."""
-    meshes, skins = gltf.root.at("meshes").items(), gltf.root.at("skins").items()
+    skins: dict[int, _Skin] = {}
     parts: list[tuple[NDArray[np.int64], NDArray[np.float64], bool]] = []
-    seen: set[tuple[object, ...]] = set()
     total = 0
-    for node in np.flatnonzero(tree.meshes >= 0):
-        skin = skins[tree.skins[node]] if tree.skins[node] >= 0 else None
-        for primitive in meshes[tree.meshes[node]].at("primitives").items():
-            attributes = primitive.at("attributes")
-            keys = (int(node), *(str(attributes.at(key).value) for key in ("POSITION", "JOINTS_0", "WEIGHTS_0")))
-            if keys in seen or not attributes.at("POSITION").present:
-                continue
-            seen.add(keys)
-            part = _skinned(gltf, attributes, skin, len(tree)) if skin else _rigid(gltf, attributes, int(node))
-            parts.append((*part, skin is not None))
-            total += len(part[0])
-            if total > _MAX_POINTS:
-                raise InputError(f"{gltf.name}: the meshes have more than {_MAX_POINTS} vertices")
+    for node, attributes in _shown(gltf, tree):
+        points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
+        total += len(points)
+        if total > _MAX_POINTS:
+            raise InputError(f"{gltf.name}: the meshes have more than {_MAX_POINTS} vertices")
+        index = int(tree.skins[node])
+        if index < 0:
+            parts.append((np.full(len(points), node, dtype=np.int64), points, False))
+            continue
+        if index not in skins:
+            skins[index] = _read_skin(gltf, index, len(tree))
+        parts.append((*_skinned(gltf, attributes, points, skins[index]), True))
     return SurfacePoints(
         nodes=np.concatenate([np.zeros(0, np.int64), *(nodes for nodes, _, _ in parts)]),
         offsets=np.concatenate([np.zeros((0, 3)), *(offsets for _, offsets, _ in parts)]),
@@ -63,26 +69,45 @@ def skin_joints(gltf: Gltf, tree: NodeTree) -> set[int]:
     }
 
 
-def _rigid(gltf: Gltf, attributes: Field, node: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
-    return np.full(len(points), node, dtype=np.int64), points
+def _shown(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
+    """Each node with the attributes of each primitive it shows; those that share their vertices only once."""
+    meshes = gltf.root.at("meshes")
+    seen: set[tuple[object, ...]] = set()
+    examined = 0
+    for node in map(int, np.flatnonzero(tree.meshes >= 0)):
+        for primitive in meshes.pick(Field(int(tree.meshes[node]), gltf.name)).at("primitives").items():
+            examined += 1
+            if examined > _MAX_PRIMITIVES:
+                raise InputError(f"{gltf.name}: the nodes show more than {_MAX_PRIMITIVES} primitives")
+            attributes = primitive.at("attributes")
+            key = (node, *(str(attributes.at(name).value) for name in ("POSITION", "JOINTS_0", "WEIGHTS_0")))
+            if key not in seen and attributes.at("POSITION").present:
+                seen.add(key)
+                yield node, attributes
 
 
-def _skinned(gltf: Gltf, attributes: Field, skin: Field, nodes: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
+def _read_skin(gltf: Gltf, index: int, nodes: int) -> _Skin:
+    skin = gltf.root.at("skins").pick(Field(index, gltf.name))
+    joints = np.array([joint.integer(0, nodes - 1) for joint in skin.at("joints").items(nodes)], dtype=np.int64)
+    field = skin.at("inverseBindMatrices")
+    if not field.present:
+        return _Skin(joints, np.tile(np.eye(4), (len(joints), 1, 1)))
+    matrices = read_accessor(gltf, field, "MAT4").reshape(-1, 4, 4).transpose(0, 2, 1)
+    if len(matrices) < len(joints):
+        raise InputError(f"{field.place} has {len(matrices)} matrices for {len(joints)} joints")
+    return _Skin(joints, matrices)
+
+
+def _skinned(
+    gltf: Gltf, attributes: Field, points: NDArray[np.float64], skin: _Skin
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     slots = _dominant_slots(gltf, attributes, len(points))
-    joints = np.array([j.integer(0, nodes - 1) for j in skin.at("joints").items(nodes)], dtype=np.int64)
-    if slots.max(initial=0) >= len(joints):
-        raise InputError(f"{attributes.place}.JOINTS_0 points to joint {slots.max()} of {len(joints)}")
-    offsets = points
-    if skin.at("inverseBindMatrices").present:
-        matrices = read_accessor(gltf, skin.at("inverseBindMatrices"), "MAT4").reshape(-1, 4, 4).transpose(0, 2, 1)
-        if len(matrices) < len(joints):
-            raise InputError(f"{skin.place}.inverseBindMatrices has {len(matrices)} matrices for {len(joints)} joints")
-        bind = matrices[slots]
-        with np.errstate(all="ignore"):
-            offsets = np.einsum("pij,pj->pi", bind[:, :3, :3], points) + bind[:, :3, 3]
-    return joints[slots], offsets
+    if slots.max(initial=0) >= len(skin.joints):
+        raise InputError(f"{attributes.place}.JOINTS_0 points to joint {slots.max()} of {len(skin.joints)}")
+    bind = skin.inverse_binds[slots]
+    with np.errstate(all="ignore"):
+        offsets = np.einsum("pij,pj->pi", bind[:, :3, :3], points) + bind[:, :3, 3]
+    return skin.joints[slots], offsets
 
 
 def _dominant_slots(gltf: Gltf, attributes: Field, count: int) -> NDArray[np.int64]:
