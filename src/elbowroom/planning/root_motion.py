@@ -17,9 +17,11 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.root_path import interpolate_root
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 _PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
-_STILL = 1e-9
+_STILL = 1e-9  # lengths and speeds that are divided by are at least this
+_REST = 1e-6  # m/s and rad/s: what is slower stands
 _SIDLE = 0.6  # radians: the greatest angle between the way and the body's front when walking forward
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 
@@ -175,33 +177,38 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
 
 
 @exact_kernel
-def stopping_states(states: Floats, interval: float, bounds: MotionBounds, spacing: float) -> Floats:
-    """Every state (M, 7), `spacing` seconds apart, of braking to a stand from each key state but the first."""
-    count = max(1, int(np.ceil(interval / spacing)))
-    fastest = 0.0
+def stopping_states(states: Floats, interval: float, bounds: MotionBounds, spacing: float) -> tuple[Floats, Indices]:
+    """States (M, 7) of braking to a stand from each key state but the first, and the key state of each (M,).
+
+    They are at most `spacing` seconds apart, in order of the key states.
+    """
+    count = int(np.ceil(interval / spacing))
+    longest = 0.0
     for k in range(1, states.shape[0]):
-        fastest = max(fastest, np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2) / bounds.braking)
-        fastest = max(fastest, abs(states[k, 5]) / bounds.turn_acceleration)
-    steps = int(np.ceil(fastest / interval)) + 1
+        longest = max(longest, np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2) / bounds.braking)
+        longest = max(longest, abs(states[k, 5]) / bounds.turn_acceleration)
+    steps = int(np.ceil(longest / interval)) + 1
     out = np.empty(((states.shape[0] - 1) * steps * count, ROOT_STATE))
+    owner = np.empty(out.shape[0], np.int64)
     tail = np.empty((steps + 1, ROOT_STATE))
     used = 0
     for k in range(1, states.shape[0]):
         tail[0] = states[k]
         brake(tail, 0, interval, bounds)
         for i in range(steps):
-            if abs(tail[i, 3]) + abs(tail[i, 4]) + abs(tail[i, 5]) < 1e-6:
+            if abs(tail[i, 3]) + abs(tail[i, 4]) + abs(tail[i, 5]) < _REST:
                 break
             for j in range(count):
                 out[used] = interpolate_root(tail[i], tail[i + 1], (j + 1.0) / count, interval)
+                owner[used] = k
                 used += 1
-    return out[:used]
+    return out[:used], owner[:used]
 
 
 @exact_kernel
 def dense_states(states: Floats, interval: float, spacing: float) -> Floats:
     """The shown states (M, 7) between the key states, at most `spacing` seconds apart, the first key state left out."""
-    count = max(1, int(np.ceil(interval / spacing)))
+    count = int(np.ceil(interval / spacing))
     out = np.empty(((states.shape[0] - 1) * count, ROOT_STATE))
     for k in range(states.shape[0] - 1):
         for j in range(count):

@@ -9,6 +9,7 @@ show, and if from each of its key frames a stop would be free too. So the next p
 
 import math
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
@@ -56,8 +57,10 @@ class RootPlannerSettings:
     route: RouteSettings = field(default_factory=RouteSettings)
     sight: float = 3.2  # how far ahead the way is looked at
     widest_detour: float = 1.6  # how far from the line of travel a way round may lead
-    cell: float = 0.08  # of the map on which ways round are searched
-    margins: tuple[float, ...] = (0.10, 0.02)  # clearance of a way round: wished for, and enough
+    worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
+    # Searches for a way round, in turn: the clearance that it must have, and the cells of the map.
+    searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
+    margin: float = 0.01  # clearance of the straight way
     skin: float = 0.01  # clearance that posed legs keep along a path
     spacing: float = 0.0125  # seconds between checked states
     slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
@@ -123,7 +126,7 @@ class RootPlanner:
         query = _Query(self, start, horizon, interval)
         if command.idle:
             self._line = None
-            states, kind, goal = *query.stop(RootPlanKind.STRAIGHT), (start.x, start.z)
+            states, kind, goal = query.stop(), RootPlanKind.STRAIGHT, (start.x, start.z)
         elif command.turn != 0.0 and command.direction is None:
             self._line = None
             states, kind, goal = query.steered(_steering(command, self.settings.motion))
@@ -179,6 +182,8 @@ def _steering(command: Command, motion: RootMotionSettings) -> Floats:
     return velocities
 
 
+_BEHIND = 0.64  # metres behind the start that a way round may use
+
 Answer = tuple[Floats, RootPlanKind, tuple[float, float]]
 
 
@@ -206,15 +211,34 @@ class _Query:
         states[0] = self.start
         return states
 
-    def _free(self, states: Floats, skin: float) -> bool:
-        """Whether the shown motion is free, and a stop from each of its key frames."""
+    def _kept(self, states: Floats) -> int:
+        """The number of leading key intervals that are free, with a free stop from the end of each."""
         shown = dense_states(states, self.interval, self.settings.spacing)
-        if np.any(self._clearance(shown) < skin):
-            return False
-        tails = stopping_states(states, self.interval, self.bounds, self.settings.spacing)
-        return not np.any(self._clearance(tails) < skin)
+        touched = self._clearance(shown) < self.skin
+        kept = int(np.argmax(touched)) * self.horizon // len(shown) if touched.any() else self.horizon
+        tails, owner = stopping_states(states[: kept + 1], self.interval, self.bounds, self.settings.spacing)
+        blocked = owner[self._clearance(tails) < self.skin]
+        return int(blocked[0]) - 1 if len(blocked) else kept
 
-    def stop(self, kind: RootPlanKind) -> tuple[Floats, RootPlanKind]:
+    def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, bool]:
+        """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
+
+        Also whether it is the first candidate and whole.
+        """
+        best, farthest = None, 0.0
+        for i, states in enumerate(candidates):
+            kept = self._kept(states)
+            if kept == self.horizon:
+                return states, i == 0
+            brake(states, kept, self.interval, self.bounds)
+            if 2 * kept >= self.horizon:
+                return states, False
+            length = _length(states)
+            if kept > 0 and length > farthest:
+                best, farthest = states, length
+        return (best, False) if best is not None else (self.stop(), False)
+
+    def stop(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
         for hard in (1.0, 2.0, 4.0):
             states = self._blank()
@@ -224,58 +248,41 @@ class _Query:
             brake(states, 0, self.interval, bounds)
             shown = dense_states(states, self.interval, self.settings.spacing)
             if not np.any(self._clearance(shown) < 0.0):
-                return states, kind
-        states = self._blank()
-        states[:] = states[0]
+                return states
+        states = np.repeat(self._blank()[:1], self.horizon + 1, axis=0)
         states[:, 3:6] = 0.0
-        return states, RootPlanKind.STOPPED
+        return states
 
     def steered(self, wanted: Floats) -> Answer:
         """Hold the wanted velocities in the body's own axes, slower if need be."""
-        for share in self.settings.slower:
+
+        def candidate(share: float) -> Floats:
             states = self._blank()
             steer(states, wanted * np.array([share, share, 1.0]), self.interval, self.bounds)
-            if self._free(states, self.skin):
-                kind = RootPlanKind.STRAIGHT if share == 1.0 else RootPlanKind.SHORTENED
-                return states, kind, _place(states[-1])
-        states = self._blank()
-        steer(states, wanted, self.interval, self.bounds)
-        return self._cut_short(states)
+            return states
+
+        states, whole = self._best(candidate(share) for share in self.settings.slower)
+        return states, self._kind(states, whole, detour=False), _place(states[-1])
 
     def travelled(self, line: TravelLine, speed: float) -> Answer:
         """Walk along the line of travel, or round what stands in it."""
         route, detour, stops = self._route(line)
-        for share in self.settings.slower:
-            states = self._blank()
-            self._follow(states, route, line, share * speed, stops)
-            if self._free(states, self.skin):
-                return states, self._kind(states, detour, share < 1.0), _place(route[-1])
-        states = self._blank()
-        self._follow(states, route, line, speed, stops)
-        return self._cut_short(states)
 
-    def _follow(self, states: Floats, route: Floats, line: TravelLine, speed: float, stops: bool) -> None:
-        look_ahead = 0.3 + 0.3 * speed
-        follow(states, route, Travel(speed, line.facing, line.turns, stops, look_ahead), self.interval, self.bounds)
+        def candidate(share: float) -> Floats:
+            states, wanted = self._blank(), share * speed
+            travel = Travel(wanted, line.facing, line.turns, stops, 0.3 + 0.3 * wanted)
+            follow(states, route, travel, self.interval, self.bounds)
+            return states
 
-    def _kind(self, states: Floats, detour: bool, slower: bool) -> RootPlanKind:
-        moved = math.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
-        turned = abs(states[-1, 2] - states[0, 2])
-        if moved < 0.02 and turned < 0.05:
+        states, whole = self._best(candidate(share) for share in self.settings.slower)
+        return states, self._kind(states, whole, detour=detour), _place(route[-1])
+
+    def _kind(self, states: Floats, whole: bool, *, detour: bool) -> RootPlanKind:
+        if _length(states) < 0.02 and np.ptp(states[:, 2]) < 0.05:
             return RootPlanKind.STOPPED
-        if slower:
+        if not whole:
             return RootPlanKind.SHORTENED
         return RootPlanKind.DETOUR if detour else RootPlanKind.STRAIGHT
-
-    def _cut_short(self, wished: Floats) -> Answer:
-        """As much of a path as is free with a stop after it."""
-        for kept in range(self.horizon - 1, 0, -1):
-            states = wished.copy()
-            brake(states, kept, self.interval, self.bounds)
-            if self._free(states, self.skin):
-                return states, RootPlanKind.SHORTENED, _place(states[-1])
-        states, kind = self.stop(RootPlanKind.STOPPED)
-        return states, kind, _place(states[-1])
 
     def _route(self, line: TravelLine) -> tuple[Floats, bool, bool]:
         """Corner points of the way to go; whether it is a way round; whether it ends before an obstacle."""
@@ -288,11 +295,11 @@ class _Query:
         free = self._free_length(straight)
         if free >= sight:
             return straight, False, False
-        for margin in self.settings.margins:
-            route = self._way_round(line, ahead, left, margin)
+        for margin, cell in self.settings.searches:
+            route = self._way_round(line, ahead, left, margin, cell)
             gained = line.coordinates(*route[-1])[0] - ahead
-            if gained > 0.8 * sight:
-                return route, True, False
+            if gained > free + self.settings.worth_it:
+                return route, True, gained < sight - 2.0 * cell
         return _truncated(straight, max(0.0, free - 0.05)), False, True
 
     def _free_length(self, route: Floats) -> float:
@@ -303,13 +310,12 @@ class _Query:
         clear = self.body.standing_clearance(self.table, points[:, 0], points[:, 1])
         self.checks += len(points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
-        blocked = np.flatnonzero((clear < self.settings.margins[-1]) & ~leaving)
+        blocked = np.flatnonzero((clear < self.settings.margin) & ~leaving)
         return float(along[blocked[0]]) if len(blocked) else math.inf
 
-    def _way_round(self, line: TravelLine, ahead: float, left: float, margin: float) -> Floats:
-        cell, wide = self.settings.cell, self.settings.widest_detour
-        half = math.ceil(wide / cell)
-        behind = 8 * cell
+    def _way_round(self, line: TravelLine, ahead: float, left: float, margin: float, cell: float) -> Floats:
+        half = math.ceil(self.settings.widest_detour / cell)
+        behind = math.ceil(_BEHIND / cell) * cell
         origin = line.point(ahead - behind, -half * cell)
         shape = (math.ceil((behind + self.settings.sight) / cell) + 1, 2 * half + 1)
         window = walkable_window(self.table, self.body.stance, origin, line.heading, shape, cell)
@@ -320,6 +326,11 @@ class _Query:
 def _place(row: Floats) -> tuple[float, float]:
     """The first two components of a state or of a route's point: x and z."""
     return float(row[0]), float(row[1])
+
+
+def _length(states: Floats) -> float:
+    """Metres between the first place and the last."""
+    return math.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
 
 
 def _dense_points(route: Floats, spacing: float) -> tuple[Floats, Floats]:
