@@ -12,17 +12,19 @@ Floats = NDArray[np.float64]
 
 
 def joint_frames(skeleton: Skeleton, local: Floats, hips: Floats, root: Floats) -> tuple[Floats, Floats]:
-    """World positions (J, 3) and rotations (J, 4); `hips` (3,) in the root frame."""
-    positions, rotations = np.zeros((len(skeleton.names), 3)), np.zeros((len(skeleton.names), 4))
-    heading = quaternion.about_axis(1, root[2])
+    """World positions (..., J, 3) and rotations (..., J, 4); `hips` (..., 3) in the root frame, `root` (..., 7)."""
+    positions, rotations = np.zeros((*local.shape[:-1], 3)), np.zeros(local.shape)
+    heading = quaternion.about_axis(1, root[..., 2])
+    origin = root[..., :2] @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     for j, parent in enumerate(skeleton.parents):
         if parent < 0:
-            positions[j] = np.array([root[0], 0.0, root[1]]) + quaternion.rotate(heading, hips)
-            rotations[j] = quaternion.multiply(heading, local[j])
+            positions[..., j, :] = origin + quaternion.rotate(heading, hips)
+            rotations[..., j, :] = quaternion.multiply(heading, local[..., j, :])
         else:
             offset = skeleton.positions[j] - skeleton.positions[parent]
-            positions[j] = positions[parent] + quaternion.rotate(rotations[parent], offset)
-            rotations[j] = quaternion.multiply(rotations[parent], local[j])
+            above = rotations[..., parent, :]
+            positions[..., j, :] = positions[..., parent, :] + quaternion.rotate(above, offset)
+            rotations[..., j, :] = quaternion.multiply(above, local[..., j, :])
     return positions, rotations
 
 

@@ -52,16 +52,15 @@ def sole_points(height: float, roots: Floats) -> tuple[BodyModel, Floats]:
     humanoid = proportional_humanoid(height)
     model, skeleton = body_model(humanoid), humanoid.skeleton
     out = np.empty((len(roots), 2, 3, 3))
-    for n, root in enumerate(roots):
-        local = kinematics.local_rotations(model, np.zeros(13), root)
-        places, turns = joint_frames(skeleton, local, kinematics.hips_position(model, root), root)
-        for i, side in enumerate(("left", "right")):
-            foot, toes = skeleton.index(f"{side}Foot"), skeleton.index(f"{side}Toes")
-            ankle = float(skeleton.positions[foot, 1])
-            ball, heel = model.gait.legs[i, 6:8]
-            out[n, i, 0] = places[foot] + quaternion.rotate(turns[foot], [0.0, -ankle, -heel])
-            out[n, i, 1] = places[foot] + quaternion.rotate(turns[foot], [0.0, -ankle, ball])
-            out[n, i, 2] = out[n, i, 1] + quaternion.rotate(turns[toes], [0.0, 0.0, 0.035 * height])
+    local = np.array([kinematics.local_rotations(model, np.zeros(13), root) for root in roots])
+    hips = np.array([kinematics.hips_position(model, root) for root in roots])
+    places, turns = joint_frames(skeleton, local, hips, roots)
+    for i, side in enumerate(("left", "right")):
+        foot, toes = skeleton.index(f"{side}Foot"), skeleton.index(f"{side}Toes")
+        ankle, (ball, heel) = float(skeleton.positions[foot, 1]), model.gait.legs[i, 6:8]
+        out[:, i, 0] = places[:, foot] + quaternion.rotate(turns[:, foot], [0.0, -ankle, -heel])
+        out[:, i, 1] = places[:, foot] + quaternion.rotate(turns[:, foot], [0.0, -ankle, ball])
+        out[:, i, 2] = out[:, i, 1] + quaternion.rotate(turns[:, toes], [0.0, 0.0, 0.035 * height])
     return model, out
 
 
