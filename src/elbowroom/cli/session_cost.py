@@ -69,7 +69,7 @@ def _url(server: "subprocess.Popen[str]") -> str:
 
 
 def _measured(url: str, seconds: float, ready: float) -> SessionCost:
-    with connect(url.replace("http", "ws", 1) + "/ws", compression=None, open_timeout=_PATIENCE) as client:
+    with connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE) as client:
         _walk(client, _SETTLE)
         before = _usage(url)
         tally = _walk(client, seconds)

@@ -55,8 +55,8 @@ def url_of(opened: socket.socket) -> str:
     return f"http://{shown}:{port}"
 
 
-def serve(library: Library, opened: socket.socket, on_ready: Callable[[], None] = lambda: None) -> None:
-    """Serve until interrupted (then the KeyboardInterrupt passes through); `on_ready` is called once it answers."""
+def make_server(library: Library, opened: socket.socket) -> uvicorn.Server:
+    """The server of an application for this socket; `run(sockets=[opened])` runs it."""
     config = uvicorn.Config(
         make_app(library, opened.getsockname()[0]),
         ws="websockets-sansio",
@@ -70,8 +70,12 @@ def serve(library: Library, opened: socket.socket, on_ready: Callable[[], None] 
         log_config=None,
         server_header=False,
     )
-    server = uvicorn.Server(config)
-    asyncio.run(_serve(server, opened, on_ready))
+    return uvicorn.Server(config)
+
+
+def serve(library: Library, opened: socket.socket, on_ready: Callable[[], None] = lambda: None) -> None:
+    """Serve until interrupted (then the KeyboardInterrupt passes through); `on_ready` is called once it answers."""
+    asyncio.run(_serve(make_server(library, opened), opened, on_ready))
 
 
 async def _serve(server: uvicorn.Server, opened: socket.socket, on_ready: Callable[[], None]) -> None:

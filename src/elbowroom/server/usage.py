@@ -1,5 +1,6 @@
 """What this process has cost so far."""
 
+import os
 import sys
 import time
 from dataclasses import dataclass
@@ -21,10 +22,10 @@ def process_usage() -> Usage:
 
 
 def _resident_bytes() -> int:
-    import resource
-
     statm = Path("/proc/self/statm")
     if statm.is_file():
-        return int(statm.read_text().split()[1]) * resource.getpagesize()
+        return int(statm.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    import resource
+
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak if sys.platform == "darwin" else peak * 1024
