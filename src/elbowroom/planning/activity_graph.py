@@ -51,6 +51,7 @@ class ActivityGraph:
         points = clamp(group, np.asarray(configurations, np.float64).reshape(-1, group.size))
         _check(points, radius, capacity)
         self.group = group
+        self.resets = 0  # how often the graph was begun anew
         self._initial = points
         rows = capacity + VISITORS
         self.arrays = GraphArrays(
@@ -64,7 +65,7 @@ class ActivityGraph:
             float(radius),
             int(capacity),
         )
-        self.reset()
+        self._begin()
 
     @classmethod
     def from_clips(
@@ -88,6 +89,10 @@ class ActivityGraph:
 
     def reset(self) -> None:
         """Forget every vertex that was added since construction, and all visitors."""
+        self.resets += 1
+        self._begin()
+
+    def _begin(self) -> None:
         self.arrays.size[0] = 0
         self.arrays.visitors[0] = 0
         for point in self._initial:

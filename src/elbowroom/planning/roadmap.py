@@ -40,14 +40,16 @@ class PosedGraph:
         self.limb = limb
         self.graph = graph
         self._segments = pose(limb, graph.vertices)
+        self._resets = graph.resets
 
     @property
     def segments(self) -> Floats32:
         """The vertices' capsules (C, 6, V) in the limb's frame, metres."""
-        known, size = self._segments.shape[2], self.graph.size
-        if size < known:
-            self._segments = np.ascontiguousarray(self._segments[:, :, :size])
-        elif size > known:
+        if self._resets != self.graph.resets:
+            self._segments = np.ascontiguousarray(self._segments[:, :, : self.graph.initial_size])
+            self._resets = self.graph.resets
+        known = self._segments.shape[2]
+        if self.graph.size > known:
             new = pose(self.limb, self.graph.vertices[known:])
             self._segments = np.concatenate([self._segments, new], axis=2)
         return self._segments

@@ -1,0 +1,53 @@
+"""Goal functions along a root path."""
+
+import numpy as np
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, within_limits
+from elbowroom.body.stock_clips import arm_swing_goal
+from elbowroom.planning.goal import fixed_goal, goal_configurations, natural_walk, periodic_goal
+from elbowroom.planning.root_path import RootPath
+
+
+def walk(speed: float, rate: float = 0.9, horizon: int = 30, interval: float = 0.2) -> RootPath:
+    states = np.zeros((horizon + 1, 7))
+    time = interval * np.arange(horizon + 1)
+    states[:, 1], states[:, 3], states[:, 6] = speed * time, speed, rate * time
+    return RootPath(0.0, interval, states)
+
+
+def test_a_fixed_goal_stays() -> None:
+    goals = fixed_goal([0.1, -0.2])(walk(1.0))
+    np.testing.assert_array_equal(goals, np.tile([0.1, -0.2], (31, 1)))
+
+
+def test_a_fixed_goal_keeps_its_own_copy() -> None:
+    wanted = np.zeros(2)
+    goal = fixed_goal(wanted)
+    wanted[0] = 1.0
+    assert not goal(walk(1.0)).any()
+
+
+def test_a_periodic_goal_follows_phase_and_speed_of_the_path() -> None:
+    path = walk(1.2)
+    goals = periodic_goal(DofGroup.LEFT_ARM)(path)
+    np.testing.assert_array_equal(goals, arm_swing_goal(DofGroup.LEFT_ARM, path.states[:, 6], path.states[:, 3]))
+    assert np.ptp(goals[:, 0]) > np.deg2rad(20.0)
+
+
+def test_arms_hang_still_when_the_body_stands() -> None:
+    goals = goal_configurations(natural_walk(), walk(0.0, rate=0.0))
+    np.testing.assert_array_equal(goals, np.tile(goals[0], (31, 1)))
+    np.testing.assert_allclose(goals[0, 2:6], goals[0, 6:])
+
+
+def test_arms_swing_against_each_other_at_full_speed() -> None:
+    goals = goal_configurations(natural_walk(), walk(1.3))
+    left, right = goals[:, 2], goals[:, 6]
+    assert np.corrcoef(left, right)[0, 1] < -0.8
+
+
+def test_the_natural_walk_has_a_goal_for_every_group_and_stays_within_limits() -> None:
+    goals = natural_walk()
+    assert set(goals) == set(LOCAL_GROUPS)
+    q = np.concatenate([np.zeros((31, 3)), goal_configurations(goals, walk(2.2, rate=1.2))], axis=1)
+    assert within_limits(q)
