@@ -37,11 +37,16 @@ class FakeRootPlanner:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         pass
 
-    def plan(self, start: RootState, command: Command, horizon: int, interval: float) -> FakeRootPlan:
+    def reset(self) -> None:
+        pass
+
+    def plan(
+        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float
+    ) -> FakeRootPlan:
         states = np.tile(start.as_array(), (horizon + 1, 1))
         states[:, 3] = command.forward
         states[:, 1] += command.forward * interval * np.arange(horizon + 1)
-        return FakeRootPlan(RootPath(0.0, interval, states))
+        return FakeRootPlan(RootPath(start_time, interval, states))
 
 
 class FakePlanner:

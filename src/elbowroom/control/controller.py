@@ -12,7 +12,7 @@ from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.canned import canned_walk, standing_posture
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.rehearsal import frozen_motion, is_playable
+from elbowroom.control.rehearsal import Rehearsal, frozen_motion
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -25,8 +25,7 @@ Floats = NDArray[np.float64]
 
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
-_SETTLE = 0.05  # seconds: time constant with which the legs come to a stand where the avatar is held
-_LEAD_OVER = 0.1  # seconds: the same where motion goes on
+_SETTLE = 0.06  # seconds: time constant with which the legs come to a stand where the avatar is held, or lead over
 _STILL = 0.02  # m/s and rad/s: slower is standing
 _SAME = 1e-6  # radians
 
@@ -171,13 +170,17 @@ class Controller:
             self._resting = command.idle and self._stands_still(path, motions[0])
 
     def _ways_out(self, path: RootPath, motions: list[Floats]) -> list[Floats]:
-        """Of the motions that could follow a contact, those that do not touch again at once.
+        """Of the motions that could follow a contact, those that do not touch again within the first key interval.
 
-        Hard against an obstacle nearly every move of a limb touches it, so keeping the pose while the root moves is
-        tried as well: whoever walked in can walk out.
+        Hard against an obstacle nearly every move of a limb touches it. So to keep the pose is a way out too: where the
+        plan's way begins too close by, or, without a plan, where the root leads away: whoever walked in can walk out.
         """
-        motions = [*motions, frozen_motion(path, self._shown.upper)]
-        return [motion for motion in motions if is_playable(self._queue, path, motion, self._shown, self._check)]
+        rehearsal = Rehearsal(self._queue, self._shown, self._stance, self._check)
+        if any(rehearsal.is_playable(path, motion) for motion in motions):
+            return motions
+        frozen = frozen_motion(path, self._shown.upper)
+        useful = bool(motions) or rehearsal.leads_away(path, frozen, self._clearance)
+        return [frozen] if useful and rehearsal.is_playable(path, frozen) else []
 
     def _planning_start(self, command: Command) -> tuple[float, Floats, Floats]:
         """Time, root state and upper body from which to plan.
@@ -195,7 +198,7 @@ class Controller:
         return self._queue.time, root, self._shown.upper
 
     def _stands_still(self, path: RootPath, uppers: Floats) -> bool:
-        moving = np.abs(path.states[:, 3:6]).max() > 0.0 or np.abs(self._shown.upper_velocity).max() > _SAME
+        moving = path.states[:, 3:6].any() or self._stance.any() or np.abs(self._shown.upper_velocity).max() > _SAME
         return not moving and bool(np.abs(uppers - self._shown.upper).max() < _SAME)
 
     def _play(self, dt: float) -> None:
@@ -207,22 +210,24 @@ class Controller:
         if ended:
             self._hold(dt)
             return
-        playback = self._blended(self._queue.sample(), dt)
-        clearance = self._check.clearance(playback.root, playback.upper)
-        if clearance < 0.0 and self._assist:
+        playback = self._queue.sample()
+        for stance in self._stances(dt):
+            posed = _in_stance(playback, stance)
+            clearance = self._check.clearance(posed.root, posed.upper)
+            if clearance >= 0.0 or not self._assist:
+                self._held, self._stance = False, stance
+                self._show(posed, clearance)
+                break
+        else:
             self._hold(dt)
-            return
-        self._held = False
-        self._show(playback, clearance)
         if self._queue.empty:
             self._next = Phase.RESET
 
-    def _blended(self, playback: Playback, dt: float) -> Playback:
-        """Lead the legs over from the stance in which they were held: only it is left of that motion, not its speed."""
-        self._stance *= math.exp(-dt / _LEAD_OVER)
-        self._stance[np.abs(self._stance) < _STILL] = 0.0
-        playback.root[3:6] += self._stance
-        return playback
+    def _stances(self, dt: float) -> list[Floats]:
+        """What may be left of the stance in which the legs were held: less than before; all, where that touches."""
+        faded = self._stance * math.exp(-dt / _SETTLE)
+        faded[np.abs(faded) < _STILL] = 0.0
+        return [faded, self._stance] if self._stance.any() else [faded]
 
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""
@@ -266,3 +271,9 @@ class Controller:
         k = min(int(place), len(goals) - 2)
         goal: Floats = goals[k] + (place - k) * (goals[k + 1] - goals[k])
         return goal
+
+
+def _in_stance(playback: Playback, stance: Floats) -> Playback:
+    root = playback.root.copy()
+    root[3:6] += stance
+    return playback._replace(root=root)

@@ -1,4 +1,4 @@
-"""Playing a motion in advance: how long it stays clear of everything."""
+"""Playing a motion in advance: how clear of everything it stays."""
 
 import copy
 
@@ -14,16 +14,30 @@ Floats = NDArray[np.float64]
 _SPACING = 1 / 60  # seconds between rehearsed poses
 
 
-def is_playable(queue: KeyFrameQueue, path: RootPath, uppers: Floats, now: Playback, check: BodyCheck) -> bool:
-    """Whether the first key interval of a motion would touch nothing, if the queue were refilled with it now."""
-    trial = copy.copy(queue)  # a refill makes new arrays, so the queue itself stays as it is
-    trial.refill(path, uppers, now)
-    for _ in range(round(path.interval / _SPACING)):
-        trial.advance(_SPACING)
-        playback = trial.sample()
-        if check.clearance(playback.root, playback.upper) < 0.0:
-            return False
-    return True
+class Rehearsal:
+    """What would be shown from now on, if the queue were refilled: only looked at, the queue stays as it is."""
+
+    def __init__(self, queue: KeyFrameQueue, now: Playback, stance: Floats, check: BodyCheck) -> None:
+        self._queue, self._now, self._stance, self._check = queue, now, stance, check
+
+    def is_playable(self, path: RootPath, uppers: Floats) -> bool:
+        """Whether the motion touches nothing within its first key interval."""
+        return bool(self._clearances(path, uppers, path.interval).min() >= 0.0)
+
+    def leads_away(self, path: RootPath, uppers: Floats, clearance: float) -> bool:
+        """Whether the motion ends with more than the given clearance, metres."""
+        return bool(self._clearances(path, uppers, path.interval * path.horizon)[-1] > clearance)
+
+    def _clearances(self, path: RootPath, uppers: Floats, duration: float) -> Floats:
+        trial = copy.copy(self._queue)  # a refill makes new arrays, so the original is not changed
+        trial.refill(path, uppers, self._now)
+        found = []
+        for _ in range(round(duration / _SPACING)):
+            trial.advance(_SPACING)
+            root, upper, _ = trial.sample()
+            root[3:6] += self._stance
+            found.append(self._check.clearance(root, upper))
+        return np.array(found)
 
 
 def frozen_motion(path: RootPath, upper: Floats) -> Floats:
