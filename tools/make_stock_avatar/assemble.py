@@ -6,6 +6,7 @@ import numpy as np
 
 from make_stock_avatar import clothes, palette
 from make_stock_avatar.about import vrm_extension
+from make_stock_avatar.cut import cut
 from make_stock_avatar.eyes import Sheet, eyeball, joined, lash, lids, mirrored_sheet
 from make_stock_avatar.features import brow, mouth
 from make_stock_avatar.fields import Array, Field
@@ -42,20 +43,23 @@ def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
 
 
 def _body() -> tuple[Part, ...]:
-    arm = _bare(left_arm_mesh(2420), clothes.shirt, 0.010)
+    arm = _bare(left_arm_mesh(2380), clothes.shirt, 0.010)
     shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0090, 2350)
-    collar = _clay(clothes.collar, (-0.10, 1.41, -0.11), (0.10, 1.49, 0.08), 0.0040, 430)
+    collar = clothes.collar_mesh()
     trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2200)
     shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), 0.0070, 850)
     sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0048, 440)
     shirt = _bare(shirt, clothes.trousers, 0.018)
     trousers = _bare(trousers, clothes.shirt, 0.030)
+    shirt, bands = cut(shirt, np.abs(shirt.points[:, 0]) - clothes.SLEEVE_BAND)
+    turn_ups, trousers = cut(trousers, trousers.points[:, 1] - clothes.TURN_UP)
     shoe = _bare(_bare(shoe, clothes.sole, 0.004), clothes.trousers, 0.012)
     return (
         _skin_part(_both(arm)),
         _cloth_part(shirt, palette.SHIRT, body_weights),
-        _cloth_part(collar, palette.TRIM, body_weights),
+        _cloth_part(_together(collar, bands), palette.TRIM, body_weights),
         _cloth_part(trousers, palette.TROUSERS, body_weights),
+        _cloth_part(turn_ups, palette.TURN_UPS, body_weights),
         _cloth_part(_both(shoe), palette.SHOES, shoe_weights),
         _cloth_part(_both(sole), palette.SOLES, shoe_weights),
     )
@@ -63,12 +67,12 @@ def _body() -> tuple[Part, ...]:
 
 def _head() -> tuple[Part, ...]:
     skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), 0.0050, 3600)
-    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0055, 2250)
+    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0056, 2180)
     skin = _bare(_bare(skin, hair, 0.006), clothes.shirt, 0.012)
     locks_colours = tinted(locks, lambda p: np.minimum(hair(p), figure(p)), 0.8, np.array([0.45, 0.35, 0.3]))
     left, right = eyeball(1.0), mirrored_sheet(eyeball(-1.0))
     return (
-        _skin_part(skin, 0.4),
+        _skin_part(skin, 0.25),
         _part(locks, palette.HAIR, locks_colours, lambda p: rigid(p, "head")),
         *(
             _part(eye.mesh, palette.EYES, eye.colours, lambda p, b=bone: rigid(p, b))  # type: ignore[misc]
@@ -104,11 +108,14 @@ def _renamed(sheet: Sheet, blink: str) -> Sheet:
 
 def _both(mesh: Mesh) -> Mesh:
     """A left mesh and its mirror image."""
-    other = mesh.mirrored()
+    return _together(mesh, mesh.mirrored())
+
+
+def _together(one: Mesh, other: Mesh) -> Mesh:
     return Mesh(
-        np.concatenate([mesh.points, other.points]),
-        np.concatenate([mesh.normals, other.normals]),
-        np.concatenate([mesh.triangles, other.triangles + len(mesh.points)]),
+        np.concatenate([one.points, other.points]),
+        np.concatenate([one.normals, other.normals]),
+        np.concatenate([one.triangles, other.triangles + len(one.points)]),
     )
 
 
@@ -118,7 +125,7 @@ def _skin_part(mesh: Mesh, depth: float = 0.7) -> Part:
 
 
 def _cloth_part(mesh: Mesh, material: Material, weigh: Weigh) -> Part:
-    return _part(mesh, material, tinted(mesh, figure, 0.9, np.array(palette.SHADOW)), weigh)
+    return _part(mesh, material, tinted(mesh, figure, 0.7, np.array(palette.SHADOW)), weigh)
 
 
 def _part(

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from make_stock_avatar.fields import Array, chain, common, ellipsoid, mirrored, round_cone, union
+from make_stock_avatar.fields import Array, chain, common, ellipsoid, mirrored, normals, round_cone, union
 from make_stock_avatar.loft import Row, between, loft
+from make_stock_avatar.polygonise import Mesh, drawn_to
 
 # y, half-widths in x and z, centre in x and z
 _TRUNK: tuple[Row, ...] = (
@@ -47,6 +48,8 @@ _LEG: tuple[Row, ...] = (
 HEM = 0.935  # y of the shirt's lower edge, metres
 SLEEVE_END = 0.298  # x of the left sleeve's edge, metres
 CUFF = 0.088  # y of the trousers' lower edge, metres
+TURN_UP = 0.124  # y of the upper edge of the trousers' turn-ups, metres
+SLEEVE_BAND = 0.276  # x at which the left sleeve's band begins, metres
 
 
 def trunk(p: Array, grow: float = 0.0) -> Array:
@@ -71,13 +74,29 @@ def _neckline(p: Array) -> Array:
 def collar(p: Array) -> Array:
     """The ribbed band around the neck."""
     height = p[:, 1] - _neckline(p)
-    ring = np.sqrt((p[:, 0] / 1.05) ** 2 + (p[:, 2] + 0.019) ** 2) - 0.0575 + 0.45 * height
+    ring = np.sqrt((p[:, 0] / 1.05) ** 2 + (p[:, 2] + 0.019) ** 2) - 0.0550 + 0.45 * height
     return np.asarray((np.abs(ring / 0.0055) ** 2.4 + np.abs(height / 0.0110) ** 2.4) ** (1 / 2.4) - 1.0) * 0.0055
+
+
+def collar_mesh(around: int = 44, across: int = 9) -> Mesh:
+    """The collar as a closed ring of `around` by `across` points."""
+    turn = np.repeat(np.arange(around) * 2.0 * np.pi / around, across)
+    tilt = np.tile(np.arange(across) * 2.0 * np.pi / across, around)
+    radius = 0.0550 + 0.006 * np.cos(tilt)
+    points = np.column_stack([1.05 * radius * np.sin(turn), np.zeros(len(turn)), radius * np.cos(turn) - 0.019])
+    points[:, 1] = _neckline(points) + 0.011 * np.sin(tilt)
+    points = drawn_to(collar, points, 0.01, steps=6)
+    i = np.arange(around * across).reshape(around, across)
+    right, up = np.roll(i, -1, axis=0), np.roll(i, -1, axis=1)
+    both = np.roll(right, -1, axis=1)
+    quads = np.stack([i, right, both, up], axis=-1).reshape(-1, 4)
+    return Mesh(points, normals(collar, points), np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]))
 
 
 def trousers(p: Array) -> Array:
     q = mirrored(p)
-    leg = loft(q, 1, _LEG)
+    turn_up = 0.0035 * np.clip((TURN_UP + 0.006 - q[:, 1]) / 0.008, 0.0, 1.0)
+    leg = loft(q, 1, _LEG) - turn_up
     leg = common(leg, q[:, 1] - 0.90, 0.06)
     pelvis = common(trunk(q, 0.004), between(q[:, 1], 0.825, 1.04), 0.05)
     seat = ellipsoid(q, (0.062, 0.875, -0.058), (0.080, 0.085, 0.066))
@@ -118,4 +137,4 @@ def shoe(p: Array) -> Array:
 def sole(p: Array) -> Array:
     q = mirrored(p)
     rise = 0.008 * np.clip((q[:, 2] - 0.12) / 0.06, 0.0, 1.0) ** 2
-    return common(_last(q, 0.0045), between(q[:, 1], rise * 0.6, 0.027 + rise), 0.006)
+    return common(_last(q, 0.0045), between(q[:, 1], rise * 0.6, 0.027 + rise), 0.010)

@@ -17,15 +17,14 @@ def _laid(xy: Array, lift: Array) -> Array:
 
 
 def _brow_points(raise_inner: float = 0.0, raise_outer: float = 0.0) -> Array:
-    u = np.linspace(0.0, 1.0, 17)
+    u = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
     x = 0.0135 + 0.0445 * u
     y = 1.6240 + 0.0105 * np.sin(np.pi * (0.12 + 0.74 * u) ** 1.15) - 0.0035 * u
     y = y + raise_inner * (1 - u) + raise_outer * u
     half = 0.0042 * np.clip(1.0 - u**2.6, 0.0, 1.0) * np.sqrt(np.clip((u + 0.01) / 0.14, 0.0, 1.0)) + 0.0002
-    rows = []
-    for side, lift in ((-1.0, -0.0006), (-0.45, 0.0014), (0.45, 0.0014), (1.0, -0.0006)):
-        rows.append(_laid(np.column_stack([x, y + side * half]), np.full(len(u), lift)))
-    return np.concatenate(rows)
+    sides = np.repeat([-1.0, -0.45, 0.45, 1.0], len(u))
+    lift = np.where(np.abs(sides) < 1.0, 0.0014, -0.0006)
+    return _laid(np.column_stack([np.tile(x, 4), np.tile(y, 4) + sides * np.tile(half, 4)]), lift)
 
 
 def brow(colour: Array) -> Sheet:
@@ -58,11 +57,9 @@ def _mouth_points(shape: str) -> Array:
     u = np.sin(np.linspace(-0.5, 0.5, 21) * np.pi)
     line = _MIDDLE + corner * np.abs(u) ** 1.8
     bulge = np.sqrt(np.maximum(1.0 - u * u, 0.0))
-    rows = []
-    for s in (-1.0, -0.5, 0.0, 0.5, 1.0):
-        y = line + (up if s > 0 else down) * s * bulge
-        rows.append(_laid(np.column_stack([half * u, y]), np.full(len(u), 0.0006)))
-    return np.concatenate(rows)
+    s = np.repeat([-1.0, -0.5, 0.0, 0.5, 1.0], len(u))
+    y = np.tile(line, 5) + np.where(s > 0, up, down) * s * np.tile(bulge, 5)
+    return _laid(np.column_stack([np.tile(half * u, 5), y]), np.full(len(y), 0.0006))
 
 
 def mouth(colour: Array) -> Sheet:

@@ -75,17 +75,17 @@ def carved(a: Array, tool: Array, k: float = 0.0) -> Array:
     return common(a, -tool, k)
 
 
-def gradient(field: Field, points: Array, step: float = 4e-4) -> Array:
-    """Central differences of a field, (N, 3)."""
-    columns = []
-    for axis in range(3):
-        offset = np.zeros(3)
-        offset[axis] = step
-        columns.append((field(points + offset) - field(points - offset)) / (2.0 * step))
-    return np.column_stack(columns)
+_TETRAHEDRON = np.array([[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0]])
+
+
+def value_and_gradient(field: Field, points: Array, step: float = 3e-4) -> tuple[Array, Array]:
+    """A field's values (N,) and gradients (N, 3) from its values at the corners of a small tetrahedron."""
+    corners = [field(points + step * corner) for corner in _TETRAHEDRON]
+    slope = sum(v[:, None] * corner for v, corner in zip(corners, _TETRAHEDRON, strict=True)) / (4.0 * step)
+    return np.asarray(np.mean(corners, axis=0)), np.asarray(slope)
 
 
 def normals(field: Field, points: Array) -> Array:
     """Outward unit normals of a field's level sets, (N, 3)."""
-    slope = gradient(field, points)
+    _, slope = value_and_gradient(field, points)
     return np.asarray(slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-12))

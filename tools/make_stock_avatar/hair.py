@@ -51,5 +51,5 @@ def hair(p: Array) -> Array:
     ear = ellipsoid(q, (0.090, 1.582, -0.002), (0.034, 0.036, 0.026))
     cap = carved(cap, ear, 0.012)
     for lock in _LOCKS:
-        cap = union(cap, _lock(p, lock), 0.011)
+        cap = union(cap, _lock(p, lock), 0.013)
     return cap

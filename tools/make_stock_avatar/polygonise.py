@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from make_stock_avatar.fields import Array, Field, gradient, normals
+from make_stock_avatar.fields import Array, Field, normals, value_and_gradient
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +43,26 @@ def lattice(low: tuple[float, ...], high: tuple[float, ...], cell: tuple[float, 
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
 
 
+def is_manifold(triangles: NDArray[np.int64]) -> bool:
+    """Whether no directed edge is used twice by polygons (N, 3 or 4)."""
+    base = int(triangles.max()) + 1
+    keys = (triangles * base + np.roll(triangles, -1, axis=1)).ravel()
+    return len(np.unique(keys)) == len(keys)
+
+
 def polygonise(field: Field, corners: Array, relax: int = 4, warp: Callable[[Array], Array] | None = None) -> Mesh:
-    """The zero level of `field` on a lattice (nx, ny, nz, 3); `warp` bends the corners first."""
+    """The zero level of `field` on a lattice (nx, ny, nz, 3); `warp` bends the corners first.
+
+    Raises ValueError where two sheets of the surface share a cell: choose another cell size or thicker clay.
+    """
     shape = corners.shape[:3]
     points = corners.reshape(-1, 3)
     points = warp(points) if warp else points
     values = field(points).reshape(shape)
     vertices, cells = _cell_vertices(values, points.reshape(*shape, 3))
     quads = _quads(values, cells)
+    if not is_manifold(quads):
+        raise ValueError("two sheets of the surface share a cell of the lattice")
     vertices = _settle(field, vertices, quads, relax)
     return Mesh(vertices, normals(field, vertices), _triangles(vertices, quads))
 
@@ -117,15 +129,15 @@ def _settle(field: Field, vertices: Array, quads: NDArray[np.int64], relax: int)
                 np.add.at(total, quads[:, i], vertices[quads[:, j]])
                 np.add.at(count, quads[:, i], 1.0)
         moved = 0.5 * (vertices + total / count[:, None])
-        vertices = drawn_to(field, moved, size)
-    return drawn_to(field, vertices, size, steps=4)
+        vertices = drawn_to(field, moved, size, steps=1)
+    return drawn_to(field, vertices, size, steps=3)
 
 
 def drawn_to(field: Field, points: Array, limit: float, steps: int = 2) -> Array:
     """Newton steps onto the surface, none longer than half of `limit`."""
     for _ in range(steps):
-        slope = gradient(field, points)
-        step = -field(points)[:, None] * slope / np.maximum((slope * slope).sum(axis=1, keepdims=True), 0.05)
+        value, slope = value_and_gradient(field, points)
+        step = -value[:, None] * slope / np.maximum((slope * slope).sum(axis=1, keepdims=True), 0.05)
         length = np.linalg.norm(step, axis=1, keepdims=True)
         points = points + step * np.minimum(1.0, 0.5 * limit / np.maximum(length, 1e-12))
     return points
