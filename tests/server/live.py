@@ -91,5 +91,5 @@ class Client:
 @contextmanager
 def client_of(url: str, **options: object) -> Iterator[Client]:
     uri = url.replace("http", "ws", 1) + "/ws"
-    with connect(uri, compression=None, proxy=None, open_timeout=LONG, **options) as connection:  # type: ignore[arg-type]
+    with connect(uri, compression=None, proxy=None, open_timeout=LONG, close_timeout=1.0, **options) as connection:  # type: ignore[arg-type]
         yield Client(connection)

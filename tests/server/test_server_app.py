@@ -1,0 +1,258 @@
+"""The web application: what it serves, what it refuses."""
+
+import asyncio
+import http.client
+import json
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from live import running
+from starlette.responses import PlainTextResponse
+
+from elbowroom.body.stock import stock_avatar_path
+from elbowroom.errors import InputError
+from elbowroom.server import app as app_module
+from elbowroom.server import avatar_store, uploads
+from elbowroom.server.app import make_app
+from elbowroom.server.guard import Guard, host_of, is_loopback
+from elbowroom.server.library import Library
+from elbowroom.server.serving import listen, url_of
+
+LOCAL = "http://127.0.0.1:8765"
+
+
+class Page:
+    """Asks an application without a network between."""
+
+    def __init__(self, app: Any, base: str = LOCAL, client: str = "127.0.0.1") -> None:
+        self._app, self._base, self._client = app, base, (client, 50000)
+
+    def get(self, path: str, **options: Any) -> httpx.Response:
+        return asyncio.run(self._ask("GET", path, options))
+
+    def post(self, path: str, **options: Any) -> httpx.Response:
+        return asyncio.run(self._ask("POST", path, options))
+
+    async def _ask(self, method: str, path: str, options: dict[str, Any]) -> httpx.Response:
+        transport = httpx.ASGITransport(self._app, client=self._client)
+        async with httpx.AsyncClient(transport=transport, base_url=self._base) as client:
+            return await client.request(method, path, **options)
+
+
+def made(library: Library, bound: str = "127.0.0.1", base: str = LOCAL, client: str = "127.0.0.1") -> Page:
+    return Page(make_app(library, bound), base, client)
+
+
+@pytest.fixture(scope="module")
+def library() -> Iterator[Library]:
+    opened = Library.open("b")
+    yield opened
+    opened.avatars.close()
+
+
+@pytest.fixture
+def page(library: Library) -> Page:
+    return made(library)
+
+
+def test_the_catalog_and_the_scenes(page: Page) -> None:
+    catalog = page.get("/api/catalog").json()
+    assert catalog["queueSizes"] == [3, 4, 5, 6, 7]
+    for choice in catalog["scenes"]:
+        scene = page.get(f"/api/scenes/{choice['name']}").json()
+        assert scene["title"] == choice["title"]
+        assert all(len(box["size"]) == 3 for box in scene["boxes"])
+    assert page.get("/api/scenes/nowhere").status_code == 404
+
+
+def test_health_tells_what_the_process_costs(page: Page) -> None:
+    health = page.get("/api/health").json()
+    assert health["status"] == "ok"
+    assert health["sessions"] == 0
+    assert health["residentBytes"] > 1e6
+    assert page.get("/api/health").json()["cpuSeconds"] >= health["cpuSeconds"]
+
+
+def test_the_stock_avatar_is_served_as_it_is(page: Page) -> None:
+    response = page.get("/avatars/stock.glb")
+    assert response.headers["content-type"] == "model/gltf-binary"
+    assert response.content == stock_avatar_path().read_bytes()
+    assert page.get("/avatars/nobody.glb").status_code == 404
+
+
+def test_every_answer_carries_the_security_headers(page: Page) -> None:
+    for path in ("/", "/api/health", "/nothing-here", "/avatars/stock.glb"):
+        headers = page.get(path).headers
+        assert headers["x-content-type-options"] == "nosniff"
+        assert "default-src 'self'" in headers["content-security-policy"]
+        assert "unsafe-eval" not in headers["content-security-policy"]
+        assert "server" not in headers
+
+
+def test_without_a_built_page_there_is_a_word_how_to_build_it(
+    library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app_module, "client_folder", lambda: tmp_path)
+    response = made(library).get("/")
+    assert response.status_code == 503
+    assert "make env" in response.text
+
+
+def test_the_page_is_served_and_nothing_beside_it(
+    library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = tmp_path / "client"
+    (client / "assets").mkdir(parents=True)
+    (client / "index.html").write_text("<title>the page</title>")
+    (client / "assets" / "index-1a2b.js").write_text("1")
+    (client / ".stamp").write_text("secret")
+    (tmp_path / "outside.txt").write_text("secret")
+    monkeypatch.setattr(app_module, "client_folder", lambda: client)
+    page = made(library)
+    assert "the page" in page.get("/").text
+    assert page.get("/").headers["cache-control"] == "no-cache"
+    assert "immutable" in page.get("/assets/index-1a2b.js").headers["cache-control"]
+    ways = ("/.stamp", "/../outside.txt", "/%2e%2e/outside.txt", "/..%2foutside.txt", "/assets/..%5c..%5coutside.txt")
+    for way in (*ways, "//etc/passwd", "/%00", "/assets/%2e%2e/%2e%2e/outside.txt"):
+        response = page.get(way)
+        assert response.status_code in (400, 404), way
+        assert "secret" not in response.text
+
+
+# --- who may talk to the server ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "8.8.8.8", "localhost@evil.example", ""])
+def test_foreign_hosts_are_refused(page: Page, host: str) -> None:
+    assert page.get("/api/health", headers={"host": host}).status_code == 403
+
+
+@pytest.mark.parametrize("host", ["localhost:8765", "127.0.0.1:9000", "[::1]:8765", "LOCALHOST", "127.1.2.3"])
+def test_this_machines_own_names_are_known(page: Page, host: str) -> None:
+    assert page.get("/api/health", headers={"host": host}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("origin", "status"),
+    [
+        (LOCAL, 422),
+        ("http://localhost:8765", 403),
+        ("http://127.0.0.1:8766", 403),
+        ("http://evil.example", 403),
+        ("null", 403),
+        ("", 403),
+        (None, 422),
+    ],
+)
+def test_only_the_page_itself_may_send_files(page: Page, origin: str | None, status: int) -> None:
+    headers = {} if origin is None else {"origin": origin}
+    assert page.post("/api/avatars", content=b"no avatar", headers=headers).status_code == status
+
+
+def test_from_other_machines_only_pages_of_an_open_server_may_send(library: Library) -> None:
+    there = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9")
+    assert there.get("/api/health").status_code == 200
+    assert there.post("/api/avatars", content=b"x").status_code == 403
+    assert there.post("/api/avatars", content=b"x", headers={"origin": "http://192.168.1.5:8765"}).status_code == 422
+    assert there.get("/api/health", headers={"host": "rebound.example"}).status_code == 403
+
+
+def test_a_loopback_server_does_not_know_the_addresses_of_the_network(library: Library) -> None:
+    assert made(library, base="http://192.168.1.5:8765").get("/api/health").status_code == 403
+
+
+def test_hosts_are_read_as_browsers_do() -> None:
+    assert host_of("Example.org:80") == "example.org"
+    assert host_of("[::1]:8765") == "::1"
+    assert host_of("[::1") == ""
+    assert is_loopback("127.9.9.9")
+    assert not is_loopback("0.0.0.0")
+
+
+def test_a_request_with_two_hosts_is_refused() -> None:
+    async def inner(scope: object, receive: object, send: object) -> None:
+        await PlainTextResponse("in")(scope, receive, send)  # type: ignore[arg-type]
+
+    client = Page(Guard(inner, "127.0.0.1"))
+    two = [("host", "127.0.0.1:8765"), ("host", "evil.example")]
+    assert client.get("/", headers=two).status_code == 403
+
+
+# --- files dropped on the page -----------------------------------------------------------------------------------
+
+
+def test_a_file_dropped_on_the_page_becomes_an_avatar(page: Page) -> None:
+    data = stock_avatar_path().read_bytes()
+    answer = page.post("/api/avatars?name=mine.vrm", content=data)
+    assert answer.status_code == 201
+    choice = answer.json()
+    assert page.get(f"/avatars/{choice['id']}.glb").content == data
+    assert choice in page.get("/api/catalog").json()["avatars"]
+
+
+@pytest.mark.parametrize("data", [b"", b"glTF", b"{}", b"\x00" * 1000, b'{"asset": {"version": "2.0"}}', b"PK\x03\x04"])
+def test_a_file_that_is_no_avatar_gets_one_clear_line(page: Page, data: bytes) -> None:
+    answer = page.post("/api/avatars?name=broken.vrm", content=data)
+    assert answer.status_code == 422
+    assert "broken.vrm" in answer.json()["error"]
+    assert "\n" not in answer.json()["error"]
+
+
+async def twice(chunk: bytes) -> AsyncIterator[bytes]:
+    yield chunk
+    yield chunk
+
+
+def test_a_file_that_is_too_large_is_refused(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(uploads, "MAX_UPLOAD", 1000)
+    assert page.post("/api/avatars", content=b"x" * 1001).status_code == 413
+    assert page.post("/api/avatars", content=twice(b"x" * 600)).status_code == 413
+
+
+def test_a_length_that_is_announced_too_large_is_refused_before_the_body_comes(library: Library) -> None:
+    with running(library) as url:
+        connection = http.client.HTTPConnection(url.removeprefix("http://"), timeout=60)
+        connection.putrequest("POST", "/api/avatars")
+        connection.putheader("Content-Length", str(10**12))
+        connection.endheaders()
+        answer = connection.getresponse()
+        assert answer.status == 413
+        assert "64 MiB" in json.loads(answer.read())["error"]
+        connection.close()
+
+
+def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(avatar_store, "MAX_UPLOADS", 2)
+    store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()
+    first, second = (store.add_upload(data, "one.vrm") for _ in range(2))
+    store.get(first.id)
+    third = store.add_upload(data, "three.vrm")
+    assert {choice.id for choice in store.choices()} == {"stock", first.id, third.id}
+    assert second.glb is not None
+    assert not second.glb.exists()
+    with pytest.raises(InputError, match="drop its file"):
+        store.get(second.id)
+    assert first.glb is not None
+    folder = first.glb.parent
+    store.close()
+    assert not folder.exists()
+
+
+# --- ports -------------------------------------------------------------------------------------------------------
+
+
+def test_a_busy_port_gives_the_next_free_one() -> None:
+    with listen("127.0.0.1", 0) as first:
+        port = first.getsockname()[1]
+        with listen("127.0.0.1", port) as second:
+            assert second.getsockname()[1] > port
+            assert url_of(second) == f"http://127.0.0.1:{second.getsockname()[1]}"
+
+
+def test_an_address_that_is_not_ours_is_refused() -> None:
+    for host in ("203.0.113.7", "no such host", ""):
+        with pytest.raises(InputError, match="name"), listen(host, 0):
+            pass
