@@ -7,7 +7,7 @@ import type { Intent, SteeringMode } from "./input/steering";
 import type { ShownPose } from "./net/pose_timeline";
 import { OverlayDrawing, type Moment } from "./overlays/overlays";
 import type { Theme } from "./stage/palette";
-import { cheaper, fixedQuality, QualityGovernor, startingQuality, type QualityName } from "./stage/quality";
+import { cheaper, fixedQuality, QualityGovernor, startingQuality, type Quality, type QualityName } from "./stage/quality";
 import { Stage } from "./stage/stage";
 import { World } from "./stage/world";
 
@@ -40,7 +40,7 @@ export class Picture {
   ) {
     this.automatic = quality === "auto";
     this.stage = new Stage(host, fixedQuality(quality === "auto" ? "high" : quality, devicePixelRatio));
-    if (this.automatic) this.setQuality("auto");
+    this.setQuality(quality);
     this.camera = new ThirdPersonCamera(calm);
     this.overlays = new OverlayDrawing(() => this.stage.palette, label);
     this.stage.scene.add(this.world.group, this.avatar.group, this.overlays.group);
@@ -51,17 +51,17 @@ export class Picture {
     const quality = this.automatic
       ? startingQuality(this.stage.rendererName, devicePixelRatio)
       : fixedQuality(name as Exclude<QualityName, "auto">, devicePixelRatio);
-    this.stage.setQuality(quality);
+    this.applyQuality(quality);
   }
 
   setTheme(theme: Theme): void {
     this.stage.paint(theme);
-    this.world.repaint(this.stage.palette);
+    this.world.repaint(this.stage.palette, this.stage.currentQuality.rich);
     this.overlays.repaint();
   }
 
   showScene(scene: SceneMessage): void {
-    this.world.show(scene, this.stage.palette);
+    this.world.show(scene, this.stage.palette, this.stage.currentQuality.rich);
     this.overlays.setScene(this.world.boxes, scene.boxes.map((box) => box.name));
     this.last = [Infinity, Infinity];
   }
@@ -101,7 +101,13 @@ export class Picture {
   measure(seconds: number): void {
     if (!this.governor.frame(seconds) || !this.automatic) return;
     const next = cheaper(this.stage.currentQuality);
-    if (next) this.stage.setQuality(next);
+    if (next) this.applyQuality(next);
+  }
+
+  private applyQuality(quality: Quality): void {
+    this.stage.setQuality(quality);
+    this.avatar.setRich(quality.rich);
+    this.world.repaint(this.stage.palette, quality.rich);
   }
 
   private place(pose: ShownPose, scenery: Scenery, dt: number): void {

@@ -1,17 +1,11 @@
 /** The avatar as it stands in the world: takes poses, fades when the camera is close, blinks now and then. */
 
-import { Group, Mesh, type Material, type Object3D } from "three";
+import { Group, type Object3D } from "three";
 import type { AvatarMessage } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
 import type { AvatarFile } from "./avatar_file";
 import { Blinking } from "./blinking";
-
-interface FadingMaterial {
-  readonly material: Material;
-  readonly transparent: boolean;
-  readonly opacity: number;
-  readonly depthWrite: boolean;
-}
+import { Surfaces } from "./surfaces";
 
 export class AvatarView {
   /** Stands at the root: position on the ground, turned to the heading. */
@@ -19,8 +13,8 @@ export class AvatarView {
   private file: AvatarFile | null = null;
   private joints: (Object3D | undefined)[] = [];
   private hips: Object3D | undefined;
-  private materials: FadingMaterial[] = [];
-  private opacity = 1;
+  private surfaces: Surfaces | null = null;
+  private rich = true;
   private epoch = -1;
   private blinking: Blinking | null = null;
   private dispose: ((file: AvatarFile) => void) | null = null;
@@ -36,8 +30,7 @@ export class AvatarView {
     this.revision = message.revision;
     this.joints = message.bones.map((bone) => file?.nodes.get(bone.node));
     this.hips = this.joints[message.bones.findIndex((bone) => bone.name === "hips")];
-    this.materials = file ? fadingMaterials(file.scene) : [];
-    this.opacity = 1;
+    this.surfaces = file ? new Surfaces(file.scene, this.rich) : null;
     this.blinking = file?.vrm?.expressionManager ? new Blinking(file.vrm.expressionManager) : null;
     if (!file) return;
     const placed = new Group();
@@ -74,28 +67,12 @@ export class AvatarView {
 
   /** 1 is solid; below, the avatar is see-through. */
   fade(opacity: number): void {
-    const rounded = Math.round(opacity * 50) / 50;
-    if (rounded === this.opacity) return;
-    this.opacity = rounded;
-    for (const entry of this.materials) {
-      const { material } = entry;
-      const transparent = entry.transparent || rounded < 1;
-      if (material.transparent !== transparent) material.needsUpdate = true;
-      material.transparent = transparent;
-      material.opacity = entry.opacity * rounded;
-      material.depthWrite = entry.depthWrite;
-    }
+    this.surfaces?.fade(opacity);
   }
-}
 
-function fadingMaterials(scene: Object3D): FadingMaterial[] {
-  const found = new Map<Material, FadingMaterial>();
-  scene.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
-    for (const material of [object.material as Material | Material[]].flat()) {
-      const { transparent, opacity, depthWrite } = material;
-      found.set(material, { material, transparent, opacity, depthWrite });
-    }
-  });
-  return [...found.values()];
+  /** Whether surfaces are physically based or cheap. */
+  setRich(rich: boolean): void {
+    this.rich = rich;
+    this.surfaces?.setRich(rich);
+  }
 }

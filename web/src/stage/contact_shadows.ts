@@ -6,18 +6,22 @@ const FADE_HEIGHT = 1.6;
 const STRENGTH = 0.42;
 
 /**
- * A canvas of `width` by `depth` metres round `center`, white with an alpha that tells how dark the ground is.
+ * A canvas of `width` by `depth` metres round `center`: white where the ground is open, darker near the boxes.
  *
  * @param scale pixels per metre
+ * @param color of the darkest shadow
  */
 export function drawContactShadows(
   boxes: readonly PreparedBox[], center: readonly [number, number], width: number, depth: number, scale: number,
+  color: string,
 ): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = Math.max(1, Math.round(width * scale));
   canvas.height = Math.max(1, Math.round(depth * scale));
   const pen = canvas.getContext("2d");
   if (!pen) return canvas;
+  pen.fillStyle = "#fff";
+  pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.setTransform(scale, 0, 0, scale, canvas.width / 2 - center[0] * scale, canvas.height / 2 - center[1] * scale);
   for (const box of boxes) {
     const height = Math.max(0, lowestPoint(box));
@@ -26,7 +30,8 @@ export function drawContactShadows(
     const outline = footprint(box);
     for (const [blur, share] of [[0.05 + height * 0.3, 0.55], [0.2 + height * 0.5, 0.45]] as const) {
       pen.filter = `blur(${(blur * scale).toFixed(1)}px)`;
-      pen.fillStyle = `rgba(255, 255, 255, ${(strength * share).toFixed(3)})`;
+      pen.globalAlpha = strength * share;
+      pen.fillStyle = color;
       pen.beginPath();
       outline.forEach(([x, z], i) => (i === 0 ? pen.moveTo(x, z) : pen.lineTo(x, z)));
       pen.closePath();

@@ -2,7 +2,7 @@
 
 import {
   CanvasTexture, CircleGeometry, Color, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, PlaneGeometry, RepeatWrapping, SRGBColorSpace,
+  MeshLambertMaterial, MultiplyBlending, PlaneGeometry, RepeatWrapping, SRGBColorSpace, type BufferGeometry,
 } from "three";
 import type { PreparedBox } from "../camera/spring_arm";
 import { drawContactShadows } from "./contact_shadows";
@@ -14,43 +14,67 @@ const FIELD_RADIUS = 90;
 const SHADOW_PIXELS_PER_METRE = 48;
 const SHADOW_MAX_PIXELS = 1536;
 
+type FloorMaterial = MeshLambertMaterial | MeshBasicMaterial;
+
 export class Ground {
   readonly group = new Group();
-  private readonly field = new Mesh(new CircleGeometry(FIELD_RADIUS, 64), new MeshLambertMaterial());
-  private slab: Mesh<PlaneGeometry, MeshLambertMaterial> | null = null;
-  private contact: Mesh<PlaneGeometry, MeshBasicMaterial> | null = null;
-
-  constructor() {
-    this.field.rotation.x = -Math.PI / 2;
-    this.field.position.y = -0.012;
-    this.group.add(this.field);
-  }
 
   /** Lays the floor anew. `width` along x and `depth` along z in metres, round `center` (x, z). */
-  lay(width: number, depth: number, center: readonly [number, number], boxes: readonly PreparedBox[], palette: Palette): void {
+  lay(
+    width: number, depth: number, center: readonly [number, number], boxes: readonly PreparedBox[], palette: Palette,
+    rich: boolean,
+  ): void {
     this.clear();
-    this.field.material.color.set(palette.field);
-    this.field.position.set(center[0], -0.012, center[1]);
-    this.slab = new Mesh(new PlaneGeometry(width, depth), new MeshLambertMaterial({ map: gridTexture(palette, width, depth) }));
-    this.slab.rotation.x = -Math.PI / 2;
-    this.slab.position.set(center[0], 0, center[1]);
-    this.slab.receiveShadow = true;
-    this.contact = contactMesh(width, depth, center, boxes, palette);
-    this.group.add(this.slab, this.contact);
+    const grid = gridTexture(palette, width, depth, rich);
+    const contact = contactTexture(width, depth, center, boxes, palette);
+    const slab = floorMaterial(new Color(0xffffff), palette, rich);
+    slab.map = grid;
+    this.add(new PlaneGeometry(width, depth), slab, center, 0, 0);
+    this.add(new CircleGeometry(FIELD_RADIUS, 64), floorMaterial(new Color(palette.field), palette, rich), center, -0.012, 0.5);
+    if (rich) this.addContact(width, depth, center, contact);
+    else {
+      slab.aoMap = contact;
+    }
+  }
+
+  private addContact(width: number, depth: number, center: readonly [number, number], contact: CanvasTexture): void {
+    const material = new MeshBasicMaterial({
+      map: contact, transparent: true, depthWrite: false, toneMapped: false, blending: MultiplyBlending,
+      premultipliedAlpha: true,
+    });
+    this.add(new PlaneGeometry(width, depth), material, center, 0.004, 1);
+  }
+
+  private add(
+    geometry: BufferGeometry, material: FloorMaterial, center: readonly [number, number], height: number, order: number,
+  ): void {
+    const mesh = new Mesh(geometry, material);
+    mesh.rotation.x = -Math.PI / 2;
+    mesh.position.set(center[0], height, center[1]);
+    mesh.receiveShadow = true;
+    mesh.renderOrder = order;
+    this.group.add(mesh);
   }
 
   private clear(): void {
-    for (const mesh of [this.slab, this.contact]) {
-      if (!mesh) continue;
-      this.group.remove(mesh);
+    for (const child of [...this.group.children]) {
+      const mesh = child as Mesh<BufferGeometry, FloorMaterial>;
       mesh.geometry.dispose();
       mesh.material.map?.dispose();
+      mesh.material.aoMap?.dispose();
       mesh.material.dispose();
+      this.group.remove(mesh);
     }
   }
 }
 
-function gridTexture(palette: Palette, width: number, depth: number): CanvasTexture {
+/** A flat floor without shadows has one brightness all over, so the cheap one is not lit but painted with it. */
+function floorMaterial(color: Color, palette: Palette, rich: boolean): FloorMaterial {
+  if (rich) return new MeshLambertMaterial({ color });
+  return new MeshBasicMaterial({ color: color.multiply(new Color(palette.floorLight)) });
+}
+
+function gridTexture(palette: Palette, width: number, depth: number, rich: boolean): CanvasTexture {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = TILE_PIXELS;
   const pen = canvas.getContext("2d");
@@ -74,25 +98,17 @@ function gridTexture(palette: Palette, width: number, depth: number): CanvasText
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.repeat.set(width / TILE_METRES, depth / TILE_METRES);
   texture.offset.set(((-width / 2) / TILE_METRES) % 1, ((-depth / 2) / TILE_METRES) % 1);
-  texture.anisotropy = 8;
+  texture.anisotropy = rich ? 8 : 1;
   texture.minFilter = LinearMipmapLinearFilter;
   return texture;
 }
 
-function contactMesh(
+function contactTexture(
   width: number, depth: number, center: readonly [number, number], boxes: readonly PreparedBox[], palette: Palette,
-): Mesh<PlaneGeometry, MeshBasicMaterial> {
+): CanvasTexture {
   const scale = Math.min(SHADOW_PIXELS_PER_METRE, SHADOW_MAX_PIXELS / Math.max(width, depth));
-  const canvas = drawContactShadows(boxes, center, width, depth, scale);
-  const texture = new CanvasTexture(canvas);
+  const texture = new CanvasTexture(drawContactShadows(boxes, center, width, depth, scale, palette.contact));
   texture.minFilter = LinearFilter;
   texture.generateMipmaps = false;
-  const material = new MeshBasicMaterial({
-    map: texture, color: new Color(palette.contact), transparent: true, depthWrite: false, toneMapped: false,
-  });
-  const mesh = new Mesh(new PlaneGeometry(width, depth), material);
-  mesh.rotation.x = -Math.PI / 2;
-  mesh.position.set(center[0], 0.004, center[1]);
-  mesh.renderOrder = 1;
-  return mesh;
+  return texture;
 }

@@ -1,6 +1,6 @@
 /** The scene's boxes as things to look at: softly bevelled, each kind of size in its own calm colour. */
 
-import { Group, Mesh, MeshStandardMaterial, Quaternion } from "three";
+import { Group, Mesh, MeshLambertMaterial, MeshStandardMaterial, Quaternion } from "three";
 import { RoundedBoxGeometry } from "three/addons/geometries/RoundedBoxGeometry.js";
 import type { OrientedBox } from "../camera/spring_arm";
 import type { Palette } from "./palette";
@@ -11,18 +11,18 @@ const BEVEL_SEGMENTS = 2;
 export class Obstacles {
   readonly group = new Group();
 
-  /** Replaces all boxes. */
-  build(boxes: readonly OrientedBox[], palette: Palette): void {
+  /** Replaces all boxes; `rich` ones have physically based surfaces. */
+  build(boxes: readonly OrientedBox[], palette: Palette, rich: boolean): void {
     this.clear();
     boxes.forEach((box, i) => {
       const colour = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
-      this.group.add(boxMesh(box, colour));
+      this.group.add(boxMesh(box, colour, rich));
     });
   }
 
   private clear(): void {
     for (const child of [...this.group.children]) {
-      const mesh = child as Mesh<RoundedBoxGeometry, MeshStandardMaterial>;
+      const mesh = child as Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
       mesh.geometry.dispose();
       mesh.material.dispose();
       this.group.remove(mesh);
@@ -30,11 +30,12 @@ export class Obstacles {
   }
 }
 
-function boxMesh(box: OrientedBox, colour: number): Mesh {
+function boxMesh(box: OrientedBox, color: number, rich: boolean): Mesh {
   const [hx, hy, hz] = box.halfSize;
   const bevel = Math.min(BEVEL, 0.35 * Math.min(hx, hy, hz));
   const geometry = new RoundedBoxGeometry(2 * hx, 2 * hy, 2 * hz, BEVEL_SEGMENTS, bevel);
-  const mesh = new Mesh(geometry, new MeshStandardMaterial({ color: colour, roughness: 0.78, metalness: 0 }));
+  const material = rich ? new MeshStandardMaterial({ color, roughness: 0.78 }) : new MeshLambertMaterial({ color });
+  const mesh = new Mesh(geometry, material);
   mesh.position.set(...box.center);
   mesh.quaternion.copy(new Quaternion(...box.rotation));
   mesh.castShadow = mesh.receiveShadow = true;

@@ -10,7 +10,9 @@ export interface Palette {
   readonly slab: string;
   readonly gridFine: string;
   readonly gridBold: string;
-  readonly contact: number;
+  readonly contact: string;
+  /** What the lights make of a white floor that nothing shades. */
+  readonly floorLight: number;
   readonly keyLight: number;
   readonly keyIntensity: number;
   readonly skyLight: number;
@@ -39,7 +41,8 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     slab: "#efeae0",
     gridFine: "rgba(92, 84, 70, 0.09)",
     gridBold: "rgba(92, 84, 70, 0.20)",
-    contact: 0x3a3026,
+    contact: "#3a3026",
+    floorLight: 0xf6f1e6,
     keyLight: 0xfff1dc,
     keyIntensity: 2.5,
     skyLight: 0xdbe9f2,
@@ -65,7 +68,8 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     slab: "#2a323e",
     gridFine: "rgba(190, 210, 235, 0.055)",
     gridBold: "rgba(190, 210, 235, 0.13)",
-    contact: 0x04060a,
+    contact: "#04060a",
+    floorLight: 0xcfd3da,
     keyLight: 0xffe3c0,
     keyIntensity: 2.1,
     skyLight: 0x8fb0d8,

@@ -7,8 +7,8 @@ export interface Quality {
   readonly pixelRatio: number;
   readonly shadows: boolean;
   readonly antialias: boolean;
-  /** Reflections of a soft room on physically based materials. */
-  readonly environment: boolean;
+  /** Physically based materials with the reflections of a soft room; without, the cheapest that still look right. */
+  readonly rich: boolean;
 }
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
@@ -20,11 +20,11 @@ const RATIO_STEPS = [2, 1.5, 1, 0.75, 0.5] as const;
 export function fixedQuality(name: "low" | "medium" | "high", devicePixelRatio: number): Quality {
   switch (name) {
     case "low":
-      return { pixelRatio: 0.5, shadows: false, antialias: false, environment: false };
+      return { pixelRatio: 0.5, shadows: false, antialias: false, rich: false };
     case "medium":
-      return { pixelRatio: Math.min(devicePixelRatio, 1), shadows: true, antialias: true, environment: true };
+      return { pixelRatio: Math.min(devicePixelRatio, 1), shadows: true, antialias: true, rich: true };
     case "high":
-      return { pixelRatio: Math.min(devicePixelRatio, 2), shadows: true, antialias: true, environment: true };
+      return { pixelRatio: Math.min(devicePixelRatio, 2), shadows: true, antialias: true, rich: true };
   }
 }
 
@@ -38,7 +38,7 @@ export function cheaper(quality: Quality): Quality | null {
   const ratio = RATIO_STEPS.find((step) => step < quality.pixelRatio - 1e-3);
   if (ratio !== undefined && ratio >= 0.75) return { ...quality, pixelRatio: ratio };
   if (quality.shadows) return { ...quality, shadows: false };
-  if (quality.antialias) return { ...quality, antialias: false, environment: false };
+  if (quality.antialias) return { ...quality, antialias: false, rich: false };
   return ratio === undefined ? null : { ...quality, pixelRatio: ratio };
 }
 

@@ -39,7 +39,7 @@ export class Sky {
     });
     this.mesh = new Mesh(new SphereGeometry(1, 24, 12), material);
     this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = -10;
+    this.mesh.renderOrder = 1; // last of the solid things: only where nothing else is
   }
 
   paint(palette: Palette): void {

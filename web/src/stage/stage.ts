@@ -116,10 +116,10 @@ export class Stage {
     this.renderer.setPixelRatio(quality.pixelRatio);
     this.renderer.shadowMap.enabled = quality.shadows;
     this.sun.castShadow = quality.shadows;
-    if (quality.environment && !this.room) this.room = roomTexture(this.renderer);
-    this.scene.environment = quality.environment ? this.room : null;
+    if (quality.rich && !this.room) this.room = roomTexture(this.renderer);
+    this.scene.environment = quality.rich ? this.room : null;
     this.renderer.toneMappingExposure = this.palette.exposure;
-    this.fill.intensity = quality.environment ? 0.05 : 0.3;
+    this.fill.intensity = quality.rich ? 0.05 : 0.3;
   }
 
   private resize(): void {

@@ -21,19 +21,19 @@ export class World {
     this.group.add(this.ground.group, this.obstacles.group, this.gate.group);
   }
 
-  show(message: SceneMessage, palette: Palette): void {
+  show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
     this.boxes = message.boxes.map((box) => prepareBox(orientedBox(box)));
-    this.repaint(palette);
+    this.repaint(palette, rich);
   }
 
-  /** Builds everything again in other colours. */
-  repaint(palette: Palette): void {
+  /** Builds everything again in other colours or other materials. */
+  repaint(palette: Palette, rich: boolean): void {
     const { message } = this;
     if (!message) return;
     const { ground, start, finish } = message;
-    this.obstacles.build(message.boxes.map(orientedBox), palette);
-    this.ground.lay(ground.size[0], ground.size[1], ground.center, this.boxes, palette);
+    this.obstacles.build(message.boxes.map(orientedBox), palette, rich);
+    this.ground.lay(ground.size[0], ground.size[1], ground.center, this.boxes, palette, rich);
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
     this.gate.build(gate, [start.x, start.z], palette);
   }
