@@ -12,7 +12,6 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_line import TravelLine, asked_direction, new_line, wanted_speed, wanted_velocities
 from elbowroom.planning.root_motion import (
     MotionBounds,
     RootMotionSettings,
@@ -32,7 +32,7 @@ from elbowroom.planning.root_motion import (
     stopping_states,
 )
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_route import RouteSettings, find_route
+from elbowroom.planning.root_route import RouteSettings, find_route, route_points, shortened_route
 from elbowroom.world.scene import Scene
 from elbowroom.world.walkable import walkable_window
 
@@ -77,28 +77,6 @@ class RootPlan:
     nanoseconds: int
 
 
-class TravelLine(NamedTuple):
-    """The straight line that a held command asks for; a way round leads back to it."""
-
-    asked: tuple[float, ...]  # what the command says about the direction; the line lives while it stays the same
-    x: float
-    z: float
-    heading: float  # direction of travel
-    facing: float  # heading of the body
-    turns: bool  # whether the body turns to where it goes
-
-    def coordinates(self, x: float, z: float) -> tuple[float, float]:
-        """Metres ahead and to the left of the line's first point."""
-        sine, cosine = math.sin(self.heading), math.cos(self.heading)
-        dx, dz = x - self.x, z - self.z
-        return dx * sine + dz * cosine, dx * cosine - dz * sine
-
-    def point(self, ahead: float, left: float = 0.0) -> tuple[float, float]:
-        """The place on the ground with these coordinates."""
-        sine, cosine = math.sin(self.heading), math.cos(self.heading)
-        return self.x + ahead * sine + left * cosine, self.z + ahead * cosine - left * sine
-
-
 class RootPlanner:
     """Plans root paths for one humanoid in one scene.
 
@@ -129,57 +107,26 @@ class RootPlanner:
             states, kind, goal = query.stop(), RootPlanKind.STRAIGHT, (start.x, start.z)
         elif command.turn != 0.0 and command.direction is None:
             self._line = None
-            states, kind, goal = query.steered(_steering(command, self.settings.motion))
+            states, kind, goal = query.steered(wanted_velocities(command, self.settings.motion))
         else:
             self._line = self._travel_line(start, command)
-            states, kind, goal = query.travelled(self._line, _speed(command, self.settings.motion))
+            states, kind, goal = query.travelled(self._line, wanted_speed(command, self.settings.motion))
         self._last = states
         path = RootPath(start_time, interval, states)
         return RootPlan(path, kind, goal, query.checks, time.perf_counter_ns() - began)
 
     def _travel_line(self, start: RootState, command: Command) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed."""
-        line, asked = self._line, _asked(command)
+        line, asked = self._line, asked_direction(command)
         if line is not None and line.asked == asked and self._continues(start, line):
             return line
-        if command.direction is not None:
-            return TravelLine(asked, start.x, start.z, command.direction, command.direction, True)
-        settling = 0.5 * start.turn * abs(start.turn) / self.settings.motion.turn_acceleration
-        facing = start.heading + settling
-        way = facing + math.atan2(command.strafe, command.forward)
-        ahead = command.forward > 0.0 and command.strafe == 0.0
-        return TravelLine(asked, start.x, start.z, way, facing, ahead)
+        return new_line(start, command, self.settings.motion)
 
     def _continues(self, start: RootState, line: TravelLine) -> bool:
         """Whether a start goes on from the last path, within the breadth of a way round."""
         if self._last is None or abs(line.coordinates(start.x, start.z)[1]) >= self.settings.widest_detour:
             return False
         return bool(np.min(np.hypot(self._last[:, 0] - start.x, self._last[:, 1] - start.z)) < 0.5)
-
-
-def _asked(command: Command) -> tuple[float, ...]:
-    """What a command says about the direction of travel, speed aside."""
-    if command.direction is not None:
-        return (command.direction,)
-    return (round(math.atan2(command.strafe, command.forward), 3), 0.0)
-
-
-def _speed(command: Command, motion: RootMotionSettings) -> float:
-    """The wanted speed along the line of travel: the ellipse through forward, backward and sideways speeds."""
-    ahead = motion.run_speed if command.run else motion.walk_speed
-    if command.direction is not None:
-        return ahead * min(max(command.forward, 0.0), 1.0)
-    along = (ahead if command.forward > 0.0 else motion.back_speed) * min(max(command.forward, -1.0), 1.0)
-    return math.hypot(along, motion.strafe_speed * min(max(command.strafe, -1.0), 1.0))
-
-
-def _steering(command: Command, motion: RootMotionSettings) -> Floats:
-    """Wanted velocities forward, to the left, and heading rate, of a command that turns."""
-    ahead = motion.run_speed if command.run else motion.walk_speed
-    along = ahead if command.forward > 0.0 else motion.back_speed
-    wanted = np.array([command.forward, command.strafe, command.turn])
-    velocities: Floats = np.clip(wanted, -1.0, 1.0) * np.array([along, motion.strafe_speed, motion.turn_rate])
-    return velocities
 
 
 _BEHIND = 0.64  # metres behind the start that a way round may use
@@ -300,13 +247,13 @@ class _Query:
             gained = line.coordinates(*route[-1])[0] - ahead
             if gained > free + self.settings.worth_it:
                 return route, True, gained < sight - 2.0 * cell
-        return _truncated(straight, max(0.0, free - 0.05)), False, True
+        return shortened_route(straight, max(0.0, free - 0.05)), False, True
 
     def _free_length(self, route: Floats) -> float:
         """Metres along the route before the standing figure would touch; infinite if it never does."""
         if not len(self.table):
             return math.inf
-        points, along = _dense_points(route, 0.04)
+        points, along = route_points(route, 0.04)
         clear = self.body.standing_clearance(self.table, points[:, 0], points[:, 1])
         self.checks += len(points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
@@ -331,18 +278,3 @@ def _place(row: Floats) -> tuple[float, float]:
 def _length(states: Floats) -> float:
     """Metres between the first place and the last."""
     return math.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
-
-
-def _dense_points(route: Floats, spacing: float) -> tuple[Floats, Floats]:
-    """Points (N, 2) on a route at most `spacing` apart, and their distances (N,) along it."""
-    ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route, axis=0).T))])
-    along = np.linspace(0.0, ends[-1], max(2, math.ceil(ends[-1] / spacing) + 1))
-    points = np.stack([np.interp(along, ends, route[:, 0]), np.interp(along, ends, route[:, 1])], axis=1)
-    return points, along
-
-
-def _truncated(route: Floats, length: float) -> Floats:
-    """The first `length` metres of a route."""
-    points, along = _dense_points(route, 0.04)
-    keep = max(1, int(np.searchsorted(along, length, side="right")))
-    return points[:keep] if keep > 1 else points[[0, 0]]

@@ -6,6 +6,7 @@ a wall without a way round gives a route that ends before it. Costs: metres walk
 obstacles.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -78,6 +79,21 @@ def find_route(
     x = window.origin[0] + corners[:, 0] * sine + corners[:, 1] * cosine
     z = window.origin[1] + corners[:, 0] * cosine - corners[:, 1] * sine
     return np.stack([x, z], axis=1)
+
+
+def route_points(route: Floats, spacing: float) -> tuple[Floats, Floats]:
+    """Points (N, 2) on a route at most `spacing` apart, and their distances (N,) along it."""
+    ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route, axis=0).T))])
+    along = np.linspace(0.0, ends[-1], max(2, math.ceil(ends[-1] / spacing) + 1))
+    points = np.stack([np.interp(along, ends, route[:, 0]), np.interp(along, ends, route[:, 1])], axis=1)
+    return points, along
+
+
+def shortened_route(route: Floats, length: float) -> Floats:
+    """The first `length` metres of a route."""
+    points, along = route_points(route, 0.04)
+    keep = max(1, int(np.searchsorted(along, length, side="right")))
+    return points[:keep] if keep > 1 else points[[0, 0]]
 
 
 @exact_kernel
