@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 
@@ -49,10 +49,10 @@ class Client:
     def send(self, message: ClientMessage) -> None:
         self.connection.send(encode(message))
 
-    def press(self, **keys: float) -> int:
+    def press(self, **keys: Any) -> int:
         """Hold keys from now on; the number of the input."""
         self._seq += 1
-        self.hold = Input(seq=self._seq, **keys)  # type: ignore[arg-type]
+        self.hold = Input(seq=self._seq, **keys)
         self._next_input = 0.0
         return self._seq
 
@@ -89,7 +89,7 @@ class Client:
 
 
 @contextmanager
-def client_of(url: str, **options: object) -> Iterator[Client]:
+def client_of(url: str, **options: Any) -> Iterator[Client]:
     uri = url.replace("http", "ws", 1) + "/ws"
-    with connect(uri, compression=None, proxy=None, open_timeout=LONG, close_timeout=1.0, **options) as connection:  # type: ignore[arg-type]
+    with connect(uri, compression=None, proxy=None, open_timeout=LONG, close_timeout=1.0, **options) as connection:
         yield Client(connection)

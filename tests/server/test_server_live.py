@@ -62,7 +62,7 @@ def test_walking_forward_and_letting_go(client: Client) -> None:
     start = client.frame()
     seq = client.press(forward=1.0)
     heading = np.array([math.sin(start.heading), math.cos(start.heading)])
-    walking = client.frame(lambda f: heading @ [f.x - start.x, f.z - start.z] > 1.0)
+    walking = client.frame(lambda f: bool(heading @ [f.x - start.x, f.z - start.z] > 1.0))
     assert walking.acknowledged == seq
     assert walking.forward > 0.3
     assert walking.gait > start.gait

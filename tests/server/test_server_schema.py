@@ -21,7 +21,7 @@ GENERATED = Path(__file__).parents[2] / "web" / "src" / "generated" / "messages.
 
 def values_of(annotation: Any) -> st.SearchStrategy[Any]:
     origin, arguments = get_origin(annotation), get_args(annotation)
-    if is_dataclass(annotation):
+    if is_dataclass(annotation) and isinstance(annotation, type):
         hints = get_type_hints(annotation, include_extras=True)
         return st.builds(annotation, **{f.name: values_of(hints[f.name]) for f in fields(annotation)})
     if origin is Annotated:
