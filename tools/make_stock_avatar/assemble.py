@@ -8,11 +8,11 @@ from make_stock_avatar import clothes, palette
 from make_stock_avatar.about import vrm_extension
 from make_stock_avatar.cut import cut
 from make_stock_avatar.eyes import Sheet, eyeball, joined, lash, lids, mirrored_sheet
-from make_stock_avatar.features import brow, mouth
+from make_stock_avatar.features import brow, mouth, teeth
 from make_stock_avatar.fields import Array, Field
 from make_stock_avatar.hair import hair
 from make_stock_avatar.hand import left_arm_mesh
-from make_stock_avatar.head import head
+from make_stock_avatar.head import calm, head
 from make_stock_avatar.polygonise import Mesh, lattice, polygonise
 from make_stock_avatar.shading import blush, figure, tinted
 from make_stock_avatar.simplify import simplified
@@ -43,7 +43,7 @@ def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
 
 
 def _body() -> tuple[Part, ...]:
-    arm = _bare(left_arm_mesh(2380), clothes.shirt, 0.010)
+    arm = _bare(left_arm_mesh(2330), clothes.shirt, 0.010)
     shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0090, 2350)
     collar = clothes.collar_mesh()
     trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2200)
@@ -72,7 +72,7 @@ def _head() -> tuple[Part, ...]:
     locks_colours = tinted(locks, lambda p: np.minimum(hair(p), figure(p)), 0.8, np.array([0.45, 0.35, 0.3]))
     left, right = eyeball(1.0), mirrored_sheet(eyeball(-1.0))
     return (
-        _skin_part(skin, 0.25),
+        _skin_part(calm(skin), 0.25),
         _part(locks, palette.HAIR, locks_colours, lambda p: rigid(p, "head")),
         *(
             _part(eye.mesh, palette.EYES, eye.colours, lambda p, b=bone: rigid(p, b))  # type: ignore[misc]
@@ -87,7 +87,7 @@ def _face() -> dict[str, tuple[Part, ...]]:
     return {
         "Eyelids": (_face_part(_paired(lids(white)), palette.LIDS), _face_part(_paired([lash(white)]), palette.LASHES)),
         "Brows": (_face_part(_paired([brow(white)]), palette.BROWS),),
-        "Mouth": (_face_part(mouth(white), palette.MOUTH),),
+        "Mouth": (_face_part(mouth(white), palette.MOUTH), _face_part(teeth(white), palette.TEETH)),
     }
 
 

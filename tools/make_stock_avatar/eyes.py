@@ -79,14 +79,15 @@ def _vertex_normals(points: Array, triangles: NDArray[np.int64]) -> Array:
 
 _LID_AZIMUTHS = np.concatenate([[-84, -70, -59], np.linspace(-_CORNER, _CORNER, 19), [59, 70, 84]])
 _LID_STEPS = np.array([0.0, 0.0, 0.035, 0.16, 0.38, 0.68, 1.0])  # from edge to back
-_LID_HEIGHTS = np.array([0.985, 1.030, 1.050, 1.055, 1.050, 1.03, 1.0])  # of the eye radius
+_UPPER_HEIGHTS = np.array([0.985, 1.030, 1.050, 1.055, 1.050, 1.03, 1.0])  # of the eye radius
+_LOWER_HEIGHTS = np.array([0.985, 1.022, 1.030, 1.026, 1.005, 0.98, 0.96])
 
 
-def _lid(edge: Edge, back: float) -> Array:
+def _lid(edge: Edge, back: float, heights: Array) -> Array:
     azimuth = np.tile(_LID_AZIMUTHS, len(_LID_STEPS))
     step = np.repeat(_LID_STEPS, len(_LID_AZIMUTHS))
     start = edge(azimuth)
-    height = np.repeat(_LID_HEIGHTS, len(_LID_AZIMUTHS))[:, None] * EYE_RADIUS
+    height = np.repeat(heights, len(_LID_AZIMUTHS))[:, None] * EYE_RADIUS
     return np.array(EYE_CENTRE) + height * direction(azimuth, start + (back - start) * step)
 
 
@@ -123,8 +124,8 @@ def lids(skin: Array) -> list[Sheet]:
     """Upper and lower lid of the left eye, with the shapes of `_SHAPES`."""
     rows = len(_LID_STEPS)
     return [
-        _lid_sheet(lambda edge: _lid(edge, 96.0), upper_edge, rows, skin, 0),
-        _lid_sheet(lambda edge: _lid(edge, -92.0), lower_edge, rows, skin, 1),
+        _lid_sheet(lambda edge: _lid(edge, 96.0, _UPPER_HEIGHTS), upper_edge, rows, skin, 0),
+        _lid_sheet(lambda edge: _lid(edge, -92.0, _LOWER_HEIGHTS), lower_edge, rows, skin, 1),
     ]
 
 

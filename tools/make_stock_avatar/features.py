@@ -5,6 +5,7 @@ import numpy as np
 from make_stock_avatar.eyes import Sheet, sheet_mesh
 from make_stock_avatar.fields import Array
 from make_stock_avatar.head import on_face
+from make_stock_avatar.polygonise import Mesh
 
 _FRONT = np.array([0.0, 0.0, 1.0])
 
@@ -67,3 +68,24 @@ def mouth(colour: Array) -> Sheet:
     rest = _mouth_points("rest")
     targets = {name: _mouth_points(name) - rest for name in _MOUTHS if name != "rest"}
     return Sheet(sheet_mesh(rest, 5, 21, _FRONT), np.tile(colour, (len(rest), 1)), targets)
+
+
+_SHOWN = {"smile": 1.0, "aa": 0.55, "ee": 0.8}  # how much of the upper teeth a shape of the mouth shows
+
+
+def _teeth_points(shape: str) -> Array:
+    half, corner, up, down = _MOUTHS[shape]
+    shown = _SHOWN.get(shape, 0.0)
+    u = np.sin(np.linspace(-0.5, 0.5, 13) * np.pi)
+    line = _MIDDLE + corner * np.abs(u) ** 1.8
+    bulge = np.sqrt(np.maximum(1.0 - u * u, 0.0)) * shown
+    y = np.concatenate([line + 0.7 * up * bulge, line - 0.36 * down * bulge])
+    return _laid(np.column_stack([np.tile(0.86 * half * u, 2), y]), np.full(len(y), 0.0009))
+
+
+def teeth(colour: Array) -> Sheet:
+    """The upper teeth, folded away at rest; the targets of `mouth`."""
+    rest = _teeth_points("rest")
+    targets = {name: _teeth_points(name) - rest for name in _MOUTHS if name != "rest"}
+    mesh = sheet_mesh(_teeth_points("smile"), 2, 13, _FRONT)
+    return Sheet(Mesh(rest, mesh.normals, mesh.triangles), np.tile(colour, (len(rest), 1)), targets)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from make_stock_avatar.fields import Array, carved, common, ellipsoid, mirrored, round_cone, sphere, union
+from make_stock_avatar.fields import Array, carved, common, ellipsoid, mirrored, normals, round_cone, sphere, union
 from make_stock_avatar.loft import Row, loft
+from make_stock_avatar.polygonise import Mesh
 from make_stock_avatar.rest import EYE_CENTRE
 
 # y, half-widths in x and z, centre in x and z
@@ -24,20 +25,36 @@ def skull(q: Array) -> Array:
     return union(union(cranium, face, 0.03), jaw, 0.03)
 
 
-def head(p: Array) -> Array:
-    """Head, neck and the hidden plate under the shirt."""
-    q = mirrored(p)
-    body = skull(q)
+def _plain_face(q: Array) -> Array:
+    """The skull with chin, cheeks and the surroundings of the eyes."""
     chin = sphere(q, (0.007, 1.4995, 0.0680), 0.0190)
     cheek = ellipsoid(q, (0.036, 1.553, 0.055), (0.030, 0.029, 0.030))
     orbit = ellipsoid(q, (0.041, 1.590, 0.048), (0.0265, 0.032, 0.0245))
-    body = union(union(union(body, chin, 0.03), cheek, 0.025), orbit, 0.025)
+    return union(union(union(skull(q), chin, 0.03), cheek, 0.025), orbit, 0.025)
+
+
+def calm(mesh: Mesh, share: float = 0.45) -> Mesh:
+    """The head with the normals of its face turned by `share` towards those of a plainer face, for a clean light."""
+    plain = normals(lambda p: _plain_face(mirrored(p)), mesh.points)
+    front = (
+        share
+        * np.clip((mesh.points[:, 2] - 0.02) / 0.03, 0.0, 1.0)
+        * np.clip((mesh.points[:, 1] - 1.485) / 0.02, 0.0, 1.0)
+    )
+    mixed = mesh.normals * (1.0 - front)[:, None] + plain * front[:, None]
+    return Mesh(mesh.points, mixed / np.linalg.norm(mixed, axis=1, keepdims=True), mesh.triangles)
+
+
+def head(p: Array) -> Array:
+    """Head and neck."""
+    q = mirrored(p)
+    body = _plain_face(q)
     brow = round_cone(q, (0.0, 1.626, 0.0725), (0.045, 1.624, 0.056), 0.011, 0.010)
     body = union(body, brow, 0.03)
     socket = ellipsoid(q, (EYE_CENTRE[0] - 0.002, EYE_CENTRE[1], 0.096), (0.0280, 0.0190, 0.0170))
     body = carved(body, socket, 0.018)
-    nose = round_cone(q, (0.0, 1.594, 0.0790), (0.0, 1.5600, 0.0975), 0.0060, 0.0100)
-    wing = sphere(q, (0.0080, 1.5570, 0.0900), 0.0070)
+    nose = round_cone(q, (0.0, 1.594, 0.0785), (0.0, 1.5600, 0.0970), 0.0055, 0.0095)
+    wing = sphere(q, (0.0075, 1.5570, 0.0900), 0.0066)
     body = union(body, union(nose, wing, 0.010), 0.016)
     lips = ellipsoid(q, (0.0, 1.5255, 0.0770), (0.022, 0.0120, 0.0090))
     body = union(body, lips, 0.016)

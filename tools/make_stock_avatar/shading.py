@@ -48,4 +48,4 @@ def blush(points: Array, colours: Array) -> Array:
         amount = np.maximum(amount, strength * near * near * (3 - 2 * near))
     tips = np.clip((q[:, 0] - 0.80) / 0.08, 0.0, 1.0) * 0.35
     amount = np.maximum(amount, tips)[:, None]
-    return np.asarray(colours * (1.0 - amount * np.array([0.03, 0.30, 0.30])))
+    return np.asarray(colours * (1.0 - amount * np.array([0.03, 0.40, 0.38])))

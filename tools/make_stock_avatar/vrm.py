@@ -24,6 +24,7 @@ class Material:
     name: str
     colour: tuple[float, float, float]  # linear RGB
     roughness: float = 0.8
+    glow: float = 0.0  # share of the colour that shows in full shade, as light that scatters below skin
     double_sided: bool = False
 
 
@@ -151,6 +152,10 @@ def _material(material: Material) -> Json:
             "roughnessFactor": material.roughness,
         },
     }
+    if material.glow:
+        document["emissiveFactor"] = [
+            round(material.glow * c * w, 5) for c, w in zip(material.colour, (1.0, 0.8, 0.72))
+        ]
     if material.double_sided:
         document["doubleSided"] = True
     return document

@@ -69,7 +69,7 @@ def _spine(weights: Array, points: Array, share: Array) -> None:
 
 def _arm(weights: Array, side: str, own: Array, share: Array) -> None:
     x = own[:, 0]
-    elbow = ramp(x, joint("leftLowerArm")[0], 0.034)
+    elbow = ramp(x, joint("leftLowerArm")[0], 0.042)
     wrist = ramp(x, WRIST, 0.020)
     weights[:, INDEX[f"{side}UpperArm"]] += share * (1.0 - elbow)
     weights[:, INDEX[f"{side}LowerArm"]] += share * elbow * (1.0 - wrist)
