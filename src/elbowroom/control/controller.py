@@ -71,7 +71,7 @@ class Controller:
         self._plan_report: PlanReport | None = None
         self._command = Command()
         self._flow = self._next = Phase.PLAN
-        self._held = self._resting = False
+        self._held = self._blocked = self._resting = False
         self._stance = np.zeros(3)
         self._stand_at_start()
 
@@ -145,8 +145,8 @@ class Controller:
         return Phase.PLAY
 
     def _waits(self, command: Command) -> bool:
-        """Whether the avatar is held and a plan for the same wish failed less than an interval ago."""
-        if not self._held or self._plan_report is None or steering.changed(self._command, command):
+        """Whether a plan for the same wish found no way on less than an interval ago."""
+        if not self._blocked or self._plan_report is None or steering.changed(self._command, command):
             return False
         return self._queue.time - self._plan_report.time < self.settings.interval
 
@@ -165,6 +165,7 @@ class Controller:
         motions = [local.configurations] if report.found else []
         if self._held and self._assist:
             motions = self._ways_out(path, motions)
+        self._blocked = not motions and self._queue.empty
         if motions:
             self._queue.refill(path, motions[0], self._shown)
             self._resting = command.idle and self._stands_still(path, motions[0])
@@ -215,7 +216,7 @@ class Controller:
             posed = _in_stance(playback, stance)
             clearance = self._check.clearance(posed.root, posed.upper)
             if clearance >= 0.0 or not self._assist:
-                self._held, self._stance = False, stance
+                self._held, self._blocked, self._stance = False, False, stance
                 self._show(posed, clearance)
                 break
         else:
@@ -254,7 +255,7 @@ class Controller:
             root=self._shown.root,
             phase=self._flow,
             clearance=self._clearance,
-            stuck=self._held and not command.idle,
+            stuck=self._blocked and not command.idle,
             touching=self._clearance < 0.0,
             fill=self._queue.fill,
             key_frames=self._queue.unplayed(),
