@@ -19,7 +19,6 @@ from elbowroom.planning.self_contact import clear_of_trunk
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
 
-MARGIN = 0.01
 GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 
 
@@ -43,6 +42,7 @@ class Trial:
         self.graph = ActivityGraph(self.group, points, radius, capacity)
         self.before = self.graph.size
         self.goals = rng.normal(0.2, spread, (horizon + 1, self.group.size))
+        self.margins = rng.uniform(0.0, 0.1, horizon + 1)
         self.tables = np.stack([self._boxes(rng).table32 for _ in range(horizon + 1)])
         start = points[0] if rng.random() < 0.5 else rng.normal(0.2, spread, self.group.size)
         start = np.clip(start, *limits(self.group).T)
@@ -59,12 +59,12 @@ class Trial:
     def _draw_validity(self, rng: np.random.Generator) -> None:
         share = rng.uniform(0.1, 1.0)
         shape = self.roadmap.arrays.clearances.shape
-        self.roadmap.arrays.clearances[:] = np.where(rng.random(shape) < share, 0.1, -0.1)
+        self.roadmap.arrays.clearances[:] = np.where(rng.random(shape) < share, 0.2, rng.choice([-0.1, 0.05], shape))
         self.roadmap.arrays.ready[:] = True
-        self.free: NDArray[np.bool_] = self.roadmap.arrays.clearances > MARGIN
+        self.free: NDArray[np.bool_] = self.roadmap.arrays.clearances >= self.margins[:, None]
 
     def run(self) -> SearchResult:
-        return figure6.search(self.roadmap, self.goals, np.random.default_rng(self.seed), MARGIN, self.budget)
+        return figure6.search(self.roadmap, self.goals, np.random.default_rng(self.seed), self.margins, self.budget)
 
     def run_naive(self) -> tuple[naive.NaiveResult, naive.NaiveGraph]:
         arrays = self.graph.arrays
@@ -96,7 +96,7 @@ class Trial:
         limb = self.limb
         clearance = clearance_of(segments[:, :, 0], limb.radii, self.tables[depth])
         into_trunk = vertex < 0 and not clear_of_trunk(segments, limb.trunk, limb.allowed)[0]
-        return clearance < MARGIN or bool(into_trunk)
+        return clearance < self.margins[depth] or bool(into_trunk)
 
 
 def trials(model: BodyModel, count: int) -> Iterator[Trial]:
@@ -135,7 +135,7 @@ def test_a_path_keeps_to_edges_free_nodes_and_time(model: BodyModel) -> None:
         for depth, (a, b) in enumerate(zip(result.vertices[:-1], result.vertices[1:], strict=True), start=1):
             assert a == b or b in trial.graph.neighbors(a)
             assert np.linalg.norm(result.path[depth] - result.path[depth - 1]) < trial.graph.arrays.radius
-            assert trial.roadmap.clearance_of(b, depth) >= MARGIN
+            assert trial.roadmap.clearance_of(b, depth) >= trial.margins[depth]
 
 
 def test_exhausted_means_that_there_is_no_path(model: BodyModel) -> None:
@@ -165,7 +165,7 @@ def test_in_free_space_the_path_follows_goals_that_lie_on_the_graph(model: BodyM
         walk.append(int(rng.choice([walk[-1], *graph.neighbors(walk[-1])])))
     goals = graph.vertices[walk]
     roadmap = Roadmap(PosedGraph(limb_of(model, group), graph), np.empty((7, 0, 15)), goals[0])
-    result = figure6.search(roadmap, goals, rng)
+    result = figure6.search(roadmap, goals, rng, np.zeros(7))
     assert result.vertices.tolist() == walk
     assert result.nodes == 7
     assert result.enhanced == 0
@@ -185,5 +185,5 @@ def test_equal_seeds_give_equal_searches_and_reset_forgets(model: BodyModel) -> 
 def test_a_search_of_no_depth_is_its_source(model: BodyModel) -> None:
     graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 2)), 0.3)
     roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((1, 0, 15)), np.zeros(2))
-    result = figure6.search(roadmap, np.zeros((1, 2)), np.random.default_rng(0))
+    result = figure6.search(roadmap, np.zeros((1, 2)), np.random.default_rng(0), np.zeros(1))
     assert (result.status, result.checks, result.nodes) == (PlanStatus.FOUND, 0, 1)

@@ -83,7 +83,8 @@ def test_what_is_found_is_free_at_every_key_time_and_bounded_in_speed(humanoid: 
         assert [group.group for group in plan.evidence] == list(LOCAL_GROUPS)
         np.testing.assert_array_equal(plan.configurations[0], hanging())
         free = world_clearances(humanoid, scene, path, plan.configurations, list(LOCAL_GROUPS))
-        assert np.all(free[1:] >= settings.margin - 1e-5)
+        margins = LocalPlanner(humanoid, scene, settings).margins(path)
+        assert np.all(free[1:] >= margins[1:] - 1e-5)
         for group in LOCAL_GROUPS:
             part = plan.configurations[:, group.value.start - 3 : group.value.stop - 3]
             assert np.all(np.linalg.norm(np.diff(part, axis=0), axis=1) < settings.of(group).radius)
@@ -182,6 +183,16 @@ def test_boxes_out_of_reach_change_nothing(humanoid: Humanoid) -> None:
     ]
     np.testing.assert_array_equal(results[0].configurations, results[1].configurations)
     assert results[0].checks == results[1].checks
+
+
+def test_margins_grow_with_the_way_between_key_frames(humanoid: Humanoid) -> None:
+    settings = LocalPlannerSettings(margin=0.02, margin_of_way=0.5)
+    planner = LocalPlanner(humanoid, Scene.load("empty"), settings)
+    np.testing.assert_allclose(planner.margins(walk(speed=0.0)), 0.02)
+    np.testing.assert_allclose(planner.margins(walk(speed=1.0)), 0.12)
+    states = walk(speed=0.0, horizon=3).states.copy()
+    states[2:, 0] = 0.1
+    np.testing.assert_allclose(planner.margins(RootPath(0.0, 0.2, states)), [0.02, 0.07, 0.07, 0.02])
 
 
 def test_planners_are_made_by_name(humanoid: Humanoid) -> None:

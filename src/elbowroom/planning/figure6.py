@@ -34,12 +34,12 @@ _INSIDE = 1.0 - 1e-9  # random neighbours lie strictly within r, rounding includ
 
 
 def search(
-    roadmap: Roadmap, goals: Floats, rng: np.random.Generator, margin: float = 0.01, budget: int = 20_000
+    roadmap: Roadmap, goals: Floats, rng: np.random.Generator, margins: Floats, budget: int = 20_000
 ) -> SearchResult:
     """Search a path of depth n from the roadmap's source (paper, Figure 6).
 
-    `goals` (n+1, d) are the goal configurations at the key times; `margin` in metres is the clearance that counts as
-    free; `budget` is the greatest number of collision checks. One number is taken from `rng`, whatever happens.
+    `goals` (n+1, d) are the goal configurations at the key times; `margins` (n+1,) in metres are the clearances that
+    count as free there; `budget` is the greatest number of collision checks. One number is taken from `rng`, in any case.
     """
     began = perf_counter_ns()
     graph = roadmap.graph
@@ -50,7 +50,7 @@ def search(
         roadmap.arrays,
         np.ascontiguousarray(goals, np.float64),
         roadmap.source,
-        float(margin),
+        np.ascontiguousarray(margins, np.float64),
         int(budget),
         state,
         path,
@@ -141,7 +141,7 @@ def _search(
     roadmap: RoadmapArrays,
     goals: Floats,
     source: int,
-    margin: float,
+    margins: Floats,
     budget: int,
     state: NDArray[np.uint64],
     path: Ints,
@@ -165,12 +165,12 @@ def _search(
         if checks > budget:
             return _OUT_OF_BUDGET, budget, nodes, graph.size[0] - size
         touch(graph, roadmap, depth + 1)
-        count = _push_free(graph, roadmap, goals[depth + 1], target, depth + 1, margin, stack[top:])
+        count = _push_free(graph, roadmap, goals[depth + 1], target, depth + 1, margins[depth + 1], stack[top:])
         if count == 0 and graph.size[0] < graph.capacity:
             if checks == budget:
                 return _OUT_OF_BUDGET, budget, nodes, graph.size[0] - size
             checks += 1
-            vertex = _enhance(graph, roadmap, target, depth + 1, margin, state)
+            vertex = _enhance(graph, roadmap, target, depth + 1, margins[depth + 1], state)
             if vertex >= 0:
                 stack[top] = vertex
                 count = 1

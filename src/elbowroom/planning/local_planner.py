@@ -25,7 +25,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 _SWING_SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
-UPPER_DOF = sum(group.size for group in LOCAL_GROUPS)
+_NEARLY = 0.5  # metres: more than any margin
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,15 @@ class GroupSettings:
 class LocalPlannerSettings:
     """Settings of the local planner.
 
-    The radii allow, with key frames 0.2 s apart, 2 rad/s at the waist and 3 rad/s over an arm's joints together: what
-    a brisk swing of the arms and a quick but human evasion need.
+    The radii allow, with key frames 0.2 s apart, 2 rad/s at the waist and 2.5 rad/s over an arm's joints together: what
+    a brisk swing of the arms and a quick but human evasion need. As nothing is checked between key frames, the margin
+    grows with the way between them.
     """
 
     waist: GroupSettings = field(default=GroupSettings(samples_per_clip=6, radius=0.4))
-    arm: GroupSettings = field(default=GroupSettings(samples_per_clip=8, radius=0.6))
-    margin: float = 0.01  # metres of clearance that count as free
+    arm: GroupSettings = field(default=GroupSettings(samples_per_clip=10, radius=0.5))
+    margin: float = 0.01  # metres of clearance that count as free while the root stands
+    margin_of_way: float = 0.27  # what is added to it for each metre that the root moves to or from the key frame
     budget: int = 20_000  # collision checks for each group and plan
     capacity: int = 384  # vertices of a graph; a plan that begins with a full graph begins it anew
 
@@ -94,7 +96,7 @@ class LocalPlanner:
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Find motion along `path` that begins at `start` (10,): waist, left arm, right arm, radians.
 
-        `start` is taken as it is; every later key frame of the result keeps the margin from all boxes at its key time.
+        `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all boxes.
         """
         goals = goal_configurations(self.goals, path)
         configurations = np.empty_like(goals)
@@ -102,9 +104,11 @@ class LocalPlanner:
         positions, rotations = pelvis_frames(self._model, path.states)
         boxes = self._near(positions)
         tables = tables_in_frames(boxes, positions, rotations)
+        margins = self.margins(path)
         for group in LOCAL_GROUPS:
             columns = _columns(group)
-            result = self._search(group, tables, start[columns], goals[:, columns], rng)
+            roadmap = self._roadmap(group, tables, start[columns])
+            result = figure6.search(roadmap, goals[:, columns], rng, margins, self.settings.budget)
             evidence.append(_evidence(group, result))
             if result.status is not PlanStatus.FOUND:
                 return LocalPlan(result.status, configurations[:0], goals, tuple(evidence))
@@ -113,14 +117,18 @@ class LocalPlanner:
                 tables = self._chest_tables(boxes, positions, rotations, result.path)
         return LocalPlan(PlanStatus.FOUND, configurations, goals, tuple(evidence))
 
-    def _search(
-        self, group: DofGroup, tables: NDArray[np.float32], start: Floats, goals: Floats, rng: np.random.Generator
-    ) -> SearchResult:
+    def margins(self, path: RootPath) -> Floats:
+        """The clearance (n+1,) in metres that counts as free at each key time."""
+        way = np.zeros(len(path.states) + 1)
+        way[1:-1] = np.linalg.norm(np.diff(path.states[:, :2], axis=0), axis=1)
+        longest: Floats = np.maximum(way[:-1], way[1:])
+        return self.settings.margin + self.settings.margin_of_way * longest
+
+    def _roadmap(self, group: DofGroup, tables: NDArray[np.float32], start: Floats) -> Roadmap:
         posed = self._posed[group]
         if posed.graph.full:
             posed.graph.reset()
-        roadmap = Roadmap(posed, tables, start)
-        return figure6.search(roadmap, goals, rng, self.settings.margin, self.settings.budget)
+        return Roadmap(posed, tables, start)
 
     def _chest_tables(self, boxes: Floats, positions: Floats, rotations: Floats, waist: Floats) -> NDArray[np.float32]:
         """The boxes in the chest frame at each key time, for the chosen waist motion (n+1, 2)."""
@@ -128,9 +136,9 @@ class LocalPlanner:
         return tables_in_frames(boxes, *compose(positions, rotations, chest_positions, chest_rotations))
 
     def _near(self, pelvis: Floats) -> Floats:
-        """The rows of the boxes that the upper body could reach at any key time."""
+        """The rows of the boxes that the upper body could reach, or nearly, at any key time."""
         gaps = np.linalg.norm(self._boxes[:, None, :3] - pelvis, axis=2).min(axis=1, initial=np.inf) - self._box_radii
-        near: Floats = self._boxes[gaps < self._reach + self.settings.margin]
+        near: Floats = self._boxes[gaps < self._reach + _NEARLY]
         return near
 
     def _posed_graph(self, group: DofGroup) -> PosedGraph:
