@@ -1,7 +1,9 @@
 """What cannot bend: legs and pelvis of a humanoid among the boxes that they can touch."""
 
+from typing import NamedTuple
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
@@ -12,8 +14,25 @@ from elbowroom.world.walkable import Stance, stance_segments
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_STRIDE_SPEED = 1.1  # m/s: the walk whose breadth the stance capsule has
+_WALK, _RUN = 1.1, 2.2  # m/s
+_SPARE = 0.2  # metres: more than any clearance that is asked for
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
+
+
+class Neighbours(NamedTuple):
+    """Boxes and the upright rectangles on the ground that hold them."""
+
+    table: Floats32  # (B, 15) as in `Boxes.table32`
+    least: Floats  # (B, 2) least x and z
+    most: Floats  # (B, 2) greatest x and z
+
+    def around(self, places: Floats, reach: float) -> "Neighbours":
+        """Those that may come within `reach` metres of one of `places` (N, 2)."""
+        low, high = places.min(axis=0) - reach, places.max(axis=0) + reach
+        near = np.all((self.least <= high) & (self.most >= low), axis=1)
+        if near.all():
+            return self
+        return Neighbours(np.ascontiguousarray(self.table[near]), self.least[near], self.most[near])
 
 
 class LowerBody:
@@ -22,36 +41,37 @@ class LowerBody:
     def __init__(self, humanoid: Humanoid, boxes: Boxes) -> None:
         self.model: BodyModel = body_model(humanoid)
         self.radii: Floats32 = self.model.roots.radii
-        self.stance, self.height = _measure(self.model)
+        self.stance, height, self.reach = _measure(self.model)
         corners = boxes.corners
-        low = corners[:, :, 1].min(axis=1) < self.height + 0.05
-        self._table: Floats32 = np.ascontiguousarray(boxes.table32[low])
-        self._least: Floats = corners[low][:, :, [0, 2]].min(axis=1)
-        self._most: Floats = corners[low][:, :, [0, 2]].max(axis=1)
+        low = corners[:, :, 1].min(axis=1) < height + 0.05
+        ground = corners[low][:, :, [0, 2]]
+        self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground.min(axis=1), ground.max(axis=1))
 
-    def boxes_near(self, x: float, z: float, reach: float) -> Floats32:
-        """Table rows of the boxes that come within `reach` metres of a place on the ground."""
-        if not len(self._table):
-            return self._table
-        place = np.array([x, z])
-        near = np.all((self._least <= place + reach) & (self._most >= place - reach), axis=1)
-        return self._table if near.all() else np.ascontiguousarray(self._table[near])
+    def clearance(self, boxes: Neighbours, states: Floats) -> Floats32:
+        """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7); infinite where far."""
+        near = boxes.around(states[:, :2], self.reach)
+        if not len(near.table):
+            return np.full(len(states), np.inf, np.float32)
+        return clearance(leg_capsules(self.model, states), self.radii, near.table)
 
-    def clearance(self, table: Floats32, states: Floats) -> Floats32:
-        """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7)."""
-        return clearance(leg_capsules(self.model, states), self.radii, table)
-
-    def standing_clearance(self, table: Floats32, x: ArrayLike, z: ArrayLike) -> Floats32:
-        """Clearance (N,) of the stance capsule at places on the ground."""
-        return clearance(stance_segments(self.stance, x, z), np.array([self.stance.radius]), table)
+    def standing_clearance(self, boxes: Neighbours, places: Floats) -> Floats32:
+        """Clearance (N,) of the stance capsule at `places` (N, 2) on the ground."""
+        segments = stance_segments(self.stance, places[:, 0], places[:, 1])
+        return clearance(segments, np.array([self.stance.radius]), boxes.table)
 
 
-def _measure(model: BodyModel) -> tuple[Stance, float]:
-    """A vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis; and that height."""
+def _measure(model: BodyModel) -> tuple[Stance, float, float]:
+    """A vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis; that height; and how far the
+    legs reach in a run, with a little to spare."""
+    walk, run = (_stride(model, speed) for speed in (_WALK, _RUN))
+    radius, height = float(walk[:, 0].max()), float(walk[:, 1].max())
+    return Stance(radius, _LOW, max(height - radius, _LOW)), height, float(run.max()) + _SPARE
+
+
+def _stride(model: BodyModel, speed: float) -> Floats:
+    """Greatest distance from the root aside, up and ahead of every capsule over a stride, (C, 3)."""
     roots = np.zeros((32, 7))
-    roots[:, 3], roots[:, 6] = _STRIDE_SPEED, np.linspace(0.0, 1.0, 32, endpoint=False)
-    segments = leg_capsules(model, roots)
-    reach = model.roots.radii[:, None]
-    radius = float(np.max(np.maximum(np.abs(segments[:, 0]), np.abs(segments[:, 3])) + reach))
-    height = float(np.max(np.maximum(segments[:, 1], segments[:, 4]) + reach))
-    return Stance(radius, _LOW, max(height - radius, _LOW)), height
+    roots[:, 3], roots[:, 6] = speed, np.linspace(0.0, 1.0, 32, endpoint=False)
+    segments = np.abs(leg_capsules(model, roots)).reshape(len(model.roots.radii), 2, 3, 32)
+    greatest: Floats = segments.max(axis=(1, 3)) + model.roots.radii[:, None]
+    return greatest

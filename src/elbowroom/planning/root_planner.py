@@ -129,6 +129,7 @@ class RootPlanner:
         return bool(np.min(np.hypot(self._last[:, 0] - start.x, self._last[:, 1] - start.z)) < 0.5)
 
 
+_TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 _BEHIND = 0.64  # metres behind the start that a way round may use
 
 Answer = tuple[Floats, RootPlanKind, tuple[float, float]]
@@ -142,16 +143,16 @@ class _Query:
         self.start, self.horizon, self.interval = start, horizon, interval
         run = self.settings.motion.run_speed
         reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
-        self.table = self.body.boxes_near(start.x, start.z, reach)
+        self.boxes = self.body.boxes.around(np.array([[start.x, start.z]]), reach)
         self.checks = 0
         at_start = self._clearance(start.as_array()[None])
         self.skin = min(self.settings.skin, 0.5 * float(at_start[0])) if at_start[0] > 0.0 else 0.0
 
     def _clearance(self, states: Floats) -> Floats32:
-        if not len(self.table) or not len(states):
+        if not len(states) or not len(self.boxes.table):
             return np.full(len(states), np.inf, np.float32)
         self.checks += len(states)
-        return self.body.clearance(self.table, states)
+        return self.body.clearance(self.boxes, states)
 
     def _blank(self) -> Floats:
         states = np.empty((self.horizon + 1, ROOT_STATE))
@@ -180,9 +181,9 @@ class _Query:
             brake(states, kept, self.interval, self.bounds)
             if 2 * kept >= self.horizon:
                 return states, False
-            length = _length(states)
-            if kept > 0 and length > farthest:
-                best, farthest = states, length
+            progress = _length(states) + _TURN_WORTH * abs(float(states[-1, 2] - states[0, 2]))
+            if kept > 0 and progress > farthest:
+                best, farthest = states, progress
         return (best, False) if best is not None else (self.stop(), False)
 
     def stop(self) -> Floats:
@@ -201,11 +202,12 @@ class _Query:
         return states
 
     def steered(self, wanted: Floats) -> Answer:
-        """Hold the wanted velocities in the body's own axes, slower if need be."""
+        """Hold the wanted velocities in the body's own axes, in a tighter turn or slower if need be."""
+        on_the_spot = not wanted[:2].any()
 
         def candidate(share: float) -> Floats:
             states = self._blank()
-            steer(states, wanted * np.array([share, share, 1.0]), self.interval, self.bounds)
+            steer(states, wanted * np.array([share, share, share if on_the_spot else 1.0]), self.interval, self.bounds)
             return states
 
         states, whole = self._best(candidate(share) for share in self.settings.slower)
@@ -251,10 +253,10 @@ class _Query:
 
     def _free_length(self, route: Floats) -> float:
         """Metres along the route before the standing figure would touch; infinite if it never does."""
-        if not len(self.table):
+        if not len(self.boxes.table):
             return math.inf
         points, along = route_points(route, 0.04)
-        clear = self.body.standing_clearance(self.table, points[:, 0], points[:, 1])
+        clear = self.body.standing_clearance(self.boxes, points)
         self.checks += len(points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
         blocked = np.flatnonzero((clear < self.settings.margin) & ~leaving)
@@ -265,7 +267,8 @@ class _Query:
         behind = math.ceil(_BEHIND / cell) * cell
         origin = line.point(ahead - behind, -half * cell)
         shape = (math.ceil((behind + self.settings.sight) / cell) + 1, 2 * half + 1)
-        window = walkable_window(self.table, self.body.stance, origin, line.heading, shape, cell)
+        roomy = margin + self.settings.route.roomy
+        window = walkable_window(self.boxes.table, self.body.stance, origin, line.heading, shape, cell, roomy)
         self.checks += window.clearance.size
         return find_route(window, (behind, left + half * cell), half * cell, margin, self.settings.route)
 

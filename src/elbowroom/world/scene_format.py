@@ -13,7 +13,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import pairwise_clearance
+from elbowroom.world.clearance import clearance_of
 from elbowroom.world.json_place import Place
 from elbowroom.world.scene import Gate, Scene
 
@@ -141,13 +141,12 @@ def _unit_quaternion(place: Place) -> NDArray[np.float64]:
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     x, z = scene.start.x, scene.start.z
-    legs = np.array([x, _STANCE_LOW, z, x, _STANCE_HIGH, z]).reshape(1, 6, 1)
-    distances = pairwise_clearance(legs, np.array([_STANCE_RADIUS]), scene.boxes.table)[0, :, 0]
-    if len(distances) and distances.min() < 0.0:
-        name = scene.box_names[int(distances.argmin())]
-        Place(place.source, f"{place.path}.position", [x, z]).fail(
-            f"it stands in the obstacle {name!r}; move one of them"
-        )
+    legs, radius = np.array([[x, _STANCE_LOW, z, x, _STANCE_HIGH, z]]), np.array([_STANCE_RADIUS])
+    if clearance_of(legs, radius, scene.boxes.table32) >= 0.0:
+        return
+    each = [clearance_of(legs, radius, row[None]) for row in scene.boxes.table32]
+    name = scene.box_names[int(np.argmin(each))]
+    Place(place.source, f"{place.path}.position", [x, z]).fail(f"it stands in the obstacle {name!r}; move one of them")
 
 
 def write_scene(scene: Scene) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from elbowroom.world.scene import Scene
 Floats32 = NDArray[np.float32]
 
 MAX_CELLS = 250_000
-FARTHEST = 1.0  # metres: greater clearance is not told apart
+FARTHEST = 1.0  # metres: greater clearance is not told apart on a map of the whole ground
 
 
 class Stance(NamedTuple):
@@ -31,7 +31,7 @@ class WalkableMap:
     origin: tuple[float, float]  # x, z of point (0, 0), metres
     heading: float  # direction of the grid's first axis on the ground, radians; the second points to its left
     cell: float  # distance of neighbouring points, metres
-    clearance: Floats32  # (ahead, left), metres, at most `FARTHEST`
+    clearance: Floats32  # (ahead, left), metres; greater clearance than `farthest` is not told apart
 
     def at(self, x: float, z: float) -> float:
         """Clearance at a place, interpolated between the four points around it; minus infinity outside."""
@@ -54,11 +54,20 @@ def walkable_map(scene: Scene, radius: float, low: float, high: float, cell: flo
 
 
 def walkable_window(
-    table: Floats32, stance: Stance, origin: tuple[float, float], heading: float, shape: tuple[int, int], cell: float
+    table: Floats32,
+    stance: Stance,
+    origin: tuple[float, float],
+    heading: float,
+    shape: tuple[int, int],
+    cell: float,
+    farthest: float = FARTHEST,
 ) -> WalkableMap:
-    """Clearance over a grid that starts at `origin` and runs along `heading`; `table` as in `Boxes.table32`."""
-    out = np.full(shape, FARTHEST, np.float32)
-    place = np.array([*origin, np.sin(heading), np.cos(heading), cell])
+    """Clearance over a grid that starts at `origin` and runs along `heading`; `table` as in `Boxes.table32`.
+
+    Clearance above `farthest` metres is given as `farthest`: the less, the sooner it is done.
+    """
+    out = np.full(shape, farthest, np.float32)
+    place = np.array([*origin, np.sin(heading), np.cos(heading), cell, farthest])
     _fill_window(table, np.array(stance, np.float32), place, out)
     return WalkableMap(origin, heading, cell, out)
 
@@ -73,7 +82,7 @@ def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
 @kernel
 def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
     """Lower every point within reach of a box; a box's row of points is one batch of the clearance kernel."""
-    sine, cosine, cell = place[2], place[3], place[4]
+    sine, cosine, cell, farthest = place[2], place[3], place[4], place[5]
     ahead, left = out.shape
     segments = np.empty((1, 6, left), np.float32)
     least = np.empty(left, np.float32)
@@ -81,7 +90,7 @@ def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], 
         dx, dz = table[b, 0] - place[0], table[b, 2] - place[1]
         center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
         half = table[b, 12:15]
-        reach = (np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + stance[0] + FARTHEST) / cell + 1.0
+        reach = (np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + stance[0] + farthest) / cell + 1.0
         first_a, last_a = max(0, int(center_a - reach)), min(ahead, int(center_a + reach) + 1)
         first_l, last_l = max(0, int(center_l - reach)), min(left, int(center_l + reach) + 1)
         count = last_l - first_l
