@@ -13,7 +13,7 @@ from elbowroom.cli.output import print_json
 
 EXAMPLES = "Examples:  elbowroom doctor  |  elbowroom doctor --session --seconds 20 --json"
 
-_PACKAGES = ("numpy", "numba", "scipy", "pygltflib", "starlette", "uvicorn", "websockets", "typer", "rich")
+_PACKAGES = ("numpy", "numba", "scipy", "starlette", "uvicorn", "websockets", "typer", "rich")
 WHEEL_BUDGET_MB = 5.0
 
 
