@@ -50,7 +50,7 @@ def made(library: Library, bound: str = "127.0.0.1", base: str = LOCAL, client: 
 def library() -> Iterator[Library]:
     opened = Library.open("b")
     yield opened
-    opened.avatars.close()
+    opened.close()
 
 
 @pytest.fixture

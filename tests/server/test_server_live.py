@@ -4,6 +4,7 @@ import math
 import socket
 import struct
 from collections.abc import Iterator
+from contextlib import closing
 from itertools import pairwise
 
 import numpy as np
@@ -35,7 +36,7 @@ from elbowroom.server.walk import Walk
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with running(Library.open("empty")) as address:
+    with closing(Library.open("empty")) as library, running(library) as address:
         yield address
 
 

@@ -24,12 +24,12 @@ EXAMPLES = "Examples:  elbowroom play --scene d  |  elbowroom play --avatar alic
 def play(
     *,
     host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; the next free one if busy, 0: any.")] = 8765,
+    port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
     scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
     planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
-    queue: Annotated[int, typer.Option(min=3, max=7, help="Size of the key-frame queue, |Q|.")] = 5,
+    queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
     from rich.console import Console
@@ -40,8 +40,12 @@ def play(
 
     console = Console(stderr=True, highlight=False)
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
-    with contextlib.suppress(KeyboardInterrupt), listen(host, port) as opened:
-        library = Library.open(scene, avatar, WalkSettings(planner=planner, queue_size=queue))
+    settings = WalkSettings(planner=planner, queue_size=queue)
+    with (
+        contextlib.suppress(KeyboardInterrupt),
+        listen(host, port) as opened,
+        contextlib.closing(Library.open(scene, avatar, settings)) as library,
+    ):
         warm_up_with_progress(library, console)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)
@@ -59,7 +63,13 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
     columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
         task = progress.add_task("", total=len(kernels()), visible=False)
-        warm_up(library, lambda name, done: progress.update(task, completed=done, description=name, visible=True))
+
+        def report(kernel: str, number: int) -> None:
+            progress.update(task, completed=number, description=kernel, visible=True)
+            if number == 0 and not console.is_terminal:
+                console.print("Compiling kernels: about a minute, once.")
+
+        warm_up(library, report)
 
 
 def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None:

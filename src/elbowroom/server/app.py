@@ -1,8 +1,6 @@
 """The web application: the page, what it loads, and the WebSocket of a live session."""
 
-import contextlib
 import logging
-from collections.abc import AsyncIterator
 from importlib.resources import files
 from pathlib import Path
 
@@ -61,7 +59,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1") -> Starlette:
     ]
     if not client_is_built():
         LOG.warning(HOW_TO_BUILD)
-    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host)], lifespan=handlers.lifespan)
+    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host)])
 
 
 class _Handlers:
@@ -70,11 +68,6 @@ class _Handlers:
     def __init__(self, library: Library) -> None:
         self._library = library
         self._sessions = 0
-
-    @contextlib.asynccontextmanager
-    async def lifespan(self, app: Starlette) -> AsyncIterator[None]:  # noqa: ARG002
-        yield
-        self._library.avatars.close()
 
     async def health(self, request: Request) -> Response:  # noqa: ARG002
         usage = process_usage()

@@ -56,17 +56,21 @@ class AvatarStore:
         stock = [] if any(avatar.id == STOCK for avatar in known) else [AvatarChoice(STOCK, "Stock avatar")]
         return stock + [AvatarChoice(avatar.id, avatar.title) for avatar in known]
 
+    def check(self, avatar_id: str) -> None:
+        """Raises `InputError` if there is no avatar with this id."""
+        with self._lock:
+            known = avatar_id == STOCK or avatar_id in self._kept or avatar_id in self._uploads
+        if not known:
+            raise InputError(f"avatar {avatar_id[:40]!r} is not known here (any more); drop its file on the page again")
+
     def get(self, avatar_id: str) -> StoredAvatar:
         """The avatar with this id, read if need be; raises `InputError` if there is none. May take a while."""
+        self.check(avatar_id)
         with self._lock:
             found = self._kept.get(avatar_id) or self._uploads.get(avatar_id)
             if avatar_id in self._uploads:
                 self._uploads.move_to_end(avatar_id)
-        if found is None and avatar_id == STOCK:
-            return self._keep(STOCK, Humanoid.default())
-        if found is None:
-            raise InputError(f"avatar {avatar_id[:40]!r} is not known here (any more); drop its file on the page again")
-        return found
+        return found or self._keep(STOCK, Humanoid.default())
 
     def add_file(self, path: Path) -> StoredAvatar:
         """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""

@@ -25,13 +25,21 @@ class Library:
     @classmethod
     def open(cls, scene: str = "a", avatar: Path | None = None, walk: WalkSettings | None = None) -> "Library":
         """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
-        begin = walk or WalkSettings()
-        check_planner(begin.planner)
         first = Scene.load(scene)
         scenes = {name: Scene.load(name) for name in Scene.stock_names()}
         avatars = AvatarStore()
-        chosen = STOCK if avatar is None else avatars.add_file(avatar).id
-        return cls(avatars, {first.name: first} | scenes | {first.name: first}, first.name, chosen, begin)
+        try:
+            chosen = STOCK if avatar is None else avatars.add_file(avatar).id
+        except BaseException:
+            avatars.close()
+            raise
+        return cls(
+            avatars, {first.name: first} | scenes | {first.name: first}, first.name, chosen, walk or WalkSettings()
+        )
+
+    def close(self) -> None:
+        """Remove the files that the avatars lie in."""
+        self.avatars.close()
 
     def find_scene(self, name: str) -> Scene:
         """A scene of this server; raises `InputError` if there is none of this name."""
@@ -52,9 +60,3 @@ class Library:
             queue_sizes=list(QUEUE_SIZES),
             walk_speed=WALK_SPEEDS,
         )
-
-
-def check_planner(name: str) -> None:
-    """Raises `InputError` if there is no planner of this name."""
-    if name not in PLANNERS:
-        raise InputError(f"planner {name[:40]!r} is unknown; there are {', '.join(PLANNERS)}")

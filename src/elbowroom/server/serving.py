@@ -19,6 +19,8 @@ _SEND_BUFFER = 128 * 1024  # bytes in the kernel's hands: a slow client must not
 
 def listen(host: str, port: int) -> socket.socket:
     """A listening socket on the port, or on the next free one (port 0: any); raises `InputError` where that fails."""
+    if not 0 <= port <= 65535:
+        raise InputError(f"--port {port}: a port is a whole number from 0 (any free one) to 65535")
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
     except (OSError, UnicodeError):
@@ -65,7 +67,7 @@ def make_server(library: Library, opened: socket.socket) -> uvicorn.Server:
         ws_ping_interval=5.0,
         ws_ping_timeout=10.0,
         timeout_graceful_shutdown=2,
-        lifespan="on",
+        lifespan="off",
         access_log=False,
         log_config=None,
         server_header=False,

@@ -14,7 +14,7 @@ from elbowroom import __version__
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.server.codec import decode_client, encode
-from elbowroom.server.library import Library, check_planner
+from elbowroom.server.library import Library
 from elbowroom.server.messages import (
     INPUT_TIMEOUT,
     PROTOCOL,
@@ -69,6 +69,7 @@ class Session:
         self._began = time.monotonic()
         self._heard = 0.0
         self._told = -_SELDOM  # when the last status went out
+        self._stage: Stage  # made by _open
 
     async def run(self) -> None:
         """Serve the client until it leaves or fails."""
@@ -164,14 +165,27 @@ class Session:
 
     async def _configure(self, message: Configure) -> None:
         walk = self._stage.walk
+        message = self._possible(message)
         settings = _merged(walk.settings, message)
-        check_planner(settings.planner)
         scene, avatar = message.scene or walk.scene.name, message.avatar or walk.avatar.id
         rebuilt = (settings.planner, settings.queue_size) != (walk.settings.planner, walk.settings.queue_size)
         if (scene, avatar) == (walk.scene.name, walk.avatar.id) and not rebuilt:
             walk.adjust(settings)
             return
         await self._rebuild(scene, avatar, settings)
+
+    def _possible(self, message: Configure) -> Configure:
+        """The change without choices that do not exist here; the client is told of each."""
+        checks = {"scene": self._library.find_scene, "avatar": self._library.avatars.check}
+        for name, check in checks.items():
+            choice = getattr(message, name)
+            try:
+                if choice is not None:
+                    check(choice)
+            except InputError as error:
+                self._outbox.put(Notice("error", str(error)))
+                message = replace(message, **{name: None})
+        return message
 
     async def _rebuild(self, scene: str, avatar: str, settings: WalkSettings) -> None:
         old = self._stage.walk

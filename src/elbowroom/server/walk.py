@@ -7,8 +7,10 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
+from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.world.scene import Scene
 
 _MOTION = RootMotionSettings()
@@ -23,6 +25,17 @@ class WalkSettings:
     queue_size: int = 5
     assist: bool = True
     walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it
+
+    def __post_init__(self) -> None:
+        if self.planner not in PLANNERS:
+            raise InputError(f"planner {self.planner[:40]!r} is unknown; there are {', '.join(PLANNERS)}")
+        if self.queue_size not in QUEUE_SIZES:
+            raise InputError(
+                f"queue size {self.queue_size}: allowed are {QUEUE_SIZES[0]} to {QUEUE_SIZES[-1]} key frames"
+            )
+        if not WALK_SPEEDS[0] <= self.walk_speed <= WALK_SPEEDS[1]:
+            limits = f"{WALK_SPEEDS[0]:g} to {WALK_SPEEDS[1]:g} m/s"
+            raise InputError(f"walking speed {self.walk_speed:g}: allowed are {limits}")
 
 
 class Walk:
