@@ -38,6 +38,9 @@ _EXPRESSIONS: dict[str, dict[str, float]] = {
     "neutral": {},
 }
 
+_HOLDS_LIDS = ("happy", "relaxed", "surprised")  # no blinking over these
+_HOLDS_MOUTH = ("happy", "surprised")  # no vowels over these
+
 
 def vrm_extension(mesh_nodes: dict[str, int], targets: dict[str, tuple[int, int]]) -> Json:
     """The VRMC_vrm extension but for `specVersion` and `humanoid`; `targets` are (node, index) of morph targets."""
@@ -58,12 +61,11 @@ def vrm_extension(mesh_nodes: dict[str, int], targets: dict[str, tuple[int, int]
 
 
 def _expression(name: str, binds: dict[str, float], targets: dict[str, tuple[int, int]]) -> Json:
-    closes = name in ("happy", "blink", "relaxed", "surprised")
     document: Json = {
         "isBinary": False,
-        "overrideBlink": "block" if closes and name != "blink" else "none",
+        "overrideBlink": "block" if name in _HOLDS_LIDS else "none",
         "overrideLookAt": "none",
-        "overrideMouth": "block" if name in ("happy", "surprised") else "none",
+        "overrideMouth": "block" if name in _HOLDS_MOUTH else "none",
     }
     if binds:
         document["morphTargetBinds"] = [

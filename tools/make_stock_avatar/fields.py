@@ -32,11 +32,11 @@ def ellipsoid(p: Array, centre: ArrayLike, radii: ArrayLike) -> Array:
 def round_cone(p: Array, a: ArrayLike, b: ArrayLike, ra: float, rb: float) -> Array:
     """A ball of radius `ra` at `a` and one of radius `rb` at `b`, and the cone that hugs both."""
     a, axis = np.asarray(a, float), np.asarray(b, float) - np.asarray(a, float)
-    length2 = float(axis @ axis)
+    length2 = float((axis * axis).sum())
     step = ra - rb
     a2 = length2 - step * step
     pa = p - a
-    y = pa @ axis
+    y = (pa * axis).sum(axis=1)
     z = y - length2
     x2 = ((pa * length2 - y[:, None] * axis) ** 2).sum(axis=1)
     y2, z2 = y * y * length2, z * z * length2

@@ -43,6 +43,15 @@ def lattice(low: tuple[float, ...], high: tuple[float, ...], cell: tuple[float, 
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
 
 
+def snapped(points: Array) -> Array:
+    """Points on a grid far finer than the figure's details.
+
+    Processors differ in the last bits of mathematical functions; every choice between triangles is made on snapped
+    points, so that it falls alike everywhere.
+    """
+    return np.round(points * 2.0**22) / 2.0**22
+
+
 def is_manifold(triangles: NDArray[np.int64]) -> bool:
     """Whether no directed edge is used twice by polygons (N, 3 or 4)."""
     base = int(triangles.max()) + 1
@@ -88,7 +97,7 @@ def _cell_vertices(values: Array, points: Array) -> tuple[Array, NDArray[np.int6
     live = count > 0
     cells = np.full(count.shape, -1, np.int64)
     cells[live] = np.arange(int(live.sum()))
-    return total[live] / count[live][:, None], cells
+    return snapped(total[live] / count[live][:, None]), cells
 
 
 def _slices(axis: int, offset: int) -> tuple[slice, ...]:
@@ -139,7 +148,7 @@ def drawn_to(field: Field, points: Array, limit: float, steps: int = 2) -> Array
         value, slope = value_and_gradient(field, points)
         step = -value[:, None] * slope / np.maximum((slope * slope).sum(axis=1, keepdims=True), 0.05)
         length = np.linalg.norm(step, axis=1, keepdims=True)
-        points = points + step * np.minimum(1.0, 0.5 * limit / np.maximum(length, 1e-12))
+        points = snapped(points + step * np.minimum(1.0, 0.5 * limit / np.maximum(length, 1e-12)))
     return points
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from make_stock_avatar.fields import Array, Field, normals
-from make_stock_avatar.polygonise import Mesh, drawn_to
+from make_stock_avatar.polygonise import Mesh, drawn_to, snapped
 
 _EVENNESS = 2e-3  # how much edge length counts beside the error: keeps triangles even, so that joints bend smoothly
 _ROUNDS = 80
@@ -56,11 +56,20 @@ def _candidates(points: Array, triangles: Index, quadrics: Array) -> tuple[Index
     weight = np.trace(q[:, :3, :3], axis1=1, axis2=2)[:, None, None] * 0.02
     matrix = q[:, :3, :3] + weight * np.eye(3)
     right = -q[:, :3, 3] + weight[:, 0] * middle
-    places = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+    places = snapped(_solved(matrix, right))
     homogeneous = np.column_stack([places, np.ones(len(places))])
-    error = np.einsum("ei,eij,ej->e", homogeneous, q, homogeneous)
+    error = ((q * homogeneous[:, :, None]).sum(axis=1) * homogeneous).sum(axis=1)
     length2 = ((points[edges[:, 0]] - points[edges[:, 1]]) ** 2).sum(axis=1)
-    return edges, places, np.abs(error) + _EVENNESS * length2 * length2
+    costs = np.abs(error) + _EVENNESS * length2 * length2
+    return edges, places, costs.astype(np.float32).astype(np.float64)  # ties of mirrored edges stay ties
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """Cramer's rule for systems (E, 3, 3), (E, 3), in plain arithmetic that no library reorders."""
+    a, b, c = (matrix[:, :, i] for i in range(3))
+    bc, ca, ab = np.cross(b, c), np.cross(c, a), np.cross(a, b)
+    determinant = (a * bc).sum(axis=1, keepdims=True)
+    return np.asarray(np.column_stack([(right * v).sum(axis=1) for v in (bc, ca, ab)]) / determinant)
 
 
 def _distinct_pairs(pairs: Index) -> Index:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.bones import PARENTS
 from make_stock_avatar.fields import Array
 from make_stock_avatar.polygonise import Mesh
 from make_stock_avatar.rest import BONES, INDEX, POSITIONS
@@ -111,8 +112,6 @@ def glb(figure: Figure) -> bytes:
 
 
 def _joint_nodes() -> list[Json]:
-    from elbowroom.body.bones import PARENTS
-
     nodes: list[Json] = []
     for bone in BONES:
         parent = PARENTS[bone]
@@ -154,7 +153,7 @@ def _material(material: Material) -> Json:
     }
     if material.glow:
         document["emissiveFactor"] = [
-            round(material.glow * c * w, 5) for c, w in zip(material.colour, (1.0, 0.8, 0.72))
+            round(material.glow * c * w, 5) for c, w in zip(material.colour, (1.0, 0.8, 0.72), strict=True)
         ]
     if material.double_sided:
         document["doubleSided"] = True
