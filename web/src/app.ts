@@ -62,7 +62,7 @@ export class App implements SessionListener, MenuListener {
     this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement));
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
     listenForFiles((file) => this.file(file));
-    document.body.classList.toggle("bare", !wishes.showUi);
+    this.setBare(!wishes.showUi);
     this.session = new Session(sessionUrl(), this, wishes);
     this.subscribe();
     requestAnimationFrame(() => this.frame());
@@ -161,6 +161,10 @@ export class App implements SessionListener, MenuListener {
       .finally(() => this.veil.upload(null));
   }
 
+  menuCovers(pixels: number): void {
+    this.picture.stage.setCoveredRight(pixels);
+  }
+
   action(action: Action): void {
     this.actions[action]();
   }
@@ -175,11 +179,11 @@ export class App implements SessionListener, MenuListener {
     recenter: () => this.picture.camera.recenter(),
     pointerLock: () => this.pointer.toggleLock(),
     overlays: () => this.toggleAllOverlays(),
-    hideUi: () => document.body.classList.toggle("bare"),
+    hideUi: () => this.setBare(!document.body.classList.contains("bare")),
     menu: () => this.menu.setOpen(!this.menu.isOpen),
     help: () => this.help.toggle(),
     escape: () => {
-      document.body.classList.remove("bare");
+      this.setBare(false);
       this.view.focus();
     },
   };
@@ -192,6 +196,12 @@ export class App implements SessionListener, MenuListener {
       cameraHeading: () => this.picture.camera.heading,
       steering: () => this.preferences.steering,
     };
+  }
+
+  /** Hides or shows all panels. */
+  private setBare(bare: boolean): void {
+    document.body.classList.toggle("bare", bare);
+    this.menu.setOpen(this.menu.isOpen);
   }
 
   private toggleAllOverlays(): void {
@@ -223,7 +233,7 @@ export class App implements SessionListener, MenuListener {
     const { theme } = this.preferences;
     const shown = theme === "auto" ? (this.dark.matches ? "dark" : "light") : theme;
     document.documentElement.dataset["theme"] = shown;
-    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#263142" : "#eee9df");
+    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#263142" : "#e6e5df");
     this.picture.setTheme(shown);
   }
 

@@ -18,6 +18,10 @@ export interface AppState {
   readonly avatar: string | null;
   readonly avatarTitle: string;
   readonly avatarLoaded: boolean;
+  readonly avatarRevision: number;
+  readonly poseRevision: number;
+  readonly bodyParts: readonly string[];
+  readonly capsulesReceived: number;
   readonly settings: unknown;
   readonly crossed: number;
   readonly stuck: number;
@@ -65,6 +69,10 @@ function snapshot(app: App): AppState {
     avatar: settings?.avatar ?? null,
     avatarTitle: app.avatarTitle,
     avatarLoaded: picture.avatar.loaded,
+    avatarRevision: picture.avatar.revision,
+    poseRevision: pose?.avatarRevision ?? -1,
+    bodyParts: picture.overlays.bodyParts,
+    capsulesReceived: session.newestPose?.capsuleCount ?? 0,
     settings,
     crossed: status?.crossed ?? 0,
     stuck: status?.stuckTimes ?? 0,

@@ -65,8 +65,9 @@ export class AvatarView {
     this.file?.vrm?.update(dt);
   }
 
-  /** 1 is solid; below, the avatar is see-through. */
+  /** 1 is solid; below, the avatar is see-through, and hidden at 0. */
   fade(opacity: number): void {
+    this.group.visible = opacity > 0.02;
     this.surfaces?.fade(opacity);
   }
 

@@ -1,8 +1,10 @@
 /** The third-person camera: orbits a pivot at the avatar's shoulders on a spring arm that no wall can enter. */
 
 import { damp, dampAngle } from "./damping";
+import { backwards, NO_SHIFT, roomierView, type ViewShift } from "./roomier_view";
 import { distanceToBox, distanceToBoxes, freeReach, type PreparedBox, type Vec3 } from "./spring_arm";
 
+const DEFAULT_PITCH = 0.3;
 const MIN_PITCH = -0.25;
 const MAX_PITCH = 1.35;
 const MIN_ARM = 0.35;
@@ -22,8 +24,9 @@ const FOLLOW_RATE = 1.1;
 const AROUND_PIVOT = 0.02;
 const STEEPEST = 1.5;
 const PITCH_STEP = 0.12;
-const FADE_NEAR = 0.55;
-const FADE_FAR = 1.25;
+const FADE_NEAR = 0.5;
+const FADE_FAR = 1.15;
+const SHIFT_HALFLIFE = 0.14;
 
 /** Where the avatar is and what the user does with it. */
 export interface Followed {
@@ -42,13 +45,16 @@ export class ThirdPersonCamera {
   /** Where the camera looks, radians about +Y; the avatar's heading when it is straight behind. */
   heading = 0;
   /** Above the horizon, radians. */
-  pitch = 0.26;
-  private wanted = 3.6;
-  private zoomed = 3.6;
-  private arm = 3.6;
+  pitch = DEFAULT_PITCH;
+  private wanted = 3.9;
+  private zoomed = 3.9;
+  private arm = 3.9;
+  private shift: ViewShift = NO_SHIFT;
+  private shiftedYaw = 0;
+  private shiftedPitch = 0;
   private recentering = false;
   private pivot: [number, number, number] = [0, 1.4, 0];
-  private at: [number, number, number] = [0, 2, -3.6];
+  private at: [number, number, number] = [0, 2, -3.9];
 
   /** With reduced motion nothing moves by itself and nothing lags. */
   constructor(private readonly calm: () => boolean) {}
@@ -63,8 +69,7 @@ export class ThirdPersonCamera {
 
   /** Opacity of the avatar: it fades when the camera is pushed into its back. */
   get avatarOpacity(): number {
-    const share = (this.arm - FADE_NEAR) / (FADE_FAR - FADE_NEAR);
-    return Math.min(1, Math.max(0.12, share));
+    return Math.min(1, Math.max(0, (this.arm - FADE_NEAR) / (FADE_FAR - FADE_NEAR)));
   }
 
   /** Turns by a drag, radians. */
@@ -87,9 +92,11 @@ export class ThirdPersonCamera {
   /** Puts the camera straight behind, at once: a new scene or a reset. */
   snap(followed: Followed): void {
     this.heading = followed.heading;
-    this.pitch = 0.26;
+    this.pitch = DEFAULT_PITCH;
     this.pivot = [followed.x, followed.eye, followed.z];
     this.recentering = false;
+    this.shift = NO_SHIFT;
+    this.shiftedYaw = this.shiftedPitch = 0;
     this.arm = this.zoomed = this.wanted;
   }
 
@@ -99,11 +106,24 @@ export class ThirdPersonCamera {
     this.zoomed = damp(this.zoomed, this.wanted, ZOOM_HALFLIFE, dt);
     const around = boxes.filter((box) => distanceToBox(box, ...this.pivot) < AROUND_PIVOT);
     if (around.length > 0) this.leaveBoxes(boxes, around);
-    else this.stretchArm(boxes, dt);
+    else {
+      this.seekRoom(boxes, dt);
+      this.stretchArm(boxes, dt);
+    }
+  }
+
+  /** Looks for more room a little aside; what the user steers by, `heading`, stays. */
+  private seekRoom(boxes: readonly PreparedBox[], dt: number): void {
+    const limits = [MIN_PITCH, MAX_PITCH] as const;
+    this.shift = this.calm()
+      ? NO_SHIFT
+      : roomierView(boxes, this.pivot, this.heading, this.pitch, this.zoomed, HARD_RADIUS, this.shift, limits);
+    this.shiftedYaw = damp(this.shiftedYaw, this.shift.yaw, SHIFT_HALFLIFE, dt);
+    this.shiftedPitch = damp(this.shiftedPitch, this.shift.pitch, SHIFT_HALFLIFE, dt);
   }
 
   private stretchArm(boxes: readonly PreparedBox[], dt: number): void {
-    const back = backwards(this.heading, this.pitch);
+    const back = backwards(this.heading + this.shiftedYaw, this.pitch + this.shiftedPitch);
     const hard = freeReach(boxes, this.pivot, back, this.zoomed, HARD_RADIUS);
     const soft = freeReach(boxes, this.pivot, back, this.zoomed, SOFT_RADIUS);
     const goal = Math.min(hard, Math.max(soft, MIN_ARM));
@@ -147,12 +167,6 @@ export class ThirdPersonCamera {
     const rise = free ? freeReach(boxes, base, [0, 1, 0], wanted, HARD_RADIUS) : wanted;
     this.pivot = [followed.x, base[1] + rise, followed.z];
   }
-}
-
-/** The unit vector from the pivot to the camera. */
-function backwards(heading: number, pitch: number): Vec3 {
-  const flat = Math.cos(pitch);
-  return [-Math.sin(heading) * flat, Math.sin(pitch), -Math.cos(heading) * flat];
 }
 
 function along(from: Vec3, direction: Vec3, distance: number): [number, number, number] {

@@ -64,7 +64,7 @@ export class Keyboard {
       return;
     }
     if (!action || (event.code === "Space" && pressesByKey(event.target))) return;
-    event.preventDefault();
+    if (action !== "escape") event.preventDefault();
     if (!event.repeat || action === "step") this.onAction(action);
   }
 

@@ -54,6 +54,11 @@ export class OverlayDrawing {
     return this.touchingNames;
   }
 
+  /** Names of all capsules. */
+  get bodyParts(): readonly string[] {
+    return this.capsules.map((capsule) => capsule.name);
+  }
+
   setScene(boxes: readonly PreparedBox[], names: readonly string[]): void {
     this.boxes = boxes;
     this.boxNames = names;

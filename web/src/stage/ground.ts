@@ -1,7 +1,7 @@
 /** The floor: a wide field that fades into the horizon, and the scene's own slab with a metre grid on it. */
 
 import {
-  CanvasTexture, CircleGeometry, Color, Group, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial,
+  CanvasTexture, CircleGeometry, Color, Group, LinearFilter, LinearMipmapNearestFilter, Mesh, MeshBasicMaterial,
   MeshLambertMaterial, MultiplyBlending, PlaneGeometry, RepeatWrapping, SRGBColorSpace, type BufferGeometry,
 } from "three";
 import type { PreparedBox } from "../camera/spring_arm";
@@ -25,24 +25,18 @@ export class Ground {
     rich: boolean,
   ): void {
     this.clear();
-    const grid = gridTexture(palette, width, depth, rich);
-    const contact = contactTexture(width, depth, center, boxes, palette);
-    const slab = floorMaterial(new Color(0xffffff), palette, rich);
-    slab.map = grid;
-    this.add(new PlaneGeometry(width, depth), slab, center, 0, 0);
-    this.add(new CircleGeometry(FIELD_RADIUS, 64), floorMaterial(new Color(palette.field), palette, rich), center, -0.012, 0.5);
-    if (rich) this.addContact(width, depth, center, contact);
-    else {
-      slab.aoMap = contact;
+    const shadows = drawContactShadows(boxes, center, width, depth, shadowScale(width, depth), palette.contact);
+    const plane = () => new PlaneGeometry(width, depth);
+    if (rich) {
+      this.add(plane(), new MeshLambertMaterial({ map: gridTexture(palette, width, depth, center) }), center, 0, 0);
+      this.add(plane(), multiplied(shadows), center, 0.004, 1);
+      this.add(new CircleGeometry(FIELD_RADIUS, 64), new MeshLambertMaterial({ color: palette.field }), center, -0.012, 0.5);
+    } else {
+      this.add(plane(), unlit(palette, paintedFloor(palette, shadows, width, depth, center)), center, 0, 0);
+      const field = unlit(palette, null);
+      field.color.multiply(new Color(palette.field));
+      this.add(new CircleGeometry(FIELD_RADIUS, 64), field, center, -0.012, 0.5);
     }
-  }
-
-  private addContact(width: number, depth: number, center: readonly [number, number], contact: CanvasTexture): void {
-    const material = new MeshBasicMaterial({
-      map: contact, transparent: true, depthWrite: false, toneMapped: false, blending: MultiplyBlending,
-      premultipliedAlpha: true,
-    });
-    this.add(new PlaneGeometry(width, depth), material, center, 0.004, 1);
   }
 
   private add(
@@ -61,7 +55,6 @@ export class Ground {
       const mesh = child as Mesh<BufferGeometry, FloorMaterial>;
       mesh.geometry.dispose();
       mesh.material.map?.dispose();
-      mesh.material.aoMap?.dispose();
       mesh.material.dispose();
       this.group.remove(mesh);
     }
@@ -69,46 +62,78 @@ export class Ground {
 }
 
 /** A flat floor without shadows has one brightness all over, so the cheap one is not lit but painted with it. */
-function floorMaterial(color: Color, palette: Palette, rich: boolean): FloorMaterial {
-  if (rich) return new MeshLambertMaterial({ color });
-  return new MeshBasicMaterial({ color: color.multiply(new Color(palette.floorLight)) });
+function unlit(palette: Palette, map: CanvasTexture | null): MeshBasicMaterial {
+  return new MeshBasicMaterial({ color: palette.floorLight, map, toneMapped: false });
 }
 
-function gridTexture(palette: Palette, width: number, depth: number, rich: boolean): CanvasTexture {
+/** Darkens what lies under it by the contact shadows. */
+function multiplied(shadows: HTMLCanvasElement): MeshBasicMaterial {
+  const map = new CanvasTexture(shadows);
+  map.minFilter = LinearFilter;
+  map.generateMipmaps = false;
+  return new MeshBasicMaterial({
+    map, transparent: true, depthWrite: false, toneMapped: false, fog: false, blending: MultiplyBlending,
+    premultipliedAlpha: true,
+  });
+}
+
+function shadowScale(width: number, depth: number): number {
+  return Math.min(SHADOW_PIXELS_PER_METRE, SHADOW_MAX_PIXELS / Math.max(width, depth));
+}
+
+/** The tile of the metre grid; it repeats every `TILE_METRES`. */
+function drawTile(palette: Palette): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = TILE_PIXELS;
   const pen = canvas.getContext("2d");
-  if (pen) {
-    pen.fillStyle = palette.slab;
-    pen.fillRect(0, 0, TILE_PIXELS, TILE_PIXELS);
-    const metre = TILE_PIXELS / TILE_METRES;
-    for (let i = 0; i <= TILE_METRES; i++) {
-      pen.strokeStyle = i % TILE_METRES === 0 ? palette.gridBold : palette.gridFine;
-      pen.lineWidth = i % TILE_METRES === 0 ? 4 : 2.5;
-      pen.beginPath();
-      pen.moveTo(i * metre, 0);
-      pen.lineTo(i * metre, TILE_PIXELS);
-      pen.moveTo(0, i * metre);
-      pen.lineTo(TILE_PIXELS, i * metre);
-      pen.stroke();
-    }
+  if (!pen) return canvas;
+  pen.fillStyle = palette.slab;
+  pen.fillRect(0, 0, TILE_PIXELS, TILE_PIXELS);
+  const metre = TILE_PIXELS / TILE_METRES;
+  for (let i = 0; i <= TILE_METRES; i++) {
+    const bold = i % TILE_METRES === 0;
+    pen.strokeStyle = bold ? palette.gridBold : palette.gridFine;
+    pen.lineWidth = bold ? 5 : 3;
+    pen.beginPath();
+    pen.moveTo(i * metre, 0);
+    pen.lineTo(i * metre, TILE_PIXELS);
+    pen.moveTo(0, i * metre);
+    pen.lineTo(TILE_PIXELS, i * metre);
+    pen.stroke();
   }
-  const texture = new CanvasTexture(canvas);
+  return canvas;
+}
+
+/** The grid as a repeating texture whose lines lie on whole metres of the world. */
+function gridTexture(palette: Palette, width: number, depth: number, [x, z]: readonly [number, number]): CanvasTexture {
+  const texture = new CanvasTexture(drawTile(palette));
   texture.colorSpace = SRGBColorSpace;
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.repeat.set(width / TILE_METRES, depth / TILE_METRES);
-  texture.offset.set(((-width / 2) / TILE_METRES) % 1, ((-depth / 2) / TILE_METRES) % 1);
-  texture.anisotropy = rich ? 8 : 1;
-  texture.minFilter = LinearMipmapLinearFilter;
+  texture.offset.set((x - width / 2) / TILE_METRES, -(z + depth / 2) / TILE_METRES);
+  texture.anisotropy = 8;
   return texture;
 }
 
-function contactTexture(
-  width: number, depth: number, center: readonly [number, number], boxes: readonly PreparedBox[], palette: Palette,
+/** Grid and contact shadows in one picture, the cheapest floor to draw. */
+function paintedFloor(
+  palette: Palette, shadows: HTMLCanvasElement, width: number, depth: number, [x, z]: readonly [number, number],
 ): CanvasTexture {
-  const scale = Math.min(SHADOW_PIXELS_PER_METRE, SHADOW_MAX_PIXELS / Math.max(width, depth));
-  const texture = new CanvasTexture(drawContactShadows(boxes, center, width, depth, scale, palette.contact));
-  texture.minFilter = LinearFilter;
-  texture.generateMipmaps = false;
+  const pen = shadows.getContext("2d");
+  const pattern = pen?.createPattern(drawTile(palette), "repeat");
+  if (pen && pattern) {
+    const scale = shadows.width / width;
+    const shrink = (scale * TILE_METRES) / TILE_PIXELS;
+    pattern.setTransform(new DOMMatrix([shrink, 0, 0, shrink, (width / 2 - x) * scale, (depth / 2 - z) * scale]));
+    pen.resetTransform();
+    pen.filter = "none";
+    pen.globalAlpha = 1;
+    pen.globalCompositeOperation = "multiply";
+    pen.fillStyle = pattern;
+    pen.fillRect(0, 0, shadows.width, shadows.height);
+  }
+  const texture = new CanvasTexture(shadows);
+  texture.colorSpace = SRGBColorSpace;
+  texture.minFilter = LinearMipmapNearestFilter;
   return texture;
 }

@@ -26,6 +26,7 @@ export class Stage {
   private readonly hemisphere = new HemisphereLight();
   private readonly fill = new AmbientLight(0xffffff, 0.12);
   private room: Texture | null = null;
+  private coveredRight = 0;
 
   /** @param host the element that holds the canvas */
   constructor(private readonly host: HTMLElement, quality: Quality) {
@@ -68,7 +69,7 @@ export class Stage {
     const palette = PALETTES[theme];
     this.palette = palette;
     this.sky.paint(palette);
-    this.scene.fog = new Fog(new Color(palette.horizon), 16, 60);
+    this.scene.fog = new Fog(new Color(palette.horizon), 10, 42);
     this.sun.color.set(palette.keyLight);
     this.sun.intensity = palette.keyIntensity;
     this.hemisphere.color.set(palette.skyLight);
@@ -119,12 +120,19 @@ export class Stage {
     if (quality.rich && !this.room) this.room = roomTexture(this.renderer);
     this.scene.environment = quality.rich ? this.room : null;
     this.renderer.toneMappingExposure = this.palette.exposure;
-    this.fill.intensity = quality.rich ? 0.05 : 0.3;
+    this.fill.intensity = quality.rich ? 0.05 : 0.75;
+  }
+
+  /** Keeps the middle of the picture clear of a panel that covers `pixels` at the right. */
+  setCoveredRight(pixels: number): void {
+    this.coveredRight = pixels;
+    this.resize();
   }
 
   private resize(): void {
     const width = Math.max(1, this.host.clientWidth);
     const height = Math.max(1, this.host.clientHeight);
+    this.camera.setViewOffset(width, height, this.coveredRight / 2, 0, width, height);
     this.camera.aspect = width / height;
     this.camera.fov = width < height ? FIELD_OF_VIEW + 14 : FIELD_OF_VIEW;
     this.camera.updateProjectionMatrix();

@@ -82,12 +82,12 @@ export class Hud {
     const rows: [string, string, string][] = [
       ["Phase", status.phase, ""],
       ["Root", status.rootKind.toLowerCase() || "–", ""],
-      ["Plan", words(status.planStatus), status.planStatus === "FOUND" || !status.planStatus ? "" : "bad"],
+      ["Plan", words(status.planStatus), tone(status.planStatus)],
       ["Plans", `${status.plans - status.plansFailed} of ${status.plans} found`, ""],
     ];
     for (const group of status.groups) {
       const cost = `${group.checks.toLocaleString("en")} checks · ${group.ms.toFixed(1)} ms`;
-      rows.push([GROUP_TITLES[group.group], `${words(group.status)} · ${cost}`, group.status === "FOUND" ? "" : "bad"]);
+      rows.push([GROUP_TITLES[group.group], `${words(group.status)} · ${cost}`, tone(group.status)]);
     }
     this.planList.replaceChildren(
       ...rows.flatMap(([title, text, tone]) => [make("dt", {}, title), make("dd", { class: tone }, text)]),
@@ -102,6 +102,10 @@ function spread(p50: number, p95: number): string {
 function clearanceText(clearance: number): string {
   if (!Number.isFinite(clearance)) return "free";
   return clearance < 0 ? "touching" : `${(100 * clearance).toFixed(1)} cm`;
+}
+
+function tone(status: string): string {
+  return status === "" || status.toUpperCase() === "FOUND" ? "" : "bad";
 }
 
 function words(status: string): string {

@@ -11,6 +11,8 @@ export interface MenuListener {
   prefer(change: Partial<Preferences>): void;
   overlay(name: OverlayName, on: boolean): void;
   file(file: File): void;
+  /** The open menu covers so many pixels at the right of the view; 0 where it is closed or only a drawer. */
+  menuCovers(pixels: number): void;
   action(action: "assist" | "pause" | "step" | "slow" | "reset" | "help"): void;
 }
 
@@ -26,6 +28,7 @@ export class Menu {
   private readonly queue = byId("queue", HTMLInputElement);
   private readonly speed = byId("speed", HTMLInputElement);
   private readonly file = byId("file", HTMLInputElement);
+  private readonly narrow = window.matchMedia(NARROW);
   private readonly checks = new Map<OverlayName, HTMLInputElement>();
 
   constructor(private readonly listener: MenuListener, preferences: Preferences) {
@@ -35,11 +38,10 @@ export class Menu {
     this.listenToButtons();
     this.addOverlays();
     this.bindPreferences(preferences);
-    const narrow = window.matchMedia(NARROW);
-    this.setOpen(!narrow.matches);
-    narrow.addEventListener("change", () => this.setOpen(!narrow.matches));
+    this.setOpen(!this.narrow.matches);
+    this.narrow.addEventListener("change", () => this.setOpen(!this.narrow.matches));
     byId("view", HTMLElement).addEventListener("pointerdown", () => {
-      if (narrow.matches) this.setOpen(false);
+      if (this.narrow.matches) this.setOpen(false);
     });
   }
 
@@ -51,6 +53,7 @@ export class Menu {
     this.panel.classList.toggle("closed", !open);
     this.button.setAttribute("aria-expanded", String(open));
     this.button.setAttribute("aria-pressed", String(open));
+    this.listener.menuCovers(open && !this.narrow.matches ? this.panel.offsetWidth : 0);
   }
 
   showCatalog(catalog: Catalog): void {

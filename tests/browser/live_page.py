@@ -1,0 +1,55 @@
+"""A page under test: its state is `window.__app`, never its pixels or a wall-clock frame rate."""
+
+import time
+from typing import Any
+
+LOAD_SECONDS = 60.0
+STEP = 0.05
+
+
+class LivePage:
+    """A page with a session in it."""
+
+    def __init__(self, page: Any, context: Any) -> None:
+        self.page = page
+        self.errors: list[str] = []
+        self._context = context
+        page.on("console", self._note)
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def state(self) -> dict[str, Any]:
+        """A snapshot of `window.__app`."""
+        snapshot: dict[str, Any] = self.page.evaluate("window.__app")
+        return snapshot
+
+    def wait(self, condition: str, seconds: float = 20.0) -> dict[str, Any]:
+        """Wait until a JavaScript condition on `s`, the page's state, holds; the state then."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            if self.page.evaluate(f"(() => {{ const s = window.__app; return !!s && !!({condition}); }})()"):
+                return self.state()
+            time.sleep(STEP)
+        raise AssertionError(f"after {seconds:g} s still not: {condition}; the page says {self.state()}")
+
+    def close(self) -> None:
+        """Close the page and its context."""
+        self._context.close()
+
+    def _note(self, message: Any) -> None:
+        if message.type == "error":
+            self.errors.append(message.text)
+
+
+def open_live_page(
+    browser: Any, url: str, query: str = "", viewport: tuple[int, int] = (1000, 600), **options: Any
+) -> LivePage:
+    """A page in a context of its own, ready: the avatar stands in the picture and poses arrive."""
+    script = options.pop("script", None)
+    context = browser.new_context(viewport={"width": viewport[0], "height": viewport[1]}, **options)
+    page = context.new_page()
+    if script:
+        page.add_init_script(script)
+    live = LivePage(page, context)
+    page.goto(f"{url}/?quality=low&{query}")
+    live.wait("s.avatarLoaded && s.framesReceived > 5 && s.framesDrawn > 3 && s.root && s.settings", LOAD_SECONDS)
+    return live

@@ -1,0 +1,154 @@
+"""The page round the picture: panels, time, files, and the line to the server."""
+
+import base64
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from live_page import LivePage
+from live_server import LiveServer
+from shared_data import SHARED
+
+import elbowroom
+
+Open = Callable[..., LivePage]
+
+STOCK = Path(elbowroom.__file__).parent / "body" / "data" / "stock.vrm"
+FILES = [pytest.param(STOCK, id="stock")]
+if SHARED is not None:
+    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "m2m_human-male.glb", id="glb"))
+
+DROP = """
+([name, text]) => {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([bytes], name));
+  for (const type of ["dragenter", "dragover", "drop"]) {
+    document.body.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: transfer }));
+  }
+}
+"""
+
+
+def test_the_page_comes_up_quietly(open_page: Open) -> None:
+    live = open_page("scene=b&theme=dark")
+    state = live.wait("s.scene === 'b' && s.connected")
+    assert state["settings"]["planner"] == "figure6"
+    assert live.page.get_attribute("html", "data-theme") == "dark"
+    assert "Elbowroom" in live.page.title()
+    live.wait(f"s.framesReceived > {state['framesReceived'] + 30}")
+    assert live.page.evaluate("performance.getEntriesByType('resource').every((r) => r.name.startsWith(origin))")
+
+
+def test_help_opens_with_a_question_mark(open_page: Open) -> None:
+    live = open_page()
+    live.page.keyboard.press("?")
+    live.page.wait_for_selector("#help[open]")
+    assert "Shift" in live.page.inner_text("#help")
+    live.page.keyboard.press("Escape")
+    live.page.wait_for_selector("#help:not([open])", state="attached")
+
+
+def test_overlays_switch_on_and_off(open_page: Open) -> None:
+    live = open_page()
+    assert live.state()["overlays"] == []
+    live.page.check("#overlay-capsules")
+    live.page.check("#overlay-plan")
+    state = live.wait("s.overlays.length === 2 && s.settings.capsules && !s.settings.plan")
+    assert set(state["overlays"]) == {"capsules", "plan"}
+    live.wait("s.capsulesReceived > 10")
+    assert "Plans" in live.page.inner_text("#hud")
+    live.page.keyboard.press("o")
+    live.wait("s.overlays.length === 0 && !s.settings.capsules")
+    live.page.keyboard.press("o")
+    live.wait("s.overlays.length === 2")
+
+
+def test_time_pauses_steps_and_slows(open_page: Open) -> None:
+    live = open_page("scene=empty")
+    live.page.keyboard.press("p")
+    live.wait("s.paused && s.settings.paused")
+    live.page.wait_for_timeout(400)
+    before = live.state()["simTime"]
+    live.page.keyboard.press(".")
+    live.wait(f"s.simTime > {before}")
+    live.page.wait_for_timeout(400)
+    assert live.state()["simTime"] == pytest.approx(before + 1 / 60, abs=1e-6)
+    live.page.keyboard.press("m")
+    live.wait("s.settings.speed < 1")
+    live.page.click("#pause")
+    live.wait("!s.paused")
+
+
+def test_reset_brings_the_avatar_back(open_page: Open) -> None:
+    live = open_page("scene=empty")
+    live.wait("s.scene === 'empty'")
+    start = live.state()["root"]
+    live.page.keyboard.down("w")
+    live.wait(f"Math.abs(s.root.z - {start['z']}) > 0.5")
+    live.page.keyboard.up("w")
+    live.page.keyboard.press("r")
+    live.wait(f"Math.hypot(s.root.x - {start['x']}, s.root.z - {start['z']}) < 0.1 && s.simTime < 3")
+
+
+def test_menus_change_the_session(open_page: Open) -> None:
+    live = open_page("queue=4")
+    live.wait("s.settings.queueSize === 4")
+    live.page.select_option("#scene", "c")
+    live.wait("s.scene === 'c' && s.settings.scene === 'c'")
+    live.page.focus("#queue")
+    live.page.keyboard.press("ArrowRight")
+    live.wait("s.settings.queueSize === 5")
+
+
+@pytest.mark.parametrize("path", FILES)
+def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
+    live = open_page("scene=empty")
+    live.page.evaluate(DROP, ["newcomer" + path.suffix, base64.b64encode(path.read_bytes()).decode()])
+    state = live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60)
+    assert state["avatarLoaded"]
+    live.page.keyboard.down("w")
+    live.wait("s.root.z > 0.3")
+    live.page.keyboard.up("w")
+
+
+def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:
+    live = open_page()
+    live.page.evaluate(DROP, ["cat.vrm", base64.b64encode(b"this is no avatar").decode()])
+    live.page.wait_for_selector(".notice.error")
+    assert live.state()["settings"]["avatar"] == "stock"
+    # The browser itself logs the refused request; that is not an error of the page.
+    live.errors[:] = [error for error in live.errors if "Failed to load resource" not in error]
+
+
+def test_the_page_reconnects_by_itself(open_page: Open) -> None:
+    with LiveServer() as server:
+        live = open_page("scene=c", server=server)
+        live.wait("s.scene === 'c'")
+        server.stop()
+        live.wait("!s.connected && s.connection === 'lost'")
+        live.page.wait_for_selector("#veil:not([hidden])")
+        server.start()
+        count = live.wait("s.connected", 30)["framesReceived"]
+        live.wait(f"s.framesReceived > {count + 10} && s.settings.scene === 'c'")
+        live.page.wait_for_selector("#veil", state="hidden")
+        live.errors[:] = [error for error in live.errors if "WebSocket" not in error]
+
+
+@pytest.mark.parametrize("viewport", [(390, 844), (844, 390)], ids=["portrait", "landscape"])
+def test_the_page_fits_a_phone(open_page: Open, viewport: tuple[int, int]) -> None:
+    live = open_page(viewport=viewport, has_touch=True, is_mobile=True)
+    width, height = viewport
+    for selector in ("#bar", "#hud", "#brand"):
+        box = live.page.locator(selector).bounding_box()
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= width
+        assert box["y"] + box["height"] <= height
+    assert live.page.get_attribute("#menu-button", "aria-expanded") == "false"
+    live.page.tap("#menu-button")
+    live.page.wait_for_selector("#menu:not(.closed)")
+    live.page.select_option("#scene", "b")
+    live.wait("s.scene === 'b'")
+    live.page.tap("#menu-button")
+    live.page.tap("#help-button")
+    live.page.wait_for_selector("#help[open]")

@@ -1,0 +1,49 @@
+/** Where a camera that has no room behind the avatar should rather look from: a little higher, lower or aside. */
+
+import { freeReach, type PreparedBox, type Vec3 } from "./spring_arm";
+
+/** A change of the camera's direction, radians. */
+export interface ViewShift {
+  readonly yaw: number;
+  readonly pitch: number;
+}
+
+export const NO_SHIFT: ViewShift = { yaw: 0, pitch: 0 };
+
+const YAWS = [0, -0.3, 0.3, -0.6, 0.6] as const;
+const PITCHES = [0, -0.18, 0.2, -0.36, 0.4, 0.6, 0.8] as const;
+/** With this share of the wanted distance the view is good enough to stay as the user chose it. */
+const ENOUGH = 0.6;
+/** Metres of distance that a radian of change must bring. */
+const PRICE = 1.5;
+/** Metres in favour of the shift in force, so that the camera does not waver. */
+const LOYALTY = 0.3;
+
+/** The unit vector from the pivot to a camera that looks along `heading` and down by `pitch`. */
+export function backwards(heading: number, pitch: number): Vec3 {
+  const flat = Math.cos(pitch);
+  return [-Math.sin(heading) * flat, Math.sin(pitch), -Math.cos(heading) * flat];
+}
+
+/** The shift that gains most distance for the least change; none where there is room enough. */
+export function roomierView(
+  boxes: readonly PreparedBox[], pivot: Vec3, heading: number, pitch: number, wanted: number, radius: number,
+  current: ViewShift, limits: readonly [low: number, high: number],
+): ViewShift {
+  const enough = ENOUGH * wanted;
+  if (freeReach(boxes, pivot, backwards(heading, pitch), wanted, radius) >= enough) return NO_SHIFT;
+  let best = NO_SHIFT;
+  let bestScore = -Infinity;
+  for (const rise of PITCHES) {
+    if (pitch + rise < limits[0] || pitch + rise > limits[1]) continue;
+    for (const yaw of YAWS) {
+      const reach = freeReach(boxes, pivot, backwards(heading + yaw, pitch + rise), wanted, radius);
+      const loyal = yaw === current.yaw && rise === current.pitch ? LOYALTY : 0;
+      const score = Math.min(reach, enough) + loyal - PRICE * Math.hypot(yaw, rise);
+      if (score <= bestScore) continue;
+      bestScore = score;
+      best = { yaw, pitch: rise };
+    }
+  }
+  return best;
+}
