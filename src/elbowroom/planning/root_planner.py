@@ -34,7 +34,7 @@ from elbowroom.planning.root_motion import (
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_route import RouteSettings, find_route, route_points, shortened_route
 from elbowroom.world.scene import Scene
-from elbowroom.world.walkable import walkable_window
+from elbowroom.world.walkable import WalkableMap, walkable_window
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -244,8 +244,11 @@ class _Query:
         free = self._free_length(straight)
         if free >= sight:
             return straight, False, False
+        windows: dict[float, WalkableMap] = {}
         for margin, cell in self.settings.searches:
-            route = self._way_round(line, ahead, left, margin, cell)
+            window = windows.get(cell) or windows.setdefault(cell, self._window(line, ahead, cell))
+            behind, middle = _cells(_BEHIND, cell), _cells(self.settings.widest_detour, cell)
+            route = find_route(window, (behind, left + middle), middle, margin, self.settings.route)
             gained = line.coordinates(*route[-1])[0] - ahead
             if gained > free + self.settings.worth_it:
                 return route, True, gained < sight - 2.0 * cell
@@ -262,15 +265,20 @@ class _Query:
         blocked = np.flatnonzero((clear < self.settings.margin) & ~leaving)
         return float(along[blocked[0]]) if len(blocked) else math.inf
 
-    def _way_round(self, line: TravelLine, ahead: float, left: float, margin: float, cell: float) -> Floats:
-        half = math.ceil(self.settings.widest_detour / cell)
-        behind = math.ceil(_BEHIND / cell) * cell
-        origin = line.point(ahead - behind, -half * cell)
-        shape = (math.ceil((behind + self.settings.sight) / cell) + 1, 2 * half + 1)
-        roomy = margin + self.settings.route.roomy
+    def _window(self, line: TravelLine, ahead: float, cell: float) -> WalkableMap:
+        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
+        behind, middle = _cells(_BEHIND, cell), _cells(self.settings.widest_detour, cell)
+        shape = (round((behind + _cells(self.settings.sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
+        origin = line.point(ahead - behind, -middle)
+        roomy = max(margin for margin, _ in self.settings.searches) + self.settings.route.roomy
         window = walkable_window(self.boxes.table, self.body.stance, origin, line.heading, shape, cell, roomy)
         self.checks += window.clearance.size
-        return find_route(window, (behind, left + half * cell), half * cell, margin, self.settings.route)
+        return window
+
+
+def _cells(length: float, cell: float) -> float:
+    """`length` rounded up to whole cells, metres."""
+    return math.ceil(length / cell - 1e-9) * cell
 
 
 def _place(row: Floats) -> tuple[float, float]:

@@ -81,11 +81,9 @@ def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
 
 @kernel
 def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
-    """Lower every point within reach of a box; a box's row of points is one batch of the clearance kernel."""
+    """Lower every point within reach of a box; the points around a box are one batch of the clearance kernel."""
     sine, cosine, cell, farthest = place[2], place[3], place[4], place[5]
     ahead, left = out.shape
-    segments = np.empty((1, 6, left), np.float32)
-    least = np.empty(left, np.float32)
     for b in range(table.shape[0]):
         dx, dz = table[b, 0] - place[0], table[b, 2] - place[1]
         center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
@@ -93,20 +91,22 @@ def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], 
         reach = (np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + stance[0] + farthest) / cell + 1.0
         first_a, last_a = max(0, int(center_a - reach)), min(ahead, int(center_a + reach) + 1)
         first_l, last_l = max(0, int(center_l - reach)), min(left, int(center_l + reach) + 1)
-        count = last_l - first_l
-        if count <= 0:
+        rows, columns = last_a - first_a, last_l - first_l
+        if rows <= 0 or columns <= 0:
             continue
-        for i in range(first_a, last_a):
-            for j in range(count):
-                along, aside = i * cell, (first_l + j) * cell
+        segments = np.empty((1, 6, rows * columns), np.float32)
+        least = np.empty(rows * columns, np.float32)
+        for i in range(rows):
+            for j in range(columns):
+                k, along, aside = i * columns + j, (first_a + i) * cell, (first_l + j) * cell
                 x = place[0] + along * sine + aside * cosine
                 z = place[1] + along * cosine - aside * sine
-                segments[0, 0, j], segments[0, 1, j], segments[0, 2, j] = x, stance[1], z
-                segments[0, 3, j], segments[0, 4, j], segments[0, 5, j] = x, stance[2], z
-            row = np.ascontiguousarray(segments[:, :, :count])
-            clearance_into(row, stance[:1], table[b : b + 1], least[:count])
-            for j in range(count):
-                out[i, first_l + j] = min(out[i, first_l + j], least[j])
+                segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, stance[1], z
+                segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, stance[2], z
+        clearance_into(segments, stance[:1], table[b : b + 1], least)
+        for i in range(rows):
+            for j in range(columns):
+                out[first_a + i, first_l + j] = min(out[first_a + i, first_l + j], least[i * columns + j])
 
 
 @kernel
