@@ -39,7 +39,7 @@ def search(
     """Search a path of depth n from the roadmap's source (paper, Figure 6).
 
     `goals` (n+1, d) are the goal configurations at the key times; `margins` (n+1,) in metres are the clearances that
-    count as free there; `budget` is the greatest number of collision checks. One number is taken from `rng`, in any case.
+    count as free there; `budget` is the greatest number of collision checks. One number is drawn from `rng`.
     """
     began = perf_counter_ns()
     graph = roadmap.graph
