@@ -12,6 +12,7 @@ from elbowroom.planning.root_path import RootPath
 Floats = NDArray[np.float64]
 
 _SPACING = 1 / 60  # seconds between rehearsed poses
+_CLOSER = 0.002  # metres: the hips' bob brings a kept pose closer for a moment
 
 
 class Rehearsal:
@@ -25,8 +26,9 @@ class Rehearsal:
         return bool(self._clearances(path, uppers, path.interval).min() >= 0.0)
 
     def leads_away(self, path: RootPath, uppers: Floats, clearance: float) -> bool:
-        """Whether the motion ends with more than the given clearance, metres."""
-        return bool(self._clearances(path, uppers, path.interval * path.horizon)[-1] > clearance)
+        """Whether the motion never comes closer than the given clearance, metres, and ends farther away."""
+        found = self._clearances(path, uppers, path.interval * path.horizon)
+        return bool(found.min() >= clearance - _CLOSER and found[-1] > clearance)
 
     def _clearances(self, path: RootPath, uppers: Floats, duration: float) -> Floats:
         trial = copy.copy(self._queue)  # a refill makes new arrays, so the original is not changed
