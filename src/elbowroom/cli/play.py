@@ -58,7 +58,7 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     from elbowroom.server.kernel_cache import kernels
-    from elbowroom.server.warmup import warm_up
+    from elbowroom.server.warmup import compile_apart, warm_up
 
     columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
@@ -69,6 +69,7 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
             if number == 0 and not console.is_terminal:
                 console.print("Compiling kernels: about a minute, once.")
 
+        compile_apart(report)
         warm_up(library, report)
 
 

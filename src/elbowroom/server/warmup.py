@@ -1,11 +1,19 @@
-"""Compiles every kernel that a live session uses, by walking for real before anybody waits for it."""
+"""Compiles every kernel that a live session uses, by walking for real before anybody waits for it.
 
+`python -m elbowroom.server.warmup` does it in a process of its own and prints the kernels' names: a compiler takes
+200 MB that a server should not carry for the rest of its life.
+"""
+
+import subprocess
+import sys
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
+from dataclasses import replace
 from typing import Any
 
 from numba.core import event
 
+from elbowroom.server.kernel_cache import kept_kernels, kernels
 from elbowroom.server.library import Library
 from elbowroom.server.messages import Input, Overlays
 from elbowroom.server.stage import STEP, Stage
@@ -13,7 +21,13 @@ from elbowroom.server.walk import Walk
 
 Report = Callable[[str, int], None]
 
-_STEPS = 45  # frames of the walk: past the first key frames, so that plans follow on plans
+_FEW = 6  # kernels that may be missing (not every one is needed by a session) before a process of its own pays
+_WALK = [
+    (45, Input(seq=1, forward=1.0)),  # past the first key frames, so that plans follow on plans
+    (10, Input(seq=2, forward=1.0, direction=1.0, run=True)),
+    (10, Input(seq=3, turn=1.0, strafe=0.5)),
+    (30, Input(seq=4)),
+]
 
 
 class _Listener(event.Listener):
@@ -35,19 +49,46 @@ class _Listener(event.Listener):
 
 
 def warm_up(library: Library, report: Report | None = None) -> None:
-    """Walk a moment in the library's first scene with its first avatar, then the canned walk.
+    """Walk, turn and stand a moment in the library's first scene with its first avatar, then walk the canned walk.
 
     `report(kernel, number)` hears of each kernel that must be compiled; with all of them cached it hears nothing.
     Raises `InputError` if the avatar cannot stand in that scene: better now than when a page is open.
     """
     with event.install_listener("numba:compile", _Listener(report)) if report else nullcontext():
-        stage = Stage(Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), library.walk), 0.0)
+        walk = Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), library.walk)
+        stage, now = Stage(walk, 0.0), 0.0
         stage.overlays = Overlays(capsules=True, plan=True)
-        stage.obey(Input(seq=1, forward=1.0))
-        for i in range(_STEPS):
-            stage.advance(STEP * (i + 1))
-            stage.frame(STEP * (i + 1))
-        stage.obey(Input(seq=2, forward=1.0, direction=1.0))
-        stage.advance(STEP * (_STEPS + 1))
-        stage.status(0.0)
-        stage.plan()
+        for frames, held in _WALK:
+            stage.obey(held)
+            for _ in range(frames):
+                now += STEP
+                stage.advance(now)
+                stage.frame(now)
+            stage.status(now)
+            stage.plan()
+        walk.adjust(replace(walk.settings, assist=not walk.settings.assist))
+        stage.advance(now + STEP)
+
+
+def compile_apart(report: Report) -> None:
+    """Compile in a process of its own, unless (nearly) all kernels are kept on disk already.
+
+    Should that process fail, nothing is lost: what it did not compile is compiled where it is needed.
+    """
+    if len(kernels()) - len(kept_kernels()) <= _FEW:
+        return
+    command = [sys.executable, "-m", "elbowroom.server.warmup"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as compiler:
+        assert compiler.stdout is not None
+        for number, line in enumerate(compiler.stdout):
+            report(line.strip(), number)
+
+
+def main() -> None:
+    """Compile, and print each kernel's name as its turn comes."""
+    with closing(Library.open()) as library:
+        warm_up(library, lambda kernel, number: print(kernel, flush=True))  # noqa: ARG005
+
+
+if __name__ == "__main__":
+    main()
