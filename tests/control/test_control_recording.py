@@ -28,7 +28,9 @@ def record(path: Path, steps: int = STEPS, scene: str = "empty") -> list[tuple[C
         command = Command(forward=1.0)
         for i in range(steps):
             if i % 40 == 39:
-                command = Command(*rng.uniform(-1, 1, 3), rng.choice([None, 0.5]), bool(rng.integers(2)))
+                forward, strafe, turn = rng.uniform(-1, 1, 3).tolist()
+                direction = 0.5 if rng.random() < 0.5 else None
+                command = Command(forward, strafe, turn, direction, run=bool(rng.integers(2)))
             dt = float(rng.uniform(0.0, 0.05))
             frame = controller.step(command, dt)
             recorder.append(command, dt, frame)

@@ -48,10 +48,14 @@ class Bar:
 
 @contextmanager
 def progress_bar(title: str, total: float | None, quiet: bool) -> Iterator[Bar]:
-    """A progress bar on stderr while the block runs; it leaves no trace behind, and is silent where `quiet`."""
-    if quiet:
+    """A progress bar on stderr while the block runs; it leaves no trace behind.
+
+    Silent where `quiet`, and where stderr is no terminal.
+    """
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
         yield Bar(None, None)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[note]}"), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with Progress(*columns, console=console, transient=True) as progress:
         yield Bar(progress, progress.add_task(title, total=total, note=""))

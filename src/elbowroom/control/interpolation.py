@@ -40,7 +40,9 @@ def hermite(times: Floats, values: Floats, tangents: Floats, time: float) -> tup
     last = len(times) - 1
     if time >= times[last] or last == 0:
         return values[last].copy(), np.zeros(values.shape[1])
-    k = max(np.searchsorted(times, time, side="right") - 1, 0)
+    k = 0
+    while times[k + 1] <= time:
+        k += 1
     width = times[k + 1] - times[k]
     u = max((time - times[k]) / width, 0.0)
     a, b, m, n = values[k], values[k + 1], width * tangents[k], width * tangents[k + 1]

@@ -108,7 +108,7 @@ class KeyFrameQueue:
         last = len(self._times) - 1
         k = max(int(np.searchsorted(self._times, self.time, side="right")) - 1, 0)
         if k >= last:
-            return self._roots[last].copy()
+            return np.array(self._roots[last])
         share = max((self.time - self._times[k]) / self.interval, 0.0)
         state: Floats = interpolate_root(self._roots[k], self._roots[k + 1], share, self.interval)
         return state

@@ -83,7 +83,7 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
 
 def _same(step: Any, frame: Frame) -> bool:
     same_pose = step["q"].tobytes() == frame.q.tobytes() and step["root"].tobytes() == frame.root.tobytes()
-    return same_pose and _PHASES.index(frame.phase) == step["phase"]
+    return bool(same_pose and _PHASES.index(frame.phase) == step["phase"])
 
 
 def _difference(index: int, step: Any, frame: Frame) -> Difference:

@@ -34,6 +34,8 @@ class CrossingSettings:
     limit: float = 30.0  # seconds that the user has
 
     def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise InputError(f"seed: {self.seed} is negative")
         if not 0.0 < self.limit <= LONGEST_LIMIT:
             raise InputError(f"limit: {self.limit} is not between 0 and {LONGEST_LIMIT:g} seconds")
 
@@ -101,7 +103,7 @@ def run_crossing(
     user = ScriptedUser(np.random.default_rng([settings.seed, 2]))
     ledger = _Ledger()
     frame = controller.step(Command(), 0.0)
-    while frame.time < settings.limit and not controller.scene.finished(controller.root):
+    while frame.time < settings.limit - 0.5 * DT and not controller.scene.finished(controller.root):
         command = user.command(frame.stuck, DT)
         began = time.perf_counter()
         frame = controller.step(command, DT)

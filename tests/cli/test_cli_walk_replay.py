@@ -1,0 +1,128 @@
+"""`elbowroom walk` and `replay` as a user calls them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from elbowroom.cli.main import app
+
+RUNNER = CliRunner()
+SCENE = {
+    "format": "elbowroom-scene",
+    "version": 1,
+    "name": "short",
+    "title": "Two steps",
+    "description": "A short way past a box.",
+    "ground": {"size": [6, 6], "center": [0, 0]},
+    "start": {"position": [0, 0], "heading": 0},
+    "finish": {"position": [0, 0.8], "heading": 0},
+    "obstacles": [{"type": "box", "name": "box", "center": [0.9, 0.5, 0.5], "size": [0.5, 1.0, 0.5]}],
+}
+
+
+def elbowroom(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "elbowroom", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, dict[str, object]]:
+    folder = tmp_path_factory.mktemp("walk")
+    scene, recording = folder / "short.json", folder / "run.elbow"
+    scene.write_text(json.dumps(SCENE))
+    result = RUNNER.invoke(app, ["walk", "--scene", str(scene), "--queue", "4", "--record", str(recording), "--json"])
+    assert result.exit_code == 0, result.output
+    return scene, recording, json.loads(result.stdout)
+
+
+def test_walk_tells_its_row_as_json(run: tuple[Path, Path, dict[str, object]]) -> None:
+    row = run[2]
+    assert row["passed"] is True
+    assert row["scene"] == "short"
+    assert row["queue_size"] == 4
+    columns = {"straight", "stuck_times", "passed_time_s", "plans_total", "plan_success_rate", "plan_failed_rate"}
+    assert columns | {"collision_checks", "realtime", "frames", "planner", "seed"} <= row.keys()
+
+
+def test_walk_prints_a_table_and_no_progress_on_stdout(run: tuple[Path, Path, dict[str, object]]) -> None:
+    result = RUNNER.invoke(app, ["walk", "--scene", str(run[0])])
+    assert result.exit_code == 0
+    assert "passed" in result.stdout
+    assert "collision checks" in result.stdout
+    assert "Walking" not in result.stdout
+
+
+def test_a_walk_that_falls_short_ends_with_1(run: tuple[Path, Path, dict[str, object]]) -> None:
+    result = RUNNER.invoke(app, ["walk", "--scene", str(run[0]), "--limit", "0.2", "--quiet"])
+    assert result.exit_code == 1
+    assert result.stderr == ""
+
+
+def test_replay_is_identical(run: tuple[Path, Path, dict[str, object]]) -> None:
+    result = RUNNER.invoke(app, ["replay", str(run[1])])
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith(f"identical: {run[2]['frames']} frames")
+
+
+def test_replay_tells_it_as_json(run: tuple[Path, Path, dict[str, object]]) -> None:
+    result = RUNNER.invoke(app, ["replay", str(run[1]), "--json", "-q"])
+    told = json.loads(result.stdout)
+    assert told["identical"] is True
+    assert told["frames"] == run[2]["frames"]
+    assert told["first_difference"] is None
+
+
+def test_replay_with_another_avatar_is_refused(run: tuple[Path, Path, dict[str, object]], tmp_path: Path) -> None:
+    other = tmp_path / "other.vrm"
+    other.write_bytes(b"not an avatar")
+    result = RUNNER.invoke(app, ["replay", str(run[1]), "--avatar", str(other)])
+    assert result.exit_code == 2
+    assert "other.vrm" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["nonsense"], "nonsense"),
+        (["walk", "--nonsense"], "--nonsense"),
+        (["walk", "--scene", "zz"], "zz"),
+        (["walk", "--planner", "psychic"], "psychic"),
+        (["walk", "--queue", "1"], "queue size"),
+        (["walk", "--queue", "many"], "--queue"),
+        (["walk", "--seed", "-1"], "seed"),
+        (["walk", "--limit", "0"], "limit"),
+        (["walk", "--avatar", "nobody.vrm"], "nobody.vrm"),
+        (["replay", "nothing.elbow"], "nothing.elbow"),
+        (["replay"], "recording"),
+    ],
+)
+def test_a_wrong_call_is_one_line_and_2(arguments: list[str], word: str) -> None:
+    result = elbowroom(*arguments)
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1, result.stderr
+    assert word in result.stderr
+
+
+def test_help_is_quick_to_import_and_names_the_commands() -> None:
+    code = "import sys; from elbowroom.cli.main import app; sys.exit('numba' in sys.modules or 'numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    result = RUNNER.invoke(app, ["--help"])
+    assert result.exit_code == 0
+    assert "walk" in result.stdout
+    assert "replay" in result.stdout
+
+
+@pytest.mark.parametrize("command", ["walk", "replay"])
+def test_every_command_shows_examples(command: str) -> None:
+    result = RUNNER.invoke(app, [command, "--help"])
+    assert result.exit_code == 0
+    assert f"elbowroom {command}" in result.stdout
+
+
+def test_the_version_is_told() -> None:
+    assert elbowroom("--version").stdout.startswith("elbowroom 0.")
