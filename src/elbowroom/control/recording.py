@@ -19,7 +19,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-import elbowroom
+from elbowroom import __version__
 from elbowroom.body.root import RootState
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
@@ -70,7 +70,7 @@ class RecordingHeader:
     def of(cls, controller: Controller) -> "RecordingHeader":
         """The header for a run of this controller."""
         return cls(
-            version=elbowroom.__version__,
+            version=__version__,
             scene=controller.scene.to_dict(),
             avatar=AvatarReference.of(controller.humanoid),
             settings=controller.settings,
