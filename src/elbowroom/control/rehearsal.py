@@ -13,6 +13,7 @@ Floats = NDArray[np.float64]
 
 _SPACING = 1 / 60  # seconds between rehearsed poses
 _CLOSER = 0.002  # metres: the hips' bob brings a kept pose closer for a moment
+_HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 
 
 class Rehearsal:
@@ -26,9 +27,10 @@ class Rehearsal:
         return bool(self._clearances(path, uppers, path.interval).min() >= 0.0)
 
     def leads_away(self, path: RootPath, uppers: Floats, clearance: float) -> bool:
-        """Whether the motion never comes closer than the given clearance, metres, and ends farther away."""
-        found = self._clearances(path, uppers, path.interval * path.horizon)
-        return bool(found.min() >= clearance - _CLOSER and found[-1] > clearance)
+        """Whether the motion begins by leaving, or sliding along, what is now at the given clearance, metres."""
+        found = self._clearances(path, uppers, path.interval)
+        leaves = found[-1] > clearance or clearance < _HARD_BY
+        return bool(leaves and found.min() >= clearance - _CLOSER)
 
     def _clearances(self, path: RootPath, uppers: Floats, duration: float) -> Floats:
         trial = copy.copy(self._queue)  # a refill makes new arrays, so the original is not changed
