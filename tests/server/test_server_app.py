@@ -164,6 +164,12 @@ def test_a_loopback_server_does_not_know_the_addresses_of_the_network(library: L
     assert made(library, base="http://192.168.1.5:8765").get("/api/health").status_code == 403
 
 
+def test_a_server_answers_to_the_name_it_was_given(library: Library) -> None:
+    for name, status in (("my-box.local", 200), ("", 403)):
+        page = Page(make_app(library, "192.168.1.5", name), "http://My-Box.local:8765")
+        assert page.get("/api/health").status_code == status
+
+
 def test_hosts_are_read_as_browsers_do() -> None:
     assert host_of("Example.org:80") == "example.org"
     assert host_of("[::1]:8765") == "::1"
@@ -222,6 +228,16 @@ def test_a_length_that_is_announced_too_large_is_refused_before_the_body_comes(l
         assert answer.status == 413
         assert "64 MiB" in json.loads(answer.read())["error"]
         connection.close()
+
+
+def test_uploads_fill_no_more_than_their_share_of_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = stock_avatar_path().read_bytes()
+    monkeypatch.setattr(avatar_store, "MAX_UPLOADED", len(data) + 1000)
+    store = avatar_store.AvatarStore()
+    store.add_upload(data, "one.vrm")
+    second = store.add_upload(data, "two.vrm")
+    assert {choice.id for choice in store.choices()} == {"stock", second.id}
+    store.close()
 
 
 def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:

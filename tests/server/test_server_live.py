@@ -12,7 +12,7 @@ import pytest
 from live import Client, client_of, running
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from elbowroom.server import app, session
+from elbowroom.server import app, changes, session
 from elbowroom.server.library import Library
 from elbowroom.server.messages import (
     MAX_MESSAGE,
@@ -192,6 +192,29 @@ def test_an_unknown_choice_is_refused_and_the_old_one_stays(client: Client) -> N
         assert "no" in client.complaint()
         settings = client.wait_for(Settings)
         assert (settings.scene, settings.planner) == ("empty", "figure6")
+
+
+def test_what_is_known_is_done_although_another_choice_is_not(client: Client) -> None:
+    client.send(Configure(scene="b", avatar="gone"))
+    assert "drop its file" in client.complaint()
+    assert client.wait_for(SceneMessage, lambda scene: scene.name == "b")
+    assert client.wait_for(Settings).avatar == "stock"
+
+
+def test_a_change_that_fails_inside_leaves_the_session_alone(
+    client: Client, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    client.frame()
+
+    def fail(*_: object) -> None:
+        raise RuntimeError("a fault while loading")
+
+    monkeypatch.setattr(changes, "make_walk", fail)
+    client.send(Configure(scene="c"))
+    assert "failed inside" in client.complaint()
+    assert client.wait_for(Settings).scene == "empty"
+    assert client.is_served()
+    assert "a fault while loading" in caplog.text
 
 
 @pytest.mark.parametrize(

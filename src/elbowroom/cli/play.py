@@ -49,7 +49,7 @@ def play(
         warm_up_with_progress(library, console)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)
-        serve(library, opened, on_ready=lambda: _ready(url_of(opened), open_page))
+        serve(library, opened, host, lambda: _ready(url_of(opened), open_page))
     console.print("Stopped.")
 
 

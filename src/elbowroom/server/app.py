@@ -45,8 +45,8 @@ def client_is_built() -> bool:
     return (client_folder() / "index.html").is_file()
 
 
-def make_app(library: Library, bound_host: str = "127.0.0.1") -> Starlette:
-    """The application for one server; `bound_host` is the address that it listens on."""
+def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") -> Starlette:
+    """The application for one server; `bound_host` is the address that it listens on, `name` the name asked for."""
     handlers = _Handlers(library)
     routes: list[BaseRoute] = [
         Route("/api/health", handlers.health),
@@ -59,7 +59,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1") -> Starlette:
     ]
     if not client_is_built():
         LOG.warning(HOW_TO_BUILD)
-    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host)])
+    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host, name=name)])
 
 
 class _Handlers:

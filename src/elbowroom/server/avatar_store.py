@@ -15,6 +15,7 @@ from elbowroom.server.pose import Poser
 
 STOCK = "stock"
 MAX_UPLOADS = 8  # the one that was used least recently goes first
+MAX_UPLOADED = 256 * 2**20  # bytes of all of them on disk
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,11 +85,14 @@ class AvatarStore:
         avatar = self._stored(secrets.token_hex(8), humanoid, data)
         with self._lock:
             self._uploads[avatar.id] = avatar
-            dropped = [self._uploads.popitem(last=False)[1]] if len(self._uploads) > MAX_UPLOADS else []
-        for old in dropped:
-            if old.glb is not None:
-                old.glb.unlink(missing_ok=True)
+            while len(self._uploads) > 1 and self._too_many():
+                _, old = self._uploads.popitem(last=False)
+                _remove(old)
         return avatar
+
+    def _too_many(self) -> bool:
+        sizes = [upload.glb.stat().st_size for upload in self._uploads.values() if upload.glb is not None]
+        return len(self._uploads) > MAX_UPLOADS or sum(sizes) > MAX_UPLOADED
 
     def _keep(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
         avatar = self._stored(avatar_id, humanoid, humanoid.source)
@@ -103,3 +107,8 @@ class AvatarStore:
         path = Path(self._folder.name) / f"{avatar_id}.glb"
         path.write_bytes(as_glb(source))
         return StoredAvatar(avatar_id, humanoid, path)
+
+
+def _remove(avatar: StoredAvatar) -> None:
+    if avatar.glb is not None:
+        avatar.glb.unlink(missing_ok=True)

@@ -58,9 +58,9 @@ class Guard:
     from this machine only.
     """
 
-    def __init__(self, app: ASGIApp, bound_host: str) -> None:
+    def __init__(self, app: ASGIApp, bound_host: str, name: str = "") -> None:
         self._app = app
-        self._names = LOOPBACK_NAMES | {bound_host.lower()}
+        self._names = LOOPBACK_NAMES | ({name.lower(), bound_host.lower()} - {""})
         self._open = not is_loopback(bound_host)  # reachable from other machines
         if self._open:
             self._names |= {socket.gethostname().lower()}

@@ -57,10 +57,10 @@ def url_of(opened: socket.socket) -> str:
     return f"http://{shown}:{port}"
 
 
-def make_server(library: Library, opened: socket.socket) -> uvicorn.Server:
-    """The server of an application for this socket; `run(sockets=[opened])` runs it."""
+def make_server(library: Library, opened: socket.socket, host: str = "") -> uvicorn.Server:
+    """The server of an application for this socket; `run(sockets=[opened])` runs it; `host` as in `listen`."""
     config = uvicorn.Config(
-        make_app(library, opened.getsockname()[0]),
+        make_app(library, opened.getsockname()[0], host),
         ws="websockets-sansio",
         ws_max_size=MAX_MESSAGE,
         ws_per_message_deflate=False,
@@ -75,9 +75,9 @@ def make_server(library: Library, opened: socket.socket) -> uvicorn.Server:
     return uvicorn.Server(config)
 
 
-def serve(library: Library, opened: socket.socket, on_ready: Callable[[], None] = lambda: None) -> None:
+def serve(library: Library, opened: socket.socket, host: str, on_ready: Callable[[], None]) -> None:
     """Serve until interrupted (then the KeyboardInterrupt passes through); `on_ready` is called once it answers."""
-    asyncio.run(_serve(make_server(library, opened), opened, on_ready))
+    asyncio.run(_serve(make_server(library, opened, host), opened, on_ready))
 
 
 async def _serve(server: uvicorn.Server, opened: socket.socket, on_ready: Callable[[], None]) -> None:

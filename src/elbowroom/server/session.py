@@ -5,14 +5,13 @@ import contextlib
 import logging
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 from starlette.types import Message
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from elbowroom import __version__
-from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
+from elbowroom.server.changes import Changes, make_walk
 from elbowroom.server.codec import decode_client, encode
 from elbowroom.server.library import Library
 from elbowroom.server.messages import (
@@ -35,7 +34,6 @@ from elbowroom.server.outbox import Outbox, SlowClientError
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, scene_message
 from elbowroom.server.stage import Stage
-from elbowroom.server.walk import Walk, WalkSettings
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -44,7 +42,6 @@ _SOON = 0.002  # seconds: an input so shortly after a frame is obeyed at the nex
 _SELDOM = 0.1  # seconds between status messages, and between frames while paused
 _MESSAGE_RATE = 240.0  # messages a second that a client may send
 _PATIENCE = 200  # wrong or surplus messages before the connection is closed
-_WAITING_CHANGES = 16
 _TRY_AGAIN_LATER, _POLICY, _INTERNAL = 1013, 1008, 1011  # close codes, RFC 6455 and its registry
 
 
@@ -63,20 +60,20 @@ class Session:
         self._socket = socket
         self._library = library
         self._outbox = Outbox()
-        self._changes: asyncio.Queue[Configure] = asyncio.Queue(_WAITING_CHANGES)
         self._bucket = TokenBucket(_MESSAGE_RATE, _MESSAGE_RATE)
         self._wrong = 0
         self._began = time.monotonic()
         self._heard = 0.0
         self._told = -_SELDOM  # when the last status went out
-        self._stage: Stage  # made by _open
+        self._stage: Stage  # both made by _open
+        self._changes: Changes
 
     async def run(self) -> None:
         """Serve the client until it leaves or fails."""
         sender = asyncio.create_task(self._outbox.send_to(self._socket))
         try:
             await self._open()
-            await _first_of([sender, *map(asyncio.create_task, (self._read(), self._play(), self._change()))])
+            await _first_of([sender, *map(asyncio.create_task, (self._read(), self._play(), self._changes.run()))])
         except (WebSocketDisconnect, OSError):
             return
         except (_DoneError, SlowClientError, InputError) as error:
@@ -94,9 +91,10 @@ class Session:
         library = self._library
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog()))
         self._outbox.put(Loading("avatar", library.avatar, True))
-        walk = await asyncio.to_thread(_made, library, library.scene, library.avatar, library.walk, None)
+        walk = await asyncio.to_thread(make_walk, library, library.scene, library.avatar, library.walk, None)
         self._outbox.put(Loading("avatar", library.avatar, False))
         self._stage = Stage(walk, self._now())
+        self._changes = Changes(library, self._stage, self._outbox)
         self._outbox.put(self._stage.settings())
         self._outbox.put(scene_message(walk.scene))
         self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
@@ -132,7 +130,7 @@ class Session:
         elif isinstance(message, Ping):
             self._outbox.put(Pong(message.t, self._now()))
         elif isinstance(message, Configure):
-            self._ask_change(message)
+            self._changes.ask(message)
         else:
             self._control(message)
             self._outbox.put(self._stage.settings())
@@ -145,65 +143,6 @@ class Session:
             self._stage.reset()
         else:
             self._stage.overlays = message
-
-    def _ask_change(self, message: Configure) -> None:
-        try:
-            self._changes.put_nowait(message)
-        except asyncio.QueueFull:
-            raise InputError("configure: too many changes at once; wait until those before are done") from None
-
-    # --- changes that take a while -------------------------------------------------------------------------------
-
-    async def _change(self) -> None:
-        while True:
-            message = await self._changes.get()
-            try:
-                await self._configure(message)
-            except InputError as error:
-                self._outbox.put(Notice("error", str(error)))
-            self._outbox.put(self._stage.settings())
-
-    async def _configure(self, message: Configure) -> None:
-        walk = self._stage.walk
-        message = self._possible(message)
-        settings = _merged(walk.settings, message)
-        scene, avatar = message.scene or walk.scene.name, message.avatar or walk.avatar.id
-        rebuilt = (settings.planner, settings.queue_size) != (walk.settings.planner, walk.settings.queue_size)
-        if (scene, avatar) == (walk.scene.name, walk.avatar.id) and not rebuilt:
-            walk.adjust(settings)
-            return
-        await self._rebuild(scene, avatar, settings)
-
-    def _possible(self, message: Configure) -> Configure:
-        """The change without choices that do not exist here; the client is told of each."""
-        checks = {"scene": self._library.find_scene, "avatar": self._library.avatars.check}
-        for name, check in checks.items():
-            choice = getattr(message, name)
-            try:
-                if choice is not None:
-                    check(choice)
-            except InputError as error:
-                self._outbox.put(Notice("error", str(error)))
-                message = replace(message, **{name: None})
-        return message
-
-    async def _rebuild(self, scene: str, avatar: str, settings: WalkSettings) -> None:
-        old = self._stage.walk
-        moved, dressed = scene != old.scene.name, avatar != old.avatar.id
-        notice = Loading("avatar", avatar, True) if dressed else Loading("scene", scene, True)
-        notice = notice if moved or dressed else Loading("planner", settings.planner, True)
-        self._outbox.put(notice)
-        try:
-            place = None if moved else old.place
-            walk = await asyncio.to_thread(_made, self._library, scene, avatar, settings, place)
-        finally:
-            self._outbox.put(replace(notice, active=False))
-        self._outbox.drop_frame()
-        self._stage.show(walk)
-        if moved:
-            self._outbox.put(scene_message(walk.scene))
-        if dressed:
-            self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
 
     # --- poses out -----------------------------------------------------------------------------------------------
 
@@ -255,16 +194,6 @@ def _decoded(event: Message) -> ClientMessage:
     if text is None:
         raise InputError("message: binary messages are not read here; send JSON text")
     return decode_client(text)
-
-
-def _merged(settings: WalkSettings, message: Configure) -> WalkSettings:
-    wanted = {name: getattr(message, name) for name in ("planner", "queue_size", "assist", "walk_speed")}
-    return replace(settings, **{name: value for name, value in wanted.items() if value is not None})
-
-
-def _made(library: Library, scene: str, avatar: str, settings: WalkSettings, place: RootState | None) -> Walk:
-    """A walk; takes a while, so it is called in a worker thread."""
-    return Walk(library.avatars.get(avatar), library.find_scene(scene), settings, place)
 
 
 def _farewell(error: Exception) -> tuple[int, str]:
