@@ -3,6 +3,7 @@
 import asyncio
 import http.client
 import json
+import socket
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
@@ -266,6 +267,24 @@ def test_a_busy_port_gives_the_next_free_one() -> None:
         with listen("127.0.0.1", port) as second:
             assert second.getsockname()[1] > port
             assert url_of(second) == f"http://127.0.0.1:{second.getsockname()[1]}"
+
+
+def test_frames_are_not_held_back_to_be_sent_together() -> None:
+    async def accepted() -> int:
+        found: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+
+        def look(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            found.set_result(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        opened = listen("127.0.0.1", 0)
+        async with await asyncio.start_server(look, sock=opened):
+            _, writer = await asyncio.open_connection(*opened.getsockname())
+            delay_off = await found
+            writer.close()
+            return delay_off
+
+    assert asyncio.run(accepted()) == 1
 
 
 def test_an_address_that_is_not_ours_is_refused() -> None:

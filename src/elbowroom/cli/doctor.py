@@ -86,9 +86,9 @@ def _kernels() -> dict[str, Any]:
 
 def _wheel() -> dict[str, Any] | None:
     """The newest wheel in `dist/` of this checkout or this folder."""
-    import elbowroom
+    from elbowroom.server.app import client_folder
 
-    places = [Path(elbowroom.__file__).parents[2] / "dist", Path.cwd() / "dist"]
+    places = [client_folder().parents[2] / "dist", Path.cwd() / "dist"]
     wheels = [wheel for place in places for wheel in place.glob("elbowroom-*.whl")]
     if not wheels:
         return None
