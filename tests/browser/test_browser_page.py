@@ -57,7 +57,7 @@ def test_overlays_switch_on_and_off(open_page: Open) -> None:
     state = live.wait("s.overlays.length === 2 && s.settings.capsules && !s.settings.plan")
     assert set(state["overlays"]) == {"capsules", "plan"}
     live.wait("s.capsulesReceived > 10")
-    assert "Plans" in live.page.inner_text("#hud")
+    live.page.wait_for_selector("#hud .plan:not([hidden])")
     live.page.keyboard.press("o")
     live.wait("s.overlays.length === 0 && !s.settings.capsules")
     live.page.keyboard.press("o")

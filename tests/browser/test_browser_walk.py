@@ -105,7 +105,6 @@ def test_assist_off_goes_through_things(open_page: Open) -> None:
     state = live.wait("s.touching && s.touchingParts.length > 0", 30)
     live.page.keyboard.up("w")
     assert set(state["touchingParts"]) <= set(live.page.evaluate("window.__app.bodyParts"))
-    assert "Assist is off" in live.page.inner_text("#status") or live.wait("s.touching")
     live.page.keyboard.press("t")
     live.wait("s.settings.assist === true")
 

@@ -233,7 +233,7 @@ export class App implements SessionListener, MenuListener {
     const { theme } = this.preferences;
     const shown = theme === "auto" ? (this.dark.matches ? "dark" : "light") : theme;
     document.documentElement.dataset["theme"] = shown;
-    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#263142" : "#e6e5df");
+    document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#2a3546" : "#e6e5df");
     this.picture.setTheme(shown);
   }
 

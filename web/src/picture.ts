@@ -1,6 +1,7 @@
 /** Everything that is drawn: stage, scene, avatar, overlays, and the camera that sees them. */
 
 import { AvatarView } from "./avatar/avatar_view";
+import type { Vec3 } from "./camera/spring_arm";
 import { ThirdPersonCamera, type Followed } from "./camera/third_person";
 import type { AvatarMessage, Plan, SceneMessage, Status } from "./generated/messages";
 import type { Intent, SteeringMode } from "./input/steering";
@@ -13,6 +14,7 @@ import { World } from "./stage/world";
 
 const EYE_BELOW_HEAD = 0.06;
 const DEFAULT_EYE = 1.45;
+const KNEE_HEIGHT = 0.5;
 const JUMP = 1;
 
 /** What the picture needs to know besides the pose. */
@@ -118,7 +120,9 @@ export class Picture {
     if (pose.epoch !== this.epoch && jumped) this.camera.snap(followed);
     this.epoch = pose.epoch;
     this.last = [pose.x, pose.z];
-    this.camera.update(followed, this.world.boxes, dt);
+    this.camera.update(followed, this.world.cameraObstacles, dt);
+    const knees: Vec3 = [pose.x, pose.y + KNEE_HEIGHT, pose.z];
+    this.world.clearSight(this.camera.position, [this.camera.target, knees], dt);
     this.avatar.fade(this.camera.avatarOpacity);
     this.stage.follow(pose.x, pose.z);
     this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.url === null });

@@ -1,5 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { distanceToBox, distanceToBoxes, freeReach, prepareBox, type OrientedBox, type Vec3 } from "../src/camera/spring_arm";
+import {
+  cameraReach, distanceToBox, distanceToBoxes, freeReach, isWall, prepareBox, type OrientedBox, type Vec3,
+} from "../src/camera/spring_arm";
 
 /** A small deterministic generator (mulberry32), so that a failure repeats. */
 function random(seed: number): () => number {
@@ -69,6 +71,33 @@ describe("freeReach", () => {
         distanceToBoxes(boxes, origin[0] + direction[0] * t, origin[1] + direction[1] * t, origin[2] + direction[2] * t);
       for (let t = 0; t <= reach; t += 0.01) expect(at(t)).toBeGreaterThanOrEqual(probe(t) - 1e-9);
       if (reach < 5) expect(at(reach)).toBeLessThan(probe(reach) + 0.02);
+    }
+  });
+});
+
+describe("cameraReach", () => {
+  it("looks past furniture but not through walls, and is inside of neither", () => {
+    const still: OrientedBox["rotation"] = [0, 0, 0, 1];
+    const post = prepareBox({ center: [0, 1, -1], rotation: still, halfSize: [0.1, 1, 0.1] });
+    const wall = prepareBox({ center: [0, 1, -1], rotation: still, halfSize: [3, 1.5, 0.1] });
+    expect([isWall(post), isWall(wall)]).toEqual([false, true]);
+    const reach = (boxes: (typeof post)[], wanted: number) =>
+      cameraReach({ all: boxes, walls: boxes.filter((box) => isWall(box)) }, [0, 1.5, 0], [0, 0, -1], wanted, 0.16);
+    expect(reach([post], 4)).toBe(4);
+    expect(reach([wall], 4)).toBeCloseTo(0.74, 2);
+    expect(reach([post], 1)).toBeLessThanOrEqual(0.7401);
+    expect(reach([post], 1)).toBeGreaterThan(0.6);
+  });
+
+  it("never ends inside a box", () => {
+    const next = random(11);
+    for (let trial = 0; trial < 300; trial++) {
+      const all = Array.from({ length: 6 }, () => prepareBox(randomBox(next)));
+      const walls = all.filter((box) => isWall(box));
+      const direction = unit([next() - 0.5, next() * 0.5, next() - 0.5]) as [number, number, number];
+      const reach = cameraReach({ all, walls }, [0, 1.4, 0], direction, 4, 0.16);
+      const end = [direction[0] * reach, 1.4 + direction[1] * reach, direction[2] * reach] as const;
+      if (reach > 0) expect(distanceToBoxes(all, ...end)).toBeGreaterThan(0.159);
     }
   });
 });

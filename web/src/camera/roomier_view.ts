@@ -1,6 +1,6 @@
 /** Where a camera that has no room behind the avatar should rather look from: a little higher, lower or aside. */
 
-import { freeReach, type PreparedBox, type Vec3 } from "./spring_arm";
+import { cameraReach, type CameraObstacles, type Vec3 } from "./spring_arm";
 
 /** A change of the camera's direction, radians. */
 export interface ViewShift {
@@ -27,17 +27,17 @@ export function backwards(heading: number, pitch: number): Vec3 {
 
 /** The shift that gains most distance for the least change; none where there is room enough. */
 export function roomierView(
-  boxes: readonly PreparedBox[], pivot: Vec3, heading: number, pitch: number, wanted: number, radius: number,
+  obstacles: CameraObstacles, pivot: Vec3, heading: number, pitch: number, wanted: number, radius: number,
   current: ViewShift, limits: readonly [low: number, high: number],
 ): ViewShift {
   const enough = ENOUGH * wanted;
-  if (freeReach(boxes, pivot, backwards(heading, pitch), wanted, radius) >= enough) return NO_SHIFT;
+  if (cameraReach(obstacles, pivot, backwards(heading, pitch), wanted, radius) >= enough) return NO_SHIFT;
   let best = NO_SHIFT;
   let bestScore = -Infinity;
   for (const rise of PITCHES) {
     if (pitch + rise < limits[0] || pitch + rise > limits[1]) continue;
     for (const yaw of YAWS) {
-      const reach = freeReach(boxes, pivot, backwards(heading + yaw, pitch + rise), wanted, radius);
+      const reach = cameraReach(obstacles, pivot, backwards(heading + yaw, pitch + rise), wanted, radius);
       const loyal = yaw === current.yaw && rise === current.pitch ? LOYALTY : 0;
       const score = Math.min(reach, enough) + loyal - PRICE * Math.hypot(yaw, rise);
       if (score <= bestScore) continue;

@@ -23,6 +23,7 @@ export interface PreparedBox {
 }
 
 const CONTACT_TOLERANCE = 1e-4;
+const RETREAT_STEP = 0.02;
 const MAX_STEPS = 128;
 /** How fast a sphere that begins squeezed grows to its full radius, metres per metre. */
 const PROBE_GROWTH = 0.5;
@@ -104,4 +105,40 @@ export function freeReach(
     if (travelled >= limit) return limit;
   }
   return Math.min(travelled, limit);
+}
+
+/** Whether the box is a wall or a floor: at least this large in two directions. What is smaller is furniture. */
+export function isWall(box: PreparedBox, size = 2.4): boolean {
+  const sizes = box.halfSize.map((half) => 2 * half).sort((a, b) => b - a);
+  return (sizes[1] ?? 0) >= size;
+}
+
+/** Obstacles as the camera sees them. */
+export interface CameraObstacles {
+  readonly all: readonly PreparedBox[];
+  /** Those that hold the arm back; past the others the camera looks through, they fade. */
+  readonly walls: readonly PreparedBox[];
+}
+
+/**
+ * How far from the pivot the camera may be: no wall lies between, and no box of any kind round the camera itself.
+ *
+ * Without assist the avatar walks through walls too; one that the pivot is inside cannot hold the arm back.
+ */
+export function cameraReach(
+  obstacles: CameraObstacles, pivot: Vec3, direction: Vec3, wanted: number, radius: number,
+): number {
+  const walls = obstacles.walls.filter((wall) => distanceToBox(wall, ...pivot) > CONTACT_TOLERANCE);
+  let reach = freeReach(walls, pivot, direction, wanted, radius);
+  while (reach > 0) {
+    const room = distanceToBoxes(obstacles.all, ...pointAlong(pivot, direction, reach));
+    if (room >= radius - 2 * CONTACT_TOLERANCE) return reach;
+    reach -= Math.max(radius - room, RETREAT_STEP);
+  }
+  return 0;
+}
+
+/** The point at a distance from `from` along a unit vector. */
+export function pointAlong(from: Vec3, direction: Vec3, distance: number): [number, number, number] {
+  return [from[0] + direction[0] * distance, from[1] + direction[1] * distance, from[2] + direction[2] * distance];
 }

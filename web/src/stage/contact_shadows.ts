@@ -3,7 +3,7 @@
 import type { PreparedBox } from "../camera/spring_arm";
 
 const FADE_HEIGHT = 1.6;
-const STRENGTH = 0.42;
+const STRENGTH = 0.6;
 
 /**
  * A canvas of `width` by `depth` metres round `center`: white where the ground is open, darker near the boxes.

@@ -2,11 +2,14 @@
 
 import { Group, Mesh, MeshLambertMaterial, MeshStandardMaterial, Quaternion } from "three";
 import { RoundedBoxGeometry } from "three/addons/geometries/RoundedBoxGeometry.js";
+import { damp } from "../camera/damping";
 import type { OrientedBox } from "../camera/spring_arm";
 import type { Palette } from "./palette";
 
 const BEVEL = 0.022;
 const BEVEL_SEGMENTS = 2;
+const SEE_THROUGH = 0.2;
+const FADE_HALFLIFE = 0.09;
 
 export class Obstacles {
   readonly group = new Group();
@@ -17,6 +20,20 @@ export class Obstacles {
     boxes.forEach((box, i) => {
       const colour = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
       this.group.add(boxMesh(box, colour, rich));
+    });
+  }
+
+  /** Moves each box towards see-through or solid; `hides` tells which box is in the way. */
+  fade(hides: (i: number) => boolean, dt: number): void {
+    this.group.children.forEach((child, i) => {
+      const { material } = child as Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+      const wanted = hides(i) ? SEE_THROUGH : 1;
+      const opacity = Math.abs(material.opacity - wanted) < 0.01 ? wanted : damp(material.opacity, wanted, FADE_HALFLIFE, dt);
+      if (opacity === material.opacity) return;
+      if (material.transparent !== opacity < 1) material.needsUpdate = true;
+      material.transparent = opacity < 1;
+      material.depthWrite = opacity === 1;
+      material.opacity = opacity;
     });
   }
 

@@ -1,17 +1,22 @@
 /** The scene on the stage: floor, boxes, start and gate, kept so that a change of colours can build it anew. */
 
 import { Group } from "three";
-import { prepareBox, type OrientedBox, type PreparedBox } from "../camera/spring_arm";
+import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type PreparedBox, type Vec3 } from "../camera/spring_arm";
 import type { Box, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";
 import { Obstacles } from "./obstacles";
+import { nearestOnSegment } from "../overlays/touching";
 import type { Palette } from "./palette";
+
+const SIGHT_RADIUS = 0.06;
+const BESIDE_THE_BODY = 0.97;
 
 export class World {
   readonly group = new Group();
   /** The obstacles for distance queries. */
   boxes: readonly PreparedBox[] = [];
+  cameraObstacles: CameraObstacles = { all: [], walls: [] };
   message: SceneMessage | null = null;
   readonly gate = new Gate();
   private readonly ground = new Ground();
@@ -24,7 +29,13 @@ export class World {
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
     this.boxes = message.boxes.map((box) => prepareBox(orientedBox(box)));
+    this.cameraObstacles = { all: this.boxes, walls: this.boxes.filter((box) => isWall(box)) };
     this.repaint(palette, rich);
+  }
+
+  /** Makes boxes see-through that stand between the camera and the avatar. */
+  clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
+    this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
   }
 
   /** Builds everything again in other colours or other materials. */
@@ -37,6 +48,14 @@ export class World {
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
     this.gate.build(gate, [start.x, start.z], palette);
   }
+}
+
+/** Whether the box crosses a line of sight, apart from what stands beside the body itself. */
+function hides(box: PreparedBox | undefined, camera: Vec3, body: readonly Vec3[]): boolean {
+  return box !== undefined && body.some((point) => {
+    const { share, distance } = nearestOnSegment(box, [...camera, ...point], 0);
+    return distance < SIGHT_RADIUS && share < BESIDE_THE_BODY;
+  });
 }
 
 function orientedBox({ center, rotation, size }: Box): OrientedBox {

@@ -56,7 +56,7 @@ export class Help {
       "You steer; the avatar finds its own way to fit. It bends, twists and moves its arms so that no part of it " +
       "touches anything. Walk it through the gate. Switch Assist off to see the same walk without planning.";
     const columns = make("div", { class: "help-columns" }, ...SECTIONS.map(([title, rows]) => section(title, rows)));
-    const header = make("header", {}, make("h2", { id: "help-title" }, "How to walk through walls of things"), close);
+    const header = make("header", {}, make("h2", { id: "help-title" }, "How to steer"), close);
     this.dialog.append(make("div", { class: "help-body" }, header, make("p", {}, intro), columns));
   }
 
