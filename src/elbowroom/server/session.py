@@ -38,7 +38,7 @@ from elbowroom.server.stage import Stage
 LOG = logging.getLogger("elbowroom.server")
 
 INTERVAL = 1.0 / 60.0  # seconds between frames
-_SOON = 0.002  # seconds: an input so shortly after a frame is obeyed at the next tick
+_ANSWER_EVERY = 0.008  # seconds between frames in answer to inputs; an input in between is obeyed at the next tick
 _SELDOM = 0.1  # seconds between status messages, and between frames while paused
 _MESSAGE_RATE = 240.0  # messages a second that a client may send
 _PATIENCE = 200  # wrong or surplus messages before the connection is closed
@@ -64,6 +64,7 @@ class Session:
         self._wrong = 0
         self._began = time.monotonic()
         self._heard = 0.0
+        self._answered = 0.0  # when the last input was answered by a frame of its own
         self._told = -_SELDOM  # when the last status went out
         self._stage: Stage  # both made by _open
         self._changes: Changes
@@ -125,7 +126,8 @@ class Session:
 
     def _obey(self, message: ClientMessage) -> None:
         if isinstance(message, Input):
-            if self._stage.obey(message) and self._stage.since_advance(self._now()) > _SOON:
+            if self._stage.obey(message) and self._now() - self._answered >= _ANSWER_EVERY:
+                self._answered = self._now()
                 self._show()
         elif isinstance(message, Ping):
             self._outbox.put(Pong(message.t, self._now()))

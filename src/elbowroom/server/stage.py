@@ -79,10 +79,6 @@ class Stage:
         self._advanced = now
         return [] if self.paused else self._step(elapsed * self.speed)
 
-    def since_advance(self, now: float) -> float:
-        """Seconds since the last `advance`."""
-        return now - self._advanced
-
     def frame(self, now: float) -> bytes:
         """The pose shown now, as it travels."""
         began = perf_counter()
