@@ -69,6 +69,8 @@ def test_gestures_do_not_pass_through_the_own_body() -> None:
             for part, allowed in (("leftHand", 0.0), ("leftForearm", 0.0), ("leftUpperArm", -0.05)):
                 i = names.index(part)
                 for j in trunk:
+                    if (part, names[j]) == ("leftUpperArm", "shoulders"):
+                        continue  # they share the shoulder
                     gap = segment_gap(segments[i, :, n], segments[j, :, n]) - radii[i] - radii[j]
                     assert gap > allowed, (clip.name, n, part, names[j])
 

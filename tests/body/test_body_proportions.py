@@ -7,7 +7,7 @@ from elbowroom.body.proportions import proportional_capsules, proportional_human
 from naive_pose import required_only
 
 LEGS = ["pelvis", "leftThigh", "rightThigh", "leftShin", "rightShin", "leftFoot", "rightFoot"]
-TRUNK = ["abdomen", "torso", "chest", "neck", "head"]
+TRUNK = ["abdomen", "torso", "chest", "shoulders", "neck", "head"]
 ARMS = ["leftUpperArm", "leftForearm", "leftHand", "rightUpperArm", "rightForearm", "rightHand"]
 
 
@@ -38,7 +38,7 @@ def test_capsules_cover_the_body_in_the_agreed_order(full: bool) -> None:
     skeleton = proportional_skeleton(1.72)
     capsules = proportional_capsules(skeleton if full else required_only(skeleton))
     assert list(capsules.names) == LEGS + TRUNK + ARMS
-    assert [len(capsules.of(group)) for group in DofGroup] == [7, 5, 3, 3]
+    assert [len(capsules.of(group)) for group in DofGroup] == [7, 6, 3, 3]
     assert np.all(capsules.radii > 0.02)
     assert np.all(capsules.radii < 0.15)
     names = (skeleton if full else required_only(skeleton)).names

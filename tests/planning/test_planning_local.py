@@ -93,9 +93,9 @@ def test_what_is_found_is_free_at_every_key_time_and_bounded_in_speed(humanoid: 
 
 
 def test_an_arm_evades_a_box_that_the_walk_would_touch(humanoid: Humanoid) -> None:
-    box = Boxes(np.array([[0.34, 0.85, 1.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[0.1, 0.15, 0.3]]))
+    box = Boxes(np.array([[0.37, 0.85, 1.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[0.1, 0.15, 0.3]]))
     scene = replace(Scene.load("empty"), boxes=box)
-    path = walk(z=0.35)
+    path = walk(z=0.1)
     plan = LocalPlanner(humanoid, scene).plan(path, hanging(), np.random.default_rng(0))
     touching = world_clearances(humanoid, scene, path, plan.goals, [DofGroup.LEFT_ARM])
     assert touching.min() < 0.0

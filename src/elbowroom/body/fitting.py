@@ -19,6 +19,7 @@ from elbowroom.body.skeleton import Skeleton
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_SIDES = ("left", "right")
 _LIMB_PARTS = {
     "UpperLeg": "Thigh",
     "LowerLeg": "Shin",
@@ -31,6 +32,7 @@ _LIMB_PARTS = {
 _FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 _HEAD = {"neck": "neck", "head": "head", "jaw": "head", "leftEye": "head", "rightEye": "head"}
 _TRUNK = ("abdomen", "torso", "chest")
+_SHOULDERS = "shoulders"  # from one shoulder joint to the other, as thick as the upper arms that hang there
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,8 @@ def fit_capsules(
     bare: list[str] = []
     for part, name in enumerate(average.names):
         own = _thinned(points.positions[parts == part], cell)
+        if name == _SHOULDERS:
+            continue
         if len(own) < settings.fewest:
             bare.append(name)
             continue
@@ -76,6 +80,7 @@ def fit_capsules(
         starts[part], ends[part] = both[:3], both[3:]
         radius = float(np.quantile(_distances(own, both[:3], both[3:]), share))
         radii[part] = np.clip(radius, settings.thinnest * radii[part], settings.thickest * radii[part])
+    radii[average.names.index(_SHOULDERS)] = radii[[average.names.index(f"{s}UpperArm") for s in _SIDES]].mean()
     fitted = Capsules(average.names, average.joints, starts - rest, ends - rest, radii, average.groups)
     return fitted, tuple(bare)
 
@@ -98,7 +103,7 @@ def part_of_points(skeleton: Skeleton, capsules: Capsules, points: BodyPoints) -
     names = {name: index for index, name in enumerate(capsules.names)}
     of_joint = np.array([names.get(_part_name(bone), -1) for bone in skeleton.names], dtype=np.int64)
     parts = of_joint[points.joints]
-    shoulders = [skeleton.names.index(f"{s}Shoulder") for s in ("left", "right") if skeleton.has(f"{s}Shoulder")]
+    shoulders = [skeleton.names.index(f"{s}Shoulder") for s in _SIDES if skeleton.has(f"{s}Shoulder")]
     top = skeleton.index(last_spine(skeleton))
     bearer = np.where(np.isin(points.joints, shoulders), top, points.joints)
     trunk = [names[name] for name in _TRUNK if name in names]
@@ -112,7 +117,7 @@ def part_of_points(skeleton: Skeleton, capsules: Capsules, points: BodyPoints) -
 
 
 def _part_name(bone: str) -> str:
-    side = next((side for side in ("left", "right") if bone.startswith(side)), "")
+    side = next((side for side in _SIDES if bone.startswith(side)), "")
     rest = bone.removeprefix(side)
     if bone == "hips":
         return "pelvis"

@@ -140,6 +140,8 @@ def _trunk_parts(skeleton: Skeleton, size: float) -> list[_Part]:
     ):
         centre = low + height * (high - low)
         parts.append((name, bone, *_lateral(centre, min(half * size, 0.7 * reach)), radius, DofGroup.WAIST))
+    # The shoulder joints go where the trunk takes them, so what they touch is for the waist to avoid.
+    parts.append(("shoulders", top, at["leftUpperArm"], at["rightUpperArm"], _UPPER_ARM, DofGroup.WAIST))
     neck = "neck" if skeleton.has("neck") else top
     root = at["neck"] if skeleton.has("neck") else 0.5 * (high + at["head"])
     crown = at["head"] + size * np.array([0.0, 1.0 - _HEAD_HEIGHT - _HEAD, 0.012])

@@ -14,7 +14,7 @@ class ControlSettings:
 
     planner: str = "figure6"  # how upper-body motion is searched
     queue_size: int = 5  # |Q|, key frames planned ahead
-    interval: float = 0.2  # T_interval, seconds between key frames
+    interval: float = 0.15  # T_interval, seconds between key frames
     seed: int = 0  # of all chance in planning
     assist: bool = True  # off: the canned walk, touching what it touches
 

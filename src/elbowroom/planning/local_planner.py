@@ -40,15 +40,15 @@ class GroupSettings:
 class LocalPlannerSettings:
     """Settings of the local planner.
 
-    The radii allow, with key frames 0.2 s apart, 2 rad/s at the waist and 2.5 rad/s over an arm's joints together: what
-    a brisk swing of the arms and a quick but human evasion need. As nothing is checked between key frames, the margin
+    The radii allow, with key frames 0.15 s apart, 2.7 rad/s at the waist and 3.3 rad/s over an arm's joints together:
+    what a brisk swing of the arms and a quick but human evasion need. As nothing is checked between key frames, the margin
     grows with the way between them.
     """
 
     waist: GroupSettings = field(default=GroupSettings(samples_per_clip=6, radius=0.4))
     arm: GroupSettings = field(default=GroupSettings(samples_per_clip=10, radius=0.5))
     margin: float = 0.01  # metres of clearance that count as free while the root stands
-    margin_of_way: float = 0.27  # what is added to it for each metre that the root moves to or from the key frame
+    margin_of_way: float = 0.35  # what is added to it for each metre that the root moves to or from the key frame
     budget: int = 20_000  # collision checks for each group and plan
     capacity: int = 384  # vertices of a graph; a plan that begins with a full graph begins it anew
 
