@@ -4,6 +4,7 @@ import coal
 import numpy as np
 import pytest
 
+from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.controller import Controller
@@ -169,3 +170,16 @@ def test_a_start_in_an_obstacle_is_a_plain_error() -> None:
     inside = scene.start._replace(x=float(scene.boxes.centers[0, 0]), z=float(scene.boxes.centers[0, 2]))
     with pytest.raises(InputError, match="start"):
         Controller(HUMANOID, scene, start=inside)
+
+
+def test_before_a_wall_the_avatar_stands_and_is_stuck_only_while_pushed() -> None:
+    document = Scene.load("empty").to_dict()
+    document["obstacles"] = [{"type": "box", "name": "wall", "center": [0, 1, 2], "size": [9, 2, 0.3]}]
+    controller = Controller(Humanoid.default(), Scene.from_dict(document))
+    frames = walk(controller, [Command(forward=1.0)] * 400)
+    assert frames[-1].stuck
+    assert frames[-1].root[1] < 1.85
+    assert not walk(controller, [Command()] * 30)[-1].stuck
+    back = walk(controller, [Command(forward=-1.0)] * 60)[-1]
+    assert not back.stuck
+    assert back.root[1] < frames[-1].root[1] - 0.2

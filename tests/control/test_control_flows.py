@@ -19,6 +19,7 @@ from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_planner import RootPlanKind
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)
@@ -29,6 +30,7 @@ WALK = Command(forward=1.0)
 @dataclass(frozen=True)
 class FakeRootPlan:
     path: RootPath
+    kind: RootPlanKind = RootPlanKind.STRAIGHT
 
 
 class FakeRootPlanner:

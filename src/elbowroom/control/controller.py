@@ -18,7 +18,7 @@ from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.planner import make_planner
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root_planner import RootPlanKind, RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ class Controller:
         *,
         planner: str = "figure6",
         queue_size: int = 5,
-        interval: float = 0.2,
+        interval: float = ControlSettings.interval,
         seed: int = 0,
         assist: bool = True,
         start: RootState | None = None,
@@ -255,13 +255,18 @@ class Controller:
             root=self._shown.root,
             phase=self._flow,
             clearance=self._clearance,
-            stuck=self._blocked and not command.idle,
+            stuck=not command.idle and (self._blocked or self._walled_in()),
             touching=self._clearance < 0.0,
             fill=self._queue.fill,
             key_frames=self._queue.unplayed(),
             goal=self._goal(),
             plan=self._plan_report,
         )
+
+    def _walled_in(self) -> bool:
+        """Whether the root stands because there is no way on for it."""
+        stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
+        return stopped and not self._shown.root[3:6].any()
 
     def _goal(self) -> Floats:
         """The goal functions' posture now, from the last plan (10,)."""

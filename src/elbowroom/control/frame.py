@@ -45,7 +45,7 @@ class Frame:
     root: Floats  # (7,) the root state, see `body.root`
     phase: Phase
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
-    stuck: bool  # the user pushes, the body is held by an obstacle, and planning has found no way on
+    stuck: bool  # the user pushes, and planning has found no way on for the root or for the limbs
     touching: bool  # part of the body is inside an obstacle: only with assistance off
     fill: int  # unplayed key frames in the queue
     key_frames: KeyFrames  # the unplayed key frames
