@@ -41,8 +41,8 @@ class LocalPlannerSettings:
     """Settings of the local planner.
 
     The radii allow, with key frames 0.15 s apart, 2.7 rad/s at the waist and 3.3 rad/s over an arm's joints together:
-    what a brisk swing of the arms and a quick but human evasion need. As nothing is checked between key frames, the margin
-    grows with the way between them.
+    what a brisk swing of the arms and a quick but human evasion need. As nothing is checked between key frames, the
+    margin grows with the way between them.
     """
 
     waist: GroupSettings = field(default=GroupSettings(samples_per_clip=6, radius=0.4))

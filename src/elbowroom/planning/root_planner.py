@@ -63,7 +63,7 @@ class RootPlannerSettings:
     margin: float = 0.01  # clearance of the straight way
     skin: float = 0.01  # clearance that posed legs keep along a path
     spacing: float = 0.0125  # seconds between checked states
-    slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
+    slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
 
 
 @dataclass(frozen=True, eq=False)
