@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from live_page import LivePage
 from live_server import LiveServer
-from shared_data import SHARED
 
 import elbowroom
+from shared_data import SHARED
 
 Open = Callable[..., LivePage]
 
@@ -105,7 +105,9 @@ def test_menus_change_the_session(open_page: Open) -> None:
 def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live = open_page("scene=empty")
     live.page.evaluate(DROP, ["newcomer" + path.suffix, base64.b64encode(path.read_bytes()).decode()])
-    state = live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60)
+    state = live.wait(
+        "s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60
+    )
     assert state["avatarLoaded"]
     live.page.keyboard.down("w")
     live.wait("s.root.z > 0.3")
@@ -121,16 +123,19 @@ def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:
     live.errors[:] = [error for error in live.errors if "Failed to load resource" not in error]
 
 
-def test_the_page_reconnects_by_itself(open_page: Open) -> None:
+def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) -> None:
     with LiveServer() as server:
         live = open_page("scene=c", server=server)
         live.wait("s.scene === 'c'")
+        live.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
+        live.wait("s.settings.avatar !== 'stock'", 60)
         server.stop()
         live.wait("!s.connected && s.connection === 'lost'")
         live.page.wait_for_selector("#veil:not([hidden])")
         server.start()
         count = live.wait("s.connected", 30)["framesReceived"]
         live.wait(f"s.framesReceived > {count + 10} && s.settings.scene === 'c'")
+        live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision", 60)
         live.page.wait_for_selector("#veil", state="hidden")
         live.errors[:] = [error for error in live.errors if "WebSocket" not in error]
 

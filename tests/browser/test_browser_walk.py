@@ -59,7 +59,7 @@ def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer
         keyboard.up("s")
     assert state["crossed"] == 1, state
     assert nearest > 0.05, "the camera went into a wall"
-    assert "Through in" in live.page.inner_text("#status")
+    live.page.wait_for_selector("#status:has-text('Through in')")
 
 
 def test_keys_are_released_on_blur(open_page: Open) -> None:

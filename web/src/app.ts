@@ -37,6 +37,8 @@ export class App implements SessionListener, MenuListener {
   avatarTitle = "";
   framesDrawn = 0;
   private bodyIsAvatar = false;
+  /** Kept to send it again when the server has lost it. */
+  private lastFile: File | null = null;
   private readonly menu: Menu;
   private readonly pointer: PointerInput;
   private readonly hud = new Hud();
@@ -104,6 +106,11 @@ export class App implements SessionListener, MenuListener {
       .finally(() => this.veil.download(false));
   }
 
+  avatarLost(id: string): void {
+    if (this.lastFile) this.file(this.lastFile);
+    else this.notices.show("warning", `The server has no avatar "${id}"; the stock one stands in.`);
+  }
+
   status(status: Status): void {
     const { stats } = this;
     const page = {
@@ -151,13 +158,17 @@ export class App implements SessionListener, MenuListener {
   }
 
   file(file: File): void {
+    this.lastFile = file;
     this.veil.upload(file.name);
     uploadAvatar(file)
       .then(({ id, title }) => {
         this.menu.addAvatar(id, title);
         this.session.configure({ avatar: id });
       })
-      .catch((error: unknown) => this.notices.show("error", words(error)))
+      .catch((error: unknown) => {
+        this.lastFile = null;
+        this.notices.show("error", words(error));
+      })
       .finally(() => this.veil.upload(null));
   }
 
@@ -169,6 +180,7 @@ export class App implements SessionListener, MenuListener {
     this.actions[action]();
   }
 
+  // Each action by its name; the keyboard, the gamepad and the bar share them.
   private readonly actions: Readonly<Record<Action, () => void>> = {
     reset: () => this.session.send({ type: "reset" }),
     pause: () => this.session.send({ type: "clock", paused: !this.session.settings?.paused }),

@@ -1,8 +1,8 @@
 /** The live session as the page sees it: the server's latest words, the poses, and what to say after a reconnect. */
 
 import {
-  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type Configure, type Crossed, type Loading,
-  type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
+  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type Configure, type Crossed, type Hello,
+  type Loading, type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
 } from "../generated/messages";
 import type { SessionWishes } from "../preferences";
 import { Connection, type ConnectionState } from "./connection";
@@ -18,6 +18,8 @@ export interface SessionListener {
   avatar(avatar: AvatarMessage): void;
   status(status: Status): void;
   plan(plan: Plan): void;
+  /** The server no longer has the chosen avatar. */
+  avatarLost(id: string): void;
   loading(loading: Loading): void;
   crossed(crossed: Crossed): void;
   notice(level: Notice["level"], message: string): void;
@@ -99,7 +101,13 @@ export class Session {
     this.timeline.push(frame);
   }
 
-  private greet(protocol: number): void {
+  /** Asks a new connection for what the last one had; an avatar that the server has lost is left out. */
+  private greet({ protocol, catalog }: Hello): void {
+    const { avatar } = this.choices;
+    if (avatar && !catalog.avatars.some((known) => known.id === avatar)) {
+      this.choices = { ...this.choices, avatar: null };
+      this.listener.avatarLost(avatar);
+    }
     if (protocol !== PROTOCOL) {
       this.listener.notice("error", "This page and its server are of different versions: reload the page.");
     }
@@ -111,8 +119,8 @@ export class Session {
     const { listener } = this;
     switch (message.type) {
       case "hello":
+        this.greet(message);
         listener.catalog(message.catalog);
-        this.greet(message.protocol);
         break;
       case "settings":
         this.settings = message;

@@ -75,7 +75,7 @@ export class Hud {
       this.pips.replaceChildren(...Array.from({ length: size }, () => make("i")));
     }
     [...this.pips.children].forEach((pip, i) => pip.classList.toggle("full", i < fill));
-    this.queueText.data = `${fill}/${size}`;
+    this.queueText.data = `${Math.min(fill, size)}/${size}`;
   }
 
   private showPlan(status: Status): void {
