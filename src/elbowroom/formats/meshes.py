@@ -27,7 +27,9 @@ class SurfacePoints:
 
 
 @dataclass(frozen=True, eq=False)
-class _Skin:
+class Skin:
+    """The joints of a skin, and where they were when the mesh was bound to them."""
+
     joints: NDArray[np.int64]  # (S,) node of each slot
     inverse_binds: NDArray[np.float64]  # (S, 4, 4), maybe more than slots
 
@@ -40,7 +42,7 @@ def compression(gltf: Gltf) -> str | None:
 
 def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
     """All vertices of all meshes that nodes show; vertices shared by several primitives are taken once."""
-    skins: dict[int, _Skin] = {}
+    skins: dict[int, Skin] = {}
     parts: list[tuple[NDArray[np.int64], NDArray[np.float64], bool]] = []
     total = 0
     for node, attributes in _shown(gltf, tree):
@@ -53,7 +55,7 @@ def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
             parts.append((np.full(len(points), node, dtype=np.int64), points, False))
             continue
         if index not in skins:
-            skins[index] = _read_skin(gltf, index, len(tree))
+            skins[index] = read_skin(gltf, index, len(tree))
         parts.append((*_skinned(gltf, attributes, points, skins[index]), True))
     return SurfacePoints(
         nodes=np.concatenate([np.zeros(0, np.int64), *(nodes for nodes, _, _ in parts)]),
@@ -86,20 +88,21 @@ def _shown(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
                 yield node, attributes
 
 
-def _read_skin(gltf: Gltf, index: int, nodes: int) -> _Skin:
+def read_skin(gltf: Gltf, index: int, nodes: int) -> Skin:
+    """The skin `index` of a file with that many nodes."""
     skin = gltf.root.at("skins").pick(Field(index, gltf.name))
     joints = np.array([joint.integer(0, nodes - 1) for joint in skin.at("joints").items(nodes)], dtype=np.int64)
     field = skin.at("inverseBindMatrices")
     if not field.present:
-        return _Skin(joints, np.tile(np.eye(4), (len(joints), 1, 1)))
+        return Skin(joints, np.tile(np.eye(4), (len(joints), 1, 1)))
     matrices = read_accessor(gltf, field, "MAT4").reshape(-1, 4, 4).transpose(0, 2, 1)
     if len(matrices) < len(joints):
         raise InputError(f"{field.place} has {len(matrices)} matrices for {len(joints)} joints")
-    return _Skin(joints, matrices)
+    return Skin(joints, matrices)
 
 
 def _skinned(
-    gltf: Gltf, attributes: Field, points: NDArray[np.float64], skin: _Skin
+    gltf: Gltf, attributes: Field, points: NDArray[np.float64], skin: Skin
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     slots = _dominant_slots(gltf, attributes, len(points))
     if slots.max(initial=0) >= len(skin.joints):

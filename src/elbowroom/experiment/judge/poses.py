@@ -1,0 +1,157 @@
+"""Forward kinematics once more, plain NumPy over whole arrays of poses: what `body.kinematics` is judged by.
+
+The conventions are those of the body (`body.dof`, `docs/architecture.md`), the arithmetic shares nothing with its
+kernels. Only the tables of the gait (where the feet are at a root state, `body.gait.foot_poses`) and of relaxed fingers
+are taken from there: they say what the walk is, not where the body gets to.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.bones import SPINE
+from elbowroom.body.gait import foot_poses, gait_shape
+from elbowroom.body.hands import relaxed_rotations
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.skeleton import Skeleton
+from elbowroom.experiment.judge.motion import Moments, ShownMotion
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+_SPINE_PARTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
+_GAZE = 0.65  # the part of the waist's rotation that neck and head turn back
+_RIGHT, _UP, _AHEAD = 0, 1, 2  # axes
+_SOFT = 0.004  # of the leg: a knee that straightens more slows down
+
+
+class Posed(NamedTuple):
+    """Joints in the world."""
+
+    positions: Floats  # (N, J, 3) metres
+    rotations: Floats  # (N, J, 3, 3)
+
+
+class Poser:
+    """Poses one avatar as its page does; frozen."""
+
+    def __init__(self, humanoid: Humanoid) -> None:
+        self.skeleton = humanoid.skeleton
+        self._gait = gait_shape(self.skeleton)
+        self._relaxed = relaxed_rotations(self.skeleton)
+
+    def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
+        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, 13), `roots` (N, 7)."""
+        feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
+        rotations = np.tile(self._relaxed, (len(q), 1, 1))
+        _pose_trunk(self.skeleton, q[:, 3], q[:, 4], rotations)
+        _pose_arm(self.skeleton, "left", 1.0, q[:, 5:9], rotations)
+        _pose_arm(self.skeleton, "right", -1.0, q[:, 9:13], rotations)
+        for side, name in enumerate(("left", "right")):
+            _pose_leg(self.skeleton, name, feet[:, side], drops, rotations)
+        hips = self.skeleton.positions[0] - drops[:, None] * np.eye(3)[_UP]
+        return rotations, hips
+
+    def world(self, local: Floats, hips: Floats, places: Floats) -> Posed:
+        """Joints in the world for rotations (N, J, 4), hips (N, 3) and places (N, 3): x, z, heading of the root."""
+        rest, parents = self.skeleton.positions, self.skeleton.parents
+        turns = quaternion.to_matrix(local)
+        heading = quaternion.to_matrix(quaternion.about_axis(_UP, places[:, 2]))
+        ground = np.stack([places[:, 0], np.zeros(len(places)), places[:, 1]], axis=-1)
+        positions, rotations = np.empty((*local.shape[:2], 3)), np.empty_like(turns)
+        for joint, parent in enumerate(parents):
+            above = heading if parent < 0 else rotations[:, parent]
+            origin = ground if parent < 0 else positions[:, parent]
+            offset = hips if parent < 0 else np.broadcast_to(rest[joint] - rest[parent], hips.shape)
+            positions[:, joint] = origin + np.einsum("nij,nj->ni", above, offset)
+            rotations[:, joint] = above @ turns[:, joint]
+        return Posed(positions, rotations)
+
+    def at(self, motion: ShownMotion, moments: Moments) -> Posed:
+        """The poses that are shown at some moments.
+
+        Between two frames as on the page: joint rotations by the shortest arc, root and hips in straight lines.
+        """
+        frames, place = np.unique(np.concatenate([moments.first, moments.second]), return_inverse=True)
+        a, b = place[: len(moments.first)], place[len(moments.first) :]
+        local, hips = self.local(motion.q[frames], motion.roots[frames])
+        share = moments.share[:, None]
+        places = motion.roots[frames, :3]
+        return self.world(
+            quaternion.slerp(local[a], local[b], share),
+            hips[a] + share * (hips[b] - hips[a]),
+            places[a] + share * (places[b] - places[a]),
+        )
+
+
+def _pose_trunk(skeleton: Skeleton, bend: Floats, twist: Floats, out: Floats) -> None:
+    """The rotation vector of Ry(twist) Rx(bend), spread over the spine; neck and head turn back."""
+    chest = quaternion.multiply(quaternion.about_axis(_UP, twist), quaternion.about_axis(_RIGHT, bend))
+    vector = quaternion.to_rotation_vector(chest)
+    spine = [bone for bone in SPINE if skeleton.has(bone)]
+    whole = sum(_SPINE_PARTS[bone] for bone in spine)
+    for bone in spine:
+        out[:, skeleton.index(bone)] = quaternion.from_rotation_vector(_SPINE_PARTS[bone] / whole * vector)
+    gaze = [bone for bone in ("neck", "head") if skeleton.has(bone)]
+    for bone in gaze:
+        out[:, skeleton.index(bone)] = quaternion.from_rotation_vector(-_GAZE / len(gaze) * vector)
+
+
+def _pose_arm(skeleton: Skeleton, side: str, mirror: float, arm: Floats, out: Floats) -> None:
+    """exp(swing) Ry(-internal) Rz(-90 deg) for the upper arm, Ry(-elbow) for the forearm; mirrored on the right."""
+    flexion, abduction, internal, elbow = arm.T
+    swing = quaternion.from_rotation_vector(np.stack([-flexion, np.zeros(len(arm)), mirror * abduction], axis=-1))
+    spin = quaternion.about_axis(_UP, -mirror * internal)
+    hang = quaternion.about_axis(_AHEAD, -mirror * 0.5 * np.pi)
+    out[:, skeleton.index(f"{side}UpperArm")] = quaternion.multiply(quaternion.multiply(swing, spin), hang)
+    out[:, skeleton.index(f"{side}LowerArm")] = quaternion.about_axis(_UP, -mirror * elbow)
+
+
+def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, drops: Floats, out: Floats) -> None:
+    """Hip, knee, ankle and toes for feet (N, 6): ankle x, y, z, yaw, pitch, bend of the toes, in the root frame."""
+    bones = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")]
+    hip, knee, ankle = (skeleton.positions[skeleton.index(bone)] for bone in bones[:3])
+    thigh, shin = knee - hip, ankle - knee
+    outward = foot[:, :3] + drops[:, None] * np.eye(3)[_UP] - hip
+    half_yaw = quaternion.rotate(quaternion.about_axis(_UP, 0.5 * foot[:, 3]), [1.0, 0.0, 0.0])
+    to_knee, to_ankle, axis = _bent(outward, np.linalg.norm(thigh), np.linalg.norm(shin), half_yaw)
+    upper = quaternion.from_matrix(_axes(to_knee, axis) @ _axes(thigh, np.eye(3)[_RIGHT]).T)
+    lower = quaternion.from_matrix(_axes(to_ankle, axis) @ _axes(shin, np.eye(3)[_RIGHT]).T)
+    sole = quaternion.multiply(quaternion.about_axis(_UP, foot[:, 3]), quaternion.about_axis(_RIGHT, foot[:, 4]))
+    turns = [
+        upper,
+        quaternion.multiply(quaternion.conjugate(upper), lower),
+        quaternion.multiply(quaternion.conjugate(lower), sole),
+        quaternion.about_axis(_RIGHT, foot[:, 5]),
+    ]
+    for bone, turn in zip(bones, turns, strict=True):
+        if skeleton.has(bone):
+            out[:, skeleton.index(bone)] = turn
+
+
+def _bent(target: Floats, thigh: np.floating, shin: np.floating, hint: Floats) -> tuple[Floats, Floats, Floats]:
+    """Hip to knee, knee to ankle, and the knee's axis, all (N, 3), for ankles at `target` (N, 3) from the hip."""
+    distance = np.linalg.norm(target, axis=-1)
+    direction = target / distance[:, None]
+    axis = _unit(hint - np.sum(hint * direction, axis=-1, keepdims=True) * direction)
+    near = np.maximum(distance, abs(thigh - shin) + 0.05 * thigh)
+    soft = _SOFT * (thigh + shin)
+    edge = thigh + shin - soft
+    reach = np.where(near <= edge, near, edge + soft * -np.expm1(-np.maximum(near - edge, 0.0) / soft))
+    along = (thigh**2 + reach**2 - shin**2) / (2.0 * reach)
+    aside = np.sqrt(np.maximum(thigh**2 - along**2, 0.0))
+    to_knee = along[:, None] * direction + aside[:, None] * np.cross(direction, axis)
+    return to_knee, reach[:, None] * direction - to_knee, axis
+
+
+def _axes(bone: Floats, hint: Floats) -> Floats:
+    """Orthonormal columns (..., 3, 3): along the bone, the part of `hint` across it, and their cross product."""
+    along = _unit(bone)
+    across = _unit(hint - np.sum(hint * along, axis=-1, keepdims=True) * along)
+    return np.stack([along, across, np.cross(along, across)], axis=-1)
+
+
+def _unit(vector: Floats) -> Floats:
+    unit: Floats = vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+    return unit

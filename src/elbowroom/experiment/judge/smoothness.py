@@ -1,0 +1,80 @@
+"""How smoothly a shown motion moves: speed, acceleration and jerk by finite differences between its frames."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS
+from elbowroom.experiment.judge.motion import ShownMotion
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How large something gets."""
+
+    max: float
+    p99: float  # 99th percentile over the frames
+
+
+@dataclass(frozen=True)
+class Smoothness:
+    """Derivatives of a group's motion: of its fastest joint, or of the root's place; in units per s, s^2, s^3."""
+
+    speed: Extent
+    acceleration: Extent
+    jerk: Extent
+
+
+def smoothness(motion: ShownMotion) -> dict[str, Smoothness]:
+    """Figures for `waist`, `leftArm`, `rightArm` and `heading` in radians, and for `root` in metres.
+
+    Nothing is taken over a jump. Frames at one and the same time count once.
+    """
+    tracks = {
+        "waist": motion.q[:, LOCAL_GROUPS[0].value],
+        "leftArm": motion.q[:, LOCAL_GROUPS[1].value],
+        "rightArm": motion.q[:, LOCAL_GROUPS[2].value],
+        "heading": motion.roots[:, 2:3],
+    }
+    figures = {name: _figures(motion, values, _fastest) for name, values in tracks.items()}
+    return figures | {"root": _figures(motion, motion.roots[:, :2], _length)}
+
+
+def _fastest(rates: Floats) -> Floats:
+    largest: Floats = np.abs(rates).max(axis=1)
+    return largest
+
+
+def _length(rates: Floats) -> Floats:
+    length: Floats = np.linalg.norm(rates, axis=1)
+    return length
+
+
+def _figures(motion: ShownMotion, values: Floats, size: Callable[[Floats], Floats]) -> Smoothness:
+    orders: list[list[Floats]] = [[], [], []]
+    for run in motion.runs():
+        times, track = _moving(motion.times[run], values[run])
+        for order in orders:
+            if len(times) < 2:
+                break
+            steps = np.diff(times)
+            track = np.diff(track, axis=0) / steps[:, None]
+            times = times[:-1] + 0.5 * steps
+            order.append(size(track))
+    return Smoothness(*(_extent(np.concatenate([np.empty(0), *order])) for order in orders))
+
+
+def _moving(times: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Without frames that stand at the time of the frame before them."""
+    kept = np.append(True, np.diff(times) > 1e-9)
+    return times[kept], values[kept]
+
+
+def _extent(values: Floats) -> Extent:
+    if len(values) == 0:
+        return Extent(0.0, 0.0)
+    return Extent(float(values.max()), float(np.percentile(values, 99)))

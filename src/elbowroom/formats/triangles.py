@@ -1,0 +1,154 @@
+"""The surface of an asset as triangles, with every joint that moves each vertex: for linear blend skinning."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.formats.accessors import read_accessor
+from elbowroom.formats.fields import Field
+from elbowroom.formats.gltf import Gltf
+from elbowroom.formats.meshes import Skin, read_skin
+from elbowroom.formats.nodes import NodeTree
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_MAX_VERTICES = 2_000_000
+_MAX_TRIANGLES = 4_000_000
+_MAX_PRIMITIVES = 10_000
+_SETS = 2  # of JOINTS_n / WEIGHTS_n that are read: eight joints for a vertex
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6  # primitive modes with a surface
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles whose vertices ride on K nodes each; unused places have weight 0."""
+
+    triangles: Ints  # (T, 3) into the vertices
+    nodes: Ints  # (V, K) nodes of the file
+    weights: Floats  # (V, K) sum 1
+    offsets: Floats  # (V, K, 3) the vertex in the axes and units of each of its nodes
+    skinned: NDArray[np.bool_]  # (V,) False for a mesh that hangs on its node as a whole
+
+
+def triangle_mesh(gltf: Gltf, tree: NodeTree) -> TriangleMesh:
+    """All triangles that nodes show; points and lines are left out. Raises `InputError`."""
+    skins: dict[int, Skin] = {}
+    parts: list[TriangleMesh] = []
+    vertices = triangles = 0
+    for node, primitive in _surfaces(gltf, tree):
+        part = _part(gltf, tree, node, primitive, skins)
+        vertices, triangles = vertices + len(part.nodes), triangles + len(part.triangles)
+        if vertices > _MAX_VERTICES or triangles > _MAX_TRIANGLES:
+            raise InputError(f"{gltf.name}: more than {_MAX_VERTICES} vertices or {_MAX_TRIANGLES} triangles")
+        parts.append(part)
+    return _joined(parts)
+
+
+def _surfaces(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
+    """Each node with each primitive it shows."""
+    meshes, seen = gltf.root.at("meshes"), 0
+    for node in map(int, np.flatnonzero(tree.meshes >= 0)):
+        for primitive in meshes.pick(Field(int(tree.meshes[node]), gltf.name)).at("primitives").items():
+            seen += 1
+            if seen > _MAX_PRIMITIVES:
+                raise InputError(f"{gltf.name}: the nodes show more than {_MAX_PRIMITIVES} primitives")
+            mode = primitive.at("mode").optional_integer(0, 6, _TRIANGLES)
+            if mode >= _TRIANGLES and primitive.at("attributes").at("POSITION").present:
+                yield node, primitive
+
+
+def _part(gltf: Gltf, tree: NodeTree, node: int, primitive: Field, skins: dict[int, Skin]) -> TriangleMesh:
+    attributes = primitive.at("attributes")
+    points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
+    triangles = _indices(gltf, primitive, len(points))
+    index = int(tree.skins[node])
+    if index < 0:
+        riders = np.full((len(points), 1), node, dtype=np.int64)
+        rigid = np.zeros(len(points), bool)
+        return TriangleMesh(triangles, riders, np.ones((len(points), 1)), points[:, None], rigid)
+    if index not in skins:
+        skins[index] = read_skin(gltf, index, len(tree))
+    skin = skins[index]
+    slots, weights = _influences(gltf, attributes, len(points), len(skin.joints))
+    bind = skin.inverse_binds[slots]
+    with np.errstate(all="ignore"):
+        offsets = np.einsum("vkij,vj->vki", bind[..., :3, :3], points) + bind[..., :3, 3]
+    return TriangleMesh(triangles, skin.joints[slots], weights, offsets, np.ones(len(points), bool))
+
+
+def _indices(gltf: Gltf, primitive: Field, count: int) -> Ints:
+    """Vertex indices (T, 3) of a primitive."""
+    field = primitive.at("indices")
+    order = np.arange(count)
+    if field.present:
+        order = read_accessor(gltf, field, "SCALAR")[:, 0].astype(np.int64)
+        if order.min() < 0 or order.max() >= count:
+            raise InputError(f"{field.place} points to vertex {order.max()} of {count}")
+    mode = primitive.at("mode").optional_integer(0, 6, _TRIANGLES)
+    if mode == _STRIP:
+        return np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
+    if mode == _FAN:
+        return np.stack([np.full(max(len(order) - 2, 0), order[0]), order[1:-1], order[2:]], axis=1)
+    return order[: len(order) // 3 * 3].reshape(-1, 3)
+
+
+def _influences(gltf: Gltf, attributes: Field, count: int, joints: int) -> tuple[Ints, Floats]:
+    """Slots (V, K) of the skin and weights that sum to 1; a vertex without weight goes with its first joint."""
+    slots, weights = [], []
+    for index in range(_SETS):
+        slot_field, weight_field = attributes.at(f"JOINTS_{index}"), attributes.at(f"WEIGHTS_{index}")
+        if not slot_field.present:
+            break
+        slots.append(read_accessor(gltf, slot_field, "VEC4"))
+        weights.append(read_accessor(gltf, weight_field, "VEC4"))
+    if not slots or any(len(values) != count for values in slots + weights):
+        raise InputError(f"{attributes.place}: JOINTS_n and WEIGHTS_n are needed for each of the {count} vertices")
+    weight = np.maximum(np.concatenate(weights, axis=1), 0.0)
+    slot = np.where(weight > 0.0, np.concatenate(slots, axis=1), np.concatenate(slots, axis=1)[:, :1]).astype(np.int64)
+    if slot.min() < 0 or slot.max() >= joints:
+        raise InputError(f"{attributes.place}.JOINTS_0 points to joint {slot.max()} of {joints}")
+    weight[weight.sum(axis=1) <= 0.0, 0] = 1.0
+    return slot, weight / weight.sum(axis=1, keepdims=True)
+
+
+def _joined(parts: list[TriangleMesh]) -> TriangleMesh:
+    """One mesh; the joints of a vertex in order of weight, and no more places than are used."""
+    width = max([1, *(part.nodes.shape[1] for part in parts)])
+    starts = np.cumsum([0, *(len(part.nodes) for part in parts)])
+    empty = TriangleMesh(
+        np.zeros((0, 3), np.int64), np.zeros((0, width), np.int64), np.zeros((0, width)), np.zeros((0, width, 3)),
+        np.zeros(0, bool),
+    )  # fmt: skip
+    wide = [empty, *(_widened(part, width) for part in parts)]
+    nodes, weights = np.concatenate([p.nodes for p in wide]), np.concatenate([p.weights for p in wide])
+    offsets = np.concatenate([p.offsets for p in wide])
+    order = np.argsort(-weights, axis=1, kind="stable")
+    used = int((weights > 0.0).sum(axis=1).max(initial=1))
+    order = order[:, :used]
+    return TriangleMesh(
+        triangles=np.concatenate(
+            [empty.triangles, *(p.triangles + at for p, at in zip(parts, starts[:-1], strict=True))]
+        ),
+        nodes=np.take_along_axis(nodes, order, axis=1),
+        weights=np.take_along_axis(weights, order, axis=1),
+        offsets=np.take_along_axis(offsets, order[:, :, None], axis=1),
+        skinned=np.concatenate([p.skinned for p in wide]),
+    )
+
+
+def _widened(part: TriangleMesh, width: int) -> TriangleMesh:
+    """The same with `width` places for each vertex: the new ones repeat the first joint with weight 0."""
+    missing = width - part.nodes.shape[1]
+    if missing == 0:
+        return part
+    return TriangleMesh(
+        triangles=part.triangles,
+        nodes=np.concatenate([part.nodes, np.repeat(part.nodes[:, :1], missing, axis=1)], axis=1),
+        weights=np.pad(part.weights, ((0, 0), (0, missing))),
+        offsets=np.concatenate([part.offsets, np.repeat(part.offsets[:, :1], missing, axis=1)], axis=1),
+        skinned=part.skinned,
+    )
