@@ -70,7 +70,7 @@ def build_client() -> None:
         shutil.copytree(output, CLIENT)
 
 
-class ClientHook(BuildHookInterface):  # type: ignore[type-arg, misc]
+class ClientHook(BuildHookInterface):  # type: ignore[type-arg]
     """Hatchling calls this before it packs a wheel (also an editable one) or an sdist."""
 
     PLUGIN_NAME = "custom"

@@ -10,7 +10,6 @@ from typing import Any
 
 import httpx
 import pytest
-from live import running
 from starlette.responses import PlainTextResponse
 
 from elbowroom.body.stock import stock_avatar_path
@@ -21,6 +20,7 @@ from elbowroom.server.app import make_app
 from elbowroom.server.guard import Guard, host_of, is_loopback
 from elbowroom.server.library import Library
 from elbowroom.server.serving import listen, url_of
+from live_session import running
 
 LOCAL = "http://127.0.0.1:8765"
 

@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from live import Client, client_of, running
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from elbowroom.server import app, changes, session
@@ -32,6 +31,7 @@ from elbowroom.server.messages import (
 )
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.walk import Walk
+from live_session import Client, client_of, running
 
 
 @pytest.fixture(scope="module")
