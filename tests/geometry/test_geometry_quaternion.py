@@ -17,7 +17,8 @@ def rotations(request: pytest.FixtureRequest) -> tuple[Floats, Floats]:
 
 
 def same_rotation(a: Floats, b: Floats) -> Floats:
-    return 1.0 - np.abs(np.sum(a * b, axis=-1))
+    apart: Floats = 1.0 - np.abs(np.sum(a * b, axis=-1))
+    return apart
 
 
 def test_product_is_composition(rotations: tuple[Floats, Floats]) -> None:
