@@ -1,0 +1,244 @@
+"""The judge of the skinned mesh: posed as a viewer poses it, cut into patches without loss, and able to fail."""
+
+from pathlib import Path
+
+import coal
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from avatar_builder import MIXAMO, Recipe, build
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.experiment.judge.ledger import Ledger
+from elbowroom.experiment.judge.mesh_judge import MeshJudge, region_of
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.obstacles import obstacles_of
+from elbowroom.experiment.judge.patches import patches_of
+from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.experiment.judge.skin import Skin, skin_of
+from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.formats.gltf import parse_gltf
+from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.triangles import triangle_mesh
+from elbowroom.geometry import quaternion
+from judged_bodies import T_POSE, gliding, random_boxes, random_postures, scene_with, upright
+from shared_data import SHARED, needs_shared
+
+Floats = NDArray[np.float64]
+
+STOCK = Humanoid.default()
+
+
+def stock_skin() -> Skin:
+    skin = skin_of(STOCK)
+    assert skin is not None
+    return skin
+
+
+SKIN = stock_skin()
+
+
+def odd_avatar(**recipe: object) -> Humanoid:
+    """An avatar whose points are triangles."""
+    data = build(Recipe(points=21, seed=2, **recipe))  # type: ignore[arg-type]
+    points, triangles = b'"mode":0', b'"mode":4'
+    assert data.count(points) == 1
+    return load_humanoid_bytes(data.replace(points, triangles), "odd.glb")
+
+
+def poses(humanoid: Humanoid, q: Floats, roots: Floats) -> Posed:
+    motion = ShownMotion.at_rate(q, roots)
+    return Poser(humanoid).at(motion, motion.moments(60.0))
+
+
+def as_a_viewer_poses(humanoid: Humanoid, q: Floats, roots: Floats) -> Floats:
+    """All vertices (N, V, 3) by the nodes of the file: local rotations, matrices down the tree, inverse binds."""
+    assert humanoid.glb is not None
+    rig = humanoid.rig
+    assert rig is not None
+    gltf = parse_gltf(humanoid.glb, "viewer")
+    tree = read_nodes(gltf)
+    mesh = triangle_mesh(gltf, tree)
+    local, hips = Poser(humanoid).local(q, roots)
+    shown = []
+    for row, root in enumerate(roots):
+        rotations = tree.rotations.copy()
+        rotations[rig.nodes] = rig.node_rotations(local[row])
+        tree.translations[rig.nodes[0]] = rig.hips_position(hips[row])
+        carried = tree.world_matrices(rotations)[mesh.nodes]
+        places = np.einsum("vkij,vkj->vki", carried[..., :3, :3], mesh.offsets) + carried[..., :3, 3]
+        model = rig.to_model(np.einsum("vk,vki->vi", mesh.weights, places))
+        turned = quaternion.rotate(quaternion.about_axis(1, root[2]), model)
+        shown.append(turned + np.array([root[0], 0.0, root[1]]))
+    return np.array(shown)
+
+
+def assert_posed_as_in_a_viewer(humanoid: Humanoid) -> None:
+    skin = skin_of(humanoid)
+    assert skin is not None
+    q, roots = random_postures(np.random.default_rng(3), 4)
+    used = np.unique(skin.triangles)
+    vertices = skin.vertices(poses(humanoid, q, roots), used)
+    np.testing.assert_allclose(vertices, as_a_viewer_poses(humanoid, q, roots)[:, used], atol=2e-5)
+
+
+def test_the_stock_avatar_is_posed_as_in_a_viewer() -> None:
+    assert_posed_as_in_a_viewer(STOCK)
+
+
+@pytest.mark.parametrize(
+    "recipe",
+    [
+        {"vrm": "1", "spin": True, "between": True},
+        {"vrm": "0", "heading": np.pi, "unit": 1.0, "root_scale": 0.5},
+        {"names": MIXAMO, "prefix": "mixamorig:", "arms_down": 0.7, "spin": True, "unit": 100.0, "heading": 1.0},
+    ],
+)
+def test_odd_rigs_are_posed_as_in_a_viewer(recipe: dict[str, object]) -> None:
+    assert_posed_as_in_a_viewer(odd_avatar(**recipe))
+
+
+@needs_shared
+@pytest.mark.parametrize(
+    "name", ["vrm0/Godette_vrm_v4.vrm", "vrm1/debug_robot.vrm", "glb/m2m_human-male.glb", "glb/KayKit_Knight.glb"]
+)
+def test_avatars_of_others_are_posed_as_in_a_viewer(name: str) -> None:
+    assert SHARED is not None
+    assert_posed_as_in_a_viewer(load_humanoid(SHARED / "avatars" / Path(name)))
+
+
+def in_t_pose(skin: Skin, humanoid: Humanoid) -> Floats:
+    """The vertices (V, 3) in T-pose."""
+    rest = humanoid.skeleton.positions
+    turns = np.tile(np.eye(3), (1, len(rest), 1, 1))
+    vertices: Floats = skin.vertices(Posed(rest[None], turns), np.arange(len(skin.joints)))[0]
+    return vertices
+
+
+def test_in_t_pose_the_vertices_are_those_of_the_file() -> None:
+    assert STOCK.glb is not None
+    gltf = parse_gltf(STOCK.glb, "stock")
+    tree = read_nodes(gltf)
+    mesh = triangle_mesh(gltf, tree)
+    carried = tree.world_matrices(tree.rotations)[mesh.nodes]
+    places = np.einsum("vkij,vkj->vki", carried[..., :3, :3], mesh.offsets) + carried[..., :3, 3]
+    np.testing.assert_allclose(in_t_pose(SKIN, STOCK), np.einsum("vk,vki->vi", mesh.weights, places), atol=1e-6)
+    assert len(SKIN.triangles) == len(mesh.triangles)
+    assert SKIN.left_out == 0
+
+
+def test_the_root_moves_the_mesh_rigidly() -> None:
+    q, roots = random_postures(np.random.default_rng(8), 1)
+    moved = roots + np.array([0.7, -2.0, 1.1, 0.0, 0.0, 0.0, 0.0])
+    every = np.arange(len(SKIN.joints))
+    a, b = SKIN.vertices(poses(STOCK, q, roots), every)[0], SKIN.vertices(poses(STOCK, q, moved), every)[0]
+    turn, pivot = quaternion.about_axis(1, 1.1), np.array([roots[0, 0], 0.0, roots[0, 1]])
+    np.testing.assert_allclose(b, quaternion.rotate(turn, a - pivot) + pivot + np.array([0.7, 0.0, -2.0]), atol=1e-9)
+
+
+def test_the_forearm_follows_the_elbow() -> None:
+    forearm = STOCK.skeleton.index("leftLowerArm")
+    own = np.flatnonzero((SKIN.joints[:, 0] == forearm) & (SKIN.weights[:, 0] > 0.999))
+    assert len(own) > 50
+    bent = T_POSE.copy()
+    bent[8] = 1.0
+    straight = poses(STOCK, T_POSE[None], np.zeros((1, 7)))
+    before = SKIN.vertices(straight, own)[0]
+    after = SKIN.vertices(poses(STOCK, bent[None], np.zeros((1, 7))), own)[0]
+    elbow = straight.positions[0, forearm]
+    turned = quaternion.rotate(quaternion.about_axis(1, -1.0), before - elbow) + elbow
+    np.testing.assert_allclose(after, turned, atol=1e-3)  # up to 0.1 % of weight elsewhere
+
+
+def test_patches_hold_every_triangle_once() -> None:
+    patches = patches_of(SKIN).patches
+    rows = np.concatenate([patch.vertices[patch.triangles] for patch in patches])
+    assert sorted(map(tuple, rows)) == sorted(map(tuple, SKIN.triangles))
+
+
+def test_patches_are_never_farther_than_they_seem() -> None:
+    rng = np.random.default_rng(11)
+    posed = poses(STOCK, *random_postures(rng, 5))
+    patches = patches_of(SKIN)
+    for obstacle in obstacles_of(scene_with(random_boxes(rng, 2))):
+        bounds = patches.bounds(posed, obstacle)
+        for i, patch in enumerate(patches.patches):
+            beyond = np.abs(obstacle.seen_from(SKIN.vertices(posed, patch.vertices))) - obstacle.half_size
+            true = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1).min(axis=1)
+            assert (bounds[:, i] <= true + 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_nothing_is_missed(seed: int) -> None:
+    """The whole mesh in one piece, and every contact asked for, gives the same."""
+    rng = np.random.default_rng(seed)
+    q, roots = random_postures(rng, 4)
+    boxes = random_boxes(rng, 2)
+    boxes.centers[0, 0] += 0.8  # mostly beside the body
+    posed, obstacles = poses(STOCK, q, roots), obstacles_of(scene_with(boxes))
+    ledger = Ledger(1e-5)
+    MeshJudge(SKIN, STOCK.skeleton, obstacles).judge(posed, np.arange(4) / 60, 0, ledger)
+    vertices = SKIN.vertices(posed, np.arange(len(SKIN.joints)))
+    whole = np.array([min(whole_distance(points, obstacle) for obstacle in obstacles) for points in vertices])
+    assert ledger.least is not None
+    assert ledger.least.clearance == pytest.approx(whole.min(), abs=1e-6)
+    assert ledger.touching == set(np.flatnonzero(whole < -1e-5))
+
+
+def whole_distance(points: Floats, obstacle: object) -> float:
+    model = coal.BVHModelOBBRSS()
+    model.beginModel(len(SKIN.triangles), len(points))
+    model.addVertices(points)
+    model.addTriangles(SKIN.triangles)
+    model.endModel()
+    bodies = (model, coal.Transform3s(), obstacle.shape, obstacle.place)  # type: ignore[attr-defined]
+    distance = coal.distance(*bodies, coal.DistanceRequest(), coal.DistanceResult())
+    if distance > 0.0:
+        return float(distance)
+    request, result = coal.CollisionRequest(), coal.CollisionResult()
+    request.num_max_contacts, request.enable_contact = len(SKIN.triangles), True
+    coal.collide(*bodies, request, result)
+    return float(min(contact.penetration_depth for contact in result.getContacts()))
+
+
+def test_a_fingertip_in_a_wall_is_reported_with_its_depth() -> None:
+    points = SKIN.vertices(poses(STOCK, T_POSE[None], np.zeros((1, 7))), np.arange(len(SKIN.joints)))[0]
+    q, roots = gliding(T_POSE, 7, speed=0.0)
+    roots[:, 0] = q[:, 0] = 0.005 * np.arange(7)  # the left hand goes outwards, 5 mm a frame
+    face = points[:, 0].max() + 0.022
+    wall = upright(((face + 0.5, 1.0, 0.0), (1.0, 2.0, 2.0)))
+    verdict = judge(ShownMotion.at_rate(q, roots), STOCK, scene_with(wall))
+    assert not verdict.clean
+    assert verdict.mesh is not None
+    (contact,) = verdict.mesh.contacts
+    assert (contact.part, contact.obstacle) == ("leftArm", "box 0")
+    assert verdict.mesh.deepest == pytest.approx(0.008, abs=1e-5)
+    assert contact.first == pytest.approx(4.5 / 60, abs=1 / 240)  # 22 mm after 4.4 frames
+    assert contact.deepest.time == pytest.approx(0.1)
+    assert verdict.triangles == len(SKIN.triangles)
+
+
+def test_a_clean_mesh_tells_its_clearance() -> None:
+    points = SKIN.vertices(poses(STOCK, T_POSE[None], np.zeros((1, 7))), np.arange(len(SKIN.joints)))[0]
+    ceiling = upright(((0.0, points[:, 1].max() + 0.507, 0.0), (3.0, 1.0, 3.0)))
+    verdict = judge(ShownMotion.at_rate(*gliding(T_POSE, 3, 0.1)), STOCK, scene_with(ceiling))
+    assert verdict.mesh is not None
+    assert verdict.mesh.least is not None
+    assert verdict.mesh.least.part == "head"
+    assert verdict.mesh.least.clearance == pytest.approx(0.007, abs=1e-6)
+    assert verdict.mesh.deepest == 0.0
+
+
+def test_without_a_mesh_only_capsules_are_judged() -> None:
+    humanoid, scene = proportional_humanoid(1.7), scene_with(upright(((0.0, 3.0, 0.0), (1.0, 1.0, 1.0))))
+    motion = ShownMotion.at_rate(*gliding(T_POSE, 3, 0.1))
+    assert judge(motion, humanoid, scene).mesh is None
+    assert judge(motion, STOCK, scene, JudgeSettings(mesh=False)).mesh is None
+
+
+def test_regions() -> None:
+    bones = ("hips", "upperChest", "neck", "leftEye", "leftIndexDistal", "rightShoulder", "rightUpperLeg", "leftToes")
+    regions = ["trunk", "trunk", "head", "head", "leftArm", "rightArm", "rightLeg", "leftLeg"]
+    assert [region_of(bone) for bone in bones] == regions
