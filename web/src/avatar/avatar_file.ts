@@ -3,6 +3,7 @@
 import { VRMLoaderPlugin, VRMUtils, type VRM } from "@pixiv/three-vrm";
 import { Mesh, Object3D, SkinnedMesh, type Group } from "three";
 import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { orderGeometry } from "./triangle_order";
 
 /** An avatar ready to be posed. */
 export interface AvatarFile {
@@ -40,10 +41,11 @@ function nodesByIndex(gltf: GLTF): Map<number, Object3D> {
   return nodes;
 }
 
-/** Skinned meshes move away from their rest bounds, so they are always drawn. */
+/** Skinned meshes move away from their rest bounds, so they are always drawn; their triangles are put in order. */
 function prepareMesh(object: Object3D): void {
   if (!(object instanceof Mesh)) return;
   object.castShadow = true;
   object.receiveShadow = !(object instanceof SkinnedMesh);
   object.frustumCulled = false;
+  orderGeometry(object.geometry);
 }
