@@ -1,0 +1,1 @@
+"""Gauntlets: random courses that are feasible by construction."""

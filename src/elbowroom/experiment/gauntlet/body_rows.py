@@ -1,0 +1,113 @@
+"""Capsules of many moments as rows, and their exact distance from a box in double precision.
+
+Courses are decided by these distances. Strict arithmetic in double precision lets every machine decide alike: to decide
+otherwise, a distance would have to lie within some 1e-15 m of a threshold.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+
+
+class BodyRows(NamedTuple):
+    """Capsules in the world, one per row, in no particular order."""
+
+    axes: Floats  # (M, 6) end points ax, ay, az, bx, by, bz, metres
+    radii: Floats  # (M,) metres
+    way: Floats  # (M,) where on the course's line the body stands, metres
+
+    def between(self, first: float, last: float) -> "BodyRows":
+        """The rows of a part of the way."""
+        chosen = (self.way >= first) & (self.way <= last)
+        return BodyRows(self.axes[chosen], self.radii[chosen], self.way[chosen])
+
+    def every(self, step: int) -> "BodyRows":
+        """Every `step`-th row."""
+        return BodyRows(*(np.ascontiguousarray(column[::step]) for column in self))
+
+    def gap(self, box: Floats) -> float:
+        """The least clearance of any row from a box (15,), a row of `Boxes.table`; infinite without rows."""
+        return float(least_gap(self.axes, self.radii, box))
+
+
+def rows_of(segments: NDArray[np.floating], radii: Floats, way: Floats) -> BodyRows:
+    """Rows for capsules (C, 6, N) with radii (C,) or (C, N) at ways (N,)."""
+    count = segments.shape[2]
+    sizes = np.broadcast_to(radii if radii.ndim == 2 else radii[:, None], (len(segments), count))
+    axes = np.ascontiguousarray(segments.astype(np.float64).transpose(0, 2, 1).reshape(-1, 6))
+    return BodyRows(axes, np.ascontiguousarray(sizes, np.float64).ravel(), np.tile(way, len(segments)))
+
+
+def joined(*parts: BodyRows) -> BodyRows:
+    """The rows of all parts."""
+    axes, radii, way = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return BodyRows(axes, radii, way)
+
+
+@exact_kernel
+def least_gap(axes: Floats, radii: Floats, box: Floats) -> float:
+    """The least distance of axes (M, 6) from a box (15,) less their radii (M,); a row too far to matter is skipped."""
+    best = np.inf
+    size = math.sqrt(box[12] ** 2 + box[13] ** 2 + box[14] ** 2)
+    p, d = np.empty(3), np.empty(3)
+    for i in range(axes.shape[0]):
+        a = axes[i]
+        away, half = 0.0, 0.0
+        for k in range(3):
+            away += (0.5 * (a[k] + a[k + 3]) - box[k]) ** 2
+            half += (a[k + 3] - a[k]) ** 2
+        if math.sqrt(away) - 0.5 * math.sqrt(half) - size - radii[i] >= best:
+            continue
+        for k in range(3):
+            m = 3 + 3 * k
+            p[k] = box[m] * (a[0] - box[0]) + box[m + 1] * (a[1] - box[1]) + box[m + 2] * (a[2] - box[2])
+            d[k] = box[m] * (a[3] - a[0]) + box[m + 1] * (a[4] - a[1]) + box[m + 2] * (a[5] - a[2])
+        best = min(best, _axis_to_box(p, d, box[12:]) - radii[i])
+    return best
+
+
+@exact_kernel
+def _slope(p: Floats, d: Floats, half: Floats, t: float) -> float:
+    """Half the derivative of the squared distance from the box |x| <= half at the axis point p + t d."""
+    total = 0.0
+    for k in range(3):
+        x = p[k] + t * d[k]
+        total += (x - max(min(x, half[k]), -half[k])) * d[k]
+    return total
+
+
+@exact_kernel
+def _axis_to_box(p: Floats, d: Floats, half: Floats) -> float:
+    """Distance of the axis p + t d, t in [0, 1], from the box |x| <= half.
+
+    The squared distance is convex in t with a piecewise linear derivative, whose corners are where the axis crosses the
+    planes of the faces: between the two corners around its zero it is a straight line.
+    """
+    low, high = 0.0, 1.0
+    low_slope, high_slope = _slope(p, d, half, 0.0), _slope(p, d, half, 1.0)
+    t = 0.0
+    if low_slope < 0.0:
+        t = 1.0
+        if high_slope > 0.0:
+            for k in range(3):
+                for side in (-1.0, 1.0):
+                    if d[k] != 0.0:
+                        corner = (side * half[k] - p[k]) / d[k]
+                        if low < corner < high:
+                            slope = _slope(p, d, half, corner)
+                            if slope <= 0.0:
+                                low, low_slope = corner, slope
+                            else:
+                                high, high_slope = corner, slope
+            t = low - low_slope * (high - low) / (high_slope - low_slope)
+    total = 0.0
+    for k in range(3):
+        x = p[k] + t * d[k]
+        total += (x - max(min(x, half[k]), -half[k])) ** 2
+    return math.sqrt(total)

@@ -1,0 +1,126 @@
+"""The line on the ground along which a course runs, and the walk along it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.gait import phase_rate
+
+Floats = NDArray[np.float64]
+
+_STEP = 0.005  # metres between the points of the integrated line
+_BEFORE_AND_AFTER = 3.0  # metres, how far the line goes on straight
+
+
+def smoothstep(x: ArrayLike) -> Floats:
+    """0 below 0, 1 above 1, a cubic without slope at both ends in between."""
+    inside = np.clip(np.asarray(x, np.float64), 0.0, 1.0)
+    blend: Floats = inside * inside * (3.0 - 2.0 * inside)
+    return blend
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Where the heading of a line changes."""
+
+    begin: float  # metres along the line
+    end: float
+    angle: float  # radians, positive to the left
+
+
+@dataclass(frozen=True)
+class CourseLine:
+    """A line without corners from the origin, first along +Z; its points are given by the way `s` in metres."""
+
+    length: float
+    turns: tuple[Turn, ...] = ()
+
+    @property
+    def straight(self) -> bool:
+        """Whether the line never turns."""
+        return not self.turns
+
+    def heading(self, s: ArrayLike) -> Floats:
+        """Heading (...) in radians."""
+        way = np.asarray(s, np.float64)
+        total = np.zeros(way.shape)
+        for turn in self.turns:
+            total = total + turn.angle * smoothstep((way - turn.begin) / (turn.end - turn.begin))
+        return total
+
+    def curvature(self, s: ArrayLike) -> Floats:
+        """Change of heading per metre (...)."""
+        way = np.asarray(s, np.float64)
+        total = np.zeros(way.shape)
+        for turn in self.turns:
+            x = np.clip((way - turn.begin) / (turn.end - turn.begin), 0.0, 1.0)
+            total = total + turn.angle * 6.0 * x * (1.0 - x) / (turn.end - turn.begin)
+        return total
+
+    @cached_property
+    def _table(self) -> tuple[Floats, Floats]:
+        """The way (M,) and the points (M, 2) of the line, integrated with the midpoint rule."""
+        first = -_BEFORE_AND_AFTER
+        count = round((self.length + 2.0 * _BEFORE_AND_AFTER) / _STEP)
+        middles = self.heading(first + _STEP * (np.arange(count) + 0.5))
+        steps = _STEP * np.stack([np.sin(middles), np.cos(middles)], axis=1)
+        points = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+        points += np.array([0.0, first])  # the line is straight before the origin
+        return first + _STEP * np.arange(count + 1), points
+
+    def points(self, s: ArrayLike) -> Floats:
+        """Points (..., 2), x and z."""
+        way, points = self._table
+        return np.stack([np.interp(s, way, points[:, 0]), np.interp(s, way, points[:, 1])], axis=-1)
+
+    def nearest(self, x: float, z: float, around: float, reach: float = 1.0) -> float:
+        """The way `s` of the point of the line nearest to (x, z), looked for within `reach` of `around`."""
+        way, points = self._table
+        first, last = np.searchsorted(way, [around - reach, around + reach])
+        part = slice(int(first), max(int(last), int(first) + 1))
+        return float(way[part][np.argmin(np.hypot(points[part, 0] - x, points[part, 1] - z))])
+
+    def local(self, s: float, offsets: ArrayLike) -> Floats:
+        """Places (..., 3) in the world of offsets (..., 3) to the left, up and ahead of the line's point at `s`."""
+        left, up, ahead = np.moveaxis(np.asarray(offsets, np.float64), -1, 0)
+        heading, (x, z) = float(self.heading(s)), self.points(s)
+        sine, cosine = np.sin(heading), np.cos(heading)
+        return np.stack([x + ahead * sine + left * cosine, up, z + ahead * cosine - left * sine], axis=-1)
+
+
+def walk_along(line: CourseLine, s: ArrayLike, speed: ArrayLike, phase: ArrayLike) -> Floats:
+    """Root states (N, 7) of a body that walks exactly on the line: ways, speeds and stride phases (N,) or scalars."""
+    way = np.asarray(s, np.float64)
+    states = np.zeros((len(way), 7))
+    states[:, :2] = line.points(way)
+    states[:, 2] = line.heading(way)
+    states[:, 3] = speed
+    states[:, 5] = states[:, 3] * line.curvature(way)
+    states[:, 6] = phase
+    return states
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """A body that walks on a line: from a stand to a constant speed, and on to the line's end."""
+
+    times: Floats  # (K,) seconds
+    way: Floats  # (K,) metres along the line
+    states: Floats  # (K, 7) root states
+
+
+def steady_walk(line: CourseLine, speed: float, rate: float, acceleration: float = 2.0) -> Walk:
+    """The walk along a line at `speed`, `rate` samples a second; m/s, m/s^2."""
+    ramp = speed / acceleration
+    duration = line.length / speed + 0.5 * ramp
+    times = np.arange(int(np.ceil(duration * rate)) + 1) / rate
+    rising = np.minimum(times, ramp)
+    speeds = acceleration * rising
+    way = 0.5 * acceleration * rising**2 + speed * (times - rising)
+    cadence = np.full(len(times), phase_rate(speed, 0.0, 0.0))
+    starting = int(np.searchsorted(times, ramp))
+    cadence[:starting] = [phase_rate(v, 0.0, 0.0) for v in speeds[:starting]]
+    phase = np.concatenate([[0.0], np.cumsum(0.5 * (cadence[:-1] + cadence[1:]) / rate)])
+    return Walk(times, way, walk_along(line, way, speeds, phase))

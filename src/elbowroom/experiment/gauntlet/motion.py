@@ -1,0 +1,154 @@
+"""A continuous random motion of waist and arms along a course."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.dof import DofGroup, clamp
+from elbowroom.control.canned import standing_posture
+from elbowroom.experiment.gauntlet import levels
+from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
+from elbowroom.experiment.gauntlet.line import smoothstep
+from elbowroom.experiment.gauntlet.self_clearance import SelfClearance
+from elbowroom.experiment.gauntlet.speeds import WALK_SPEED, HumanSpeeds
+
+Floats = NDArray[np.float64]
+
+WAIST, LEFT, RIGHT = slice(0, 2), slice(2, 6), slice(6, 10)  # columns of an upper body (10,)
+
+_BENT, _LEANING = (0.75, 1.25), (0.45, 0.90)  # forward bend alone, and with a twist
+_TWISTED = (0.50, 0.78)
+_LITTLE = (-0.08, 0.08)  # what a group does that is not asked
+_AWAY = (0.0, 0.35)  # abduction of an arm that is not asked: a bent or twisted trunk takes it along
+_DRIFT = (-0.10, 0.10)  # change of an asked component during a passage
+# Ranges of flexion, abduction, internal rotation, elbow: of whatever an arm does in front of and beside the body; raised
+# ahead, raised to the side, folded before the chest.
+_ANY_ARM = ((-0.70, 2.60), (-0.40, 2.40), (-1.20, 1.00), (0.0, 2.40))
+_RAISED_ARM = ((0.90, 2.60), (-0.40, 0.60), (-0.90, 0.90), (0.0, 2.20))
+_ASIDE_ARM = ((-0.40, 1.00), (0.90, 2.20), (-1.20, 0.90), (0.0, 2.20))
+_FOLDED_ARM = ((0.10, 1.20), (-0.45, 0.15), (0.0, 1.10), (0.9, 2.45))
+_NARROW_ARMS = (_FOLDED_ARM, _FOLDED_ARM, _RAISED_ARM, _ANY_ARM)
+_FREE_ARMS = (_RAISED_ARM, _ASIDE_ARM, _FOLDED_ARM, _ANY_ARM)
+
+_POSTURES = 60  # draws for one passage
+_TRANSITION_STEP = 0.03  # metres between the checked moments of a motion
+_APPROACH = 1.6  # metres before the first passage where the motion begins, and after the last where it ends
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A part of the way through which the body has to be held."""
+
+    begin: float  # metres along the line
+    end: float
+    asks: str
+    long: bool
+    side: int  # 1 left, -1 right: of the arm asked, or of the twist
+
+    @property
+    def middle(self) -> float:
+        """Half way through."""
+        return 0.5 * (self.begin + self.end)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """Upper bodies as a function of the way: through key postures, resting at each, C1."""
+
+    way: Floats  # (K,) metres along the line, increasing
+    postures: Floats  # (K, 10) waist, left arm, right arm, radians
+
+    def at(self, s: ArrayLike) -> Floats:
+        """Upper bodies (N, 10) at ways (N,)."""
+        place = np.asarray(s, np.float64)
+        k = np.clip(np.searchsorted(self.way, place, side="right") - 1, 0, len(self.way) - 2)
+        part = smoothstep((place - self.way[k]) / (self.way[k + 1] - self.way[k]))[:, None]
+        return (1.0 - part) * self.postures[k] + part * self.postures[k + 1]
+
+
+def draw_motion(
+    draw: Draw, passages: tuple[Passage, ...], check: SelfClearance, speeds: HumanSpeeds
+) -> BodyMotion | None:
+    """A motion that is within the limits of joints and speeds, and does not run into itself; None if none was drawn."""
+    hanging = np.round(standing_posture(np.zeros(7)), GRAIN)
+    way, postures = [max(0.0, passages[0].begin - _APPROACH)], [hanging]
+    for passage in passages:
+        room = passage.begin - way[-1]
+        held = _posture(draw, passage, postures[-1], hanging, check, farthest(speeds, room))
+        if held is None:
+            return None
+        way += [passage.begin, passage.end]
+        postures += [held, _drifted(draw, held, hanging, farthest(speeds, passage.end - passage.begin))]
+    motion = BodyMotion(np.array([*way, way[-1] + _APPROACH]), np.array([*postures, hanging]))
+    return motion if _is_clear(motion, check) else None
+
+
+def farthest(speeds: HumanSpeeds, length: float) -> Floats:
+    """How far waist, left and right arm (3,) may move along `length` metres of a walk at full speed."""
+    time = length / WALK_SPEED
+    waist = min(speeds.waist * time / 1.5, speeds.waist_acceleration * time**2 / 6.0)
+    arm = min(speeds.arm * time / 1.5, speeds.arm_acceleration * time**2 / 6.0)
+    return np.array([waist, arm, arm])
+
+
+def _posture(
+    draw: Draw, passage: Passage, before: Floats, hanging: Floats, check: SelfClearance, reach: Floats
+) -> Floats | None:
+    """A posture that can be reached in time, by a move without collision with itself."""
+    for _ in range(_POSTURES):
+        wanted = _limited(before, _asked(draw, passage, hanging), reach)
+        steps = before + np.linspace(0.0, 1.0, 12)[:, None] * (wanted - before)
+        if check.clear(np.zeros((len(steps), 7)), steps).all():
+            return wanted
+    return None
+
+
+def _asked(draw: Draw, passage: Passage, hanging: Floats) -> Floats:
+    """A random posture of the kind that the passage asks for."""
+    asks, posture = passage.asks, hanging.copy()
+    posture += [draw.between(_LITTLE) for _ in posture]
+    posture[[3, 7]] += [draw.between(_AWAY), draw.between(_AWAY)]
+    if asks in (levels.BEND, levels.BEND_ARMS):
+        posture[0] = draw.between(_BENT)
+    if asks == levels.BEND_TWIST:
+        posture[0] = draw.between(_LEANING)
+    if asks in (levels.TWIST_ARMS, levels.BEND_TWIST):
+        posture[1] = passage.side * draw.between(_TWISTED)
+    narrow = asks in (levels.TWIST_ARMS, levels.BEND_TWIST)
+    if asks in (levels.BOTH_ARMS, levels.BEND_ARMS, levels.TWIST_ARMS, levels.BEND_TWIST):
+        posture[LEFT], posture[RIGHT] = _arm(draw, narrow), _arm(draw, narrow)
+    if asks == levels.ONE_ARM:
+        posture[LEFT if passage.side > 0 else RIGHT] = _arm(draw, narrow)
+    return posture
+
+
+def _arm(draw: Draw, narrow: bool) -> Floats:
+    spans = draw.one_of(_NARROW_ARMS if narrow else _FREE_ARMS)
+    return np.array([draw.between(span) for span in spans])
+
+
+def _drifted(draw: Draw, held: Floats, hanging: Floats, reach: Floats) -> Floats:
+    """The posture at the end of a passage: a little further on in what differs from hanging."""
+    drift = np.array([draw.between(_DRIFT) for _ in held])
+    return _limited(held, held + np.where(np.abs(held - hanging) > 0.2, drift, 0.0), reach)
+
+
+def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
+    """As far towards the wanted posture as limits and reach allow, group by group; whole milliradians."""
+    posture = wanted.copy()
+    for columns, group, most in zip(
+        (WAIST, LEFT, RIGHT), (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM), reach, strict=True
+    ):
+        posture[columns] = clamp(group, posture[columns])
+        move = posture[columns] - before[columns]
+        posture[columns] = before[columns] + move * min(1.0, 0.99 * most / max(float(np.linalg.norm(move)), 1e-9))
+    return np.round(posture, GRAIN)
+
+
+def _is_clear(motion: BodyMotion, check: SelfClearance) -> bool:
+    """Whether the motion never runs into itself, at any phase of the stride near a checked moment."""
+    way = np.arange(motion.way[0], motion.way[-1], _TRANSITION_STEP)
+    roots = np.zeros((len(way), 7))
+    roots[:, 3], roots[:, 6] = WALK_SPEED, 0.37 * np.arange(len(way))
+    return bool(check.clear(roots, motion.at(way)).all())
