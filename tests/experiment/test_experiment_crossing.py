@@ -9,16 +9,16 @@ from elbowroom.experiment.crossing import (
     CrossingResult,
     CrossingSettings,
     controller_for,
-    is_realtime,
     run_crossing,
     start_for,
     warm_up,
 )
+from elbowroom.experiment.pacing import is_realtime, late_frames, shown_times
 from elbowroom.experiment.scripted_user import BACK, FORWARD, ScriptedUser
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)
-TIMES = {"frame_ms_p99", "frame_ms_worst", "plan_ms_worst", "realtime"}
+TIMES = {"late_frames", "frame_ms_p99", "frame_ms_worst", "plan_ms_worst", "realtime"}
 
 
 def cross(scene: str, settings: CrossingSettings) -> CrossingResult:
@@ -98,3 +98,18 @@ def test_real_time_by_the_papers_criterion() -> None:
     assert not is_realtime(frozen, dt)
     assert not is_realtime(np.full(20, 0.9), dt)
     assert is_realtime(np.zeros(0), dt)
+
+
+def test_no_frame_later_than_a_frame_time() -> None:
+    dt = 1 / 60
+    smooth = np.full(300, 0.002)
+    assert late_frames(smooth, dt) == 0
+    assert late_frames(np.zeros(0), dt) == 0
+    hitch = smooth.copy()
+    hitch[100] = 0.1
+    shown = shown_times(hitch, dt)
+    lateness = shown - np.arange(300) * dt
+    assert late_frames(hitch, dt) == np.count_nonzero(lateness > dt) > 1
+    assert lateness[99] == pytest.approx(0.002)
+    assert lateness[-1] == pytest.approx(0.002)
+    assert (np.diff(shown) > 0.0).all()

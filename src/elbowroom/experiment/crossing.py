@@ -12,6 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
+from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -57,11 +58,20 @@ class CrossingResult:
     plan_failed_rate: float
     collision_checks: int
     realtime: bool  # no second showed only one frame, by the time that frames really took
+    late_frames: int  # shown later than 1/60 s after they were due, by the same measure
     frames: int
     frame_ms_p99: float
     frame_ms_worst: float
     plan_ms_worst: float
     least_clearance: float  # metres, over all frames
+
+
+@dataclass(frozen=True, eq=False)
+class CrossingTimes:
+    """What the frames of a trial cost to compute."""
+
+    frame_ms: Floats  # (frames,)
+    plan_ms: Floats  # (plans,) of these, the frames that planned
 
 
 def start_for(scene: Scene, seed: int) -> RootState:
@@ -100,6 +110,13 @@ def run_crossing(
     controller: Controller, settings: CrossingSettings, listener: Listener | None = None
 ) -> CrossingResult:
     """Let the scripted user steer until the finish or the time limit; `listener` hears of every step."""
+    return run_timed_crossing(controller, settings, listener)[0]
+
+
+def run_timed_crossing(
+    controller: Controller, settings: CrossingSettings, listener: Listener | None = None
+) -> tuple[CrossingResult, CrossingTimes]:
+    """`run_crossing`, and the cost of every single frame."""
     user = ScriptedUser(np.random.default_rng([settings.seed, 2]))
     ledger = _Ledger()
     frame = controller.step(Command(), 0.0)
@@ -111,7 +128,7 @@ def run_crossing(
         if listener is not None:
             listener(command, DT, frame)
     passed = controller.scene.finished(controller.root)
-    return ledger.result(controller.scene.name, settings, passed, frame.time)
+    return ledger.result(controller.scene.name, settings, passed, frame.time), ledger.times()
 
 
 class _Ledger:
@@ -119,7 +136,7 @@ class _Ledger:
 
     def __init__(self) -> None:
         self._costs: list[float] = []  # seconds of computing, one for each frame
-        self._plan_costs: list[float] = [0.0]
+        self._plan_costs: list[float] = []
         self._found: list[bool] = []
         self._checks = 0
         self._stuck_times = 0
@@ -137,6 +154,10 @@ class _Ledger:
             self._found.append(frame.plan.found)
             self._plan_costs.append(cost)
             self._checks += frame.plan.local.checks
+
+    def times(self) -> CrossingTimes:
+        """The cost of every frame."""
+        return CrossingTimes(1e3 * np.array(self._costs), 1e3 * np.array(self._plan_costs))
 
     def result(self, scene: str, settings: CrossingSettings, passed: bool, seconds: float) -> CrossingResult:
         """The row of the trial."""
@@ -156,24 +177,10 @@ class _Ledger:
             plan_failed_rate=round(1.0 - success, 4) if self._found else 0.0,
             collision_checks=self._checks,
             realtime=is_realtime(costs, DT),
+            late_frames=late_frames(costs, DT),
             frames=len(self._costs),
             frame_ms_p99=round(1e3 * float(np.percentile(costs, 99)), 3),
             frame_ms_worst=round(1e3 * float(costs.max()), 3),
-            plan_ms_worst=round(1e3 * max(self._plan_costs), 3),
+            plan_ms_worst=round(1e3 * max(self._plan_costs, default=0.0), 3),
             least_clearance=round(float(self._clearance), 6),
         )
-
-
-def is_realtime(costs: Floats, dt: float) -> bool:
-    """Whether no second showed only one frame, had the frames been shown live (the paper's criterion).
-
-    Frame i is due at `i * dt`, its computing takes `costs[i]` seconds and begins when it is due and the one before
-    is done.
-    """
-    shown, now = [], 0.0
-    for i, cost in enumerate(costs):
-        now = max(now, i * dt) + cost
-        shown.append(now)
-    whole_seconds = int(shown[-1]) if shown else 0
-    counts = np.bincount(np.array(shown, dtype=np.int64), minlength=whole_seconds)[:whole_seconds]
-    return bool((counts > 1).all())
