@@ -107,7 +107,8 @@ def test_a_refill_from_the_next_key_keeps_the_interval_in_play() -> None:
     queue.advance(0.21)
     same.advance(0.21)
     refill(queue, rng, at_once=False)
-    assert queue.fill == SIZE + 1  # the key in play and |Q| planned beyond it
+    assert queue.fill == SIZE
+    assert len(queue.unplayed().times) == SIZE + 1  # the key in play and |Q| planned beyond it
     for _ in range(9):
         queue.advance(0.02)
         same.advance(0.02)

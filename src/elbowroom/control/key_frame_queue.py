@@ -70,8 +70,8 @@ class KeyFrameQueue:
 
     @property
     def fill(self) -> int:
-        """The number of unplayed key frames."""
-        return int(np.count_nonzero(self._times > self.time + _SAME_TIME))
+        """The number of unplayed key frames, up to |Q|: after a refill |Q| lie beyond the one that is played towards."""
+        return min(int(np.count_nonzero(self._times > self.time + _SAME_TIME)), self.capacity)
 
     def unplayed(self) -> KeyFrames:
         """The key frames that are still to come."""
