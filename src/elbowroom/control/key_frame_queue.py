@@ -70,7 +70,7 @@ class KeyFrameQueue:
 
     @property
     def fill(self) -> int:
-        """The number of unplayed key frames, up to |Q|: after a refill |Q| lie beyond the one that is played towards."""
+        """Unplayed key frames, up to |Q|: after a refill |Q| lie beyond the one that is played towards."""
         return min(int(np.count_nonzero(self._times > self.time + _SAME_TIME)), self.capacity)
 
     def unplayed(self) -> KeyFrames:
