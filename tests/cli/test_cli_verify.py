@@ -74,6 +74,8 @@ def test_json_tells_all(touching: Path) -> None:
 
 
 def test_the_mesh_can_be_left_out(clean: Path) -> None:
+    shown = RUNNER.invoke(app, ["verify", str(clean), "--no-mesh"])
+    assert "not asked for" in shown.stdout
     result = RUNNER.invoke(app, ["verify", str(clean), "--no-mesh", "--json"])
     assert result.exit_code == 0
     assert json.loads(result.stdout)["mesh"] is None

@@ -31,20 +31,19 @@ Floats = NDArray[np.float64]
 STOCK = Humanoid.default()
 
 
-def stock_skin() -> Skin:
-    skin = skin_of(STOCK)
-    assert skin is not None
+def read_skin(humanoid: Humanoid) -> Skin:
+    skin, note = skin_of(humanoid)
+    assert skin is not None, note
     return skin
 
 
-SKIN = stock_skin()
+SKIN = read_skin(STOCK)
 
 
 def odd_avatar(**recipe: object) -> Humanoid:
     """An avatar whose points are triangles."""
     data = build(Recipe(points=21, seed=2, **recipe))  # type: ignore[arg-type]
     points, triangles = b'"mode":0', b'"mode":4'
-    assert data.count(points) == 1
     return load_humanoid_bytes(data.replace(points, triangles), "odd.glb")
 
 
@@ -76,8 +75,7 @@ def as_a_viewer_poses(humanoid: Humanoid, q: Floats, roots: Floats) -> Floats:
 
 
 def assert_posed_as_in_a_viewer(humanoid: Humanoid) -> None:
-    skin = skin_of(humanoid)
-    assert skin is not None
+    skin = read_skin(humanoid)
     q, roots = random_postures(np.random.default_rng(3), 4)
     used = np.unique(skin.triangles)
     vertices = skin.vertices(poses(humanoid, q, roots), used)
@@ -164,6 +162,7 @@ def test_patches_are_never_farther_than_they_seem() -> None:
     patches = patches_of(SKIN)
     for obstacle in obstacles_of(scene_with(random_boxes(rng, 2))):
         bounds = patches.bounds(posed, obstacle)
+        assert (patches.body_bounds(posed, obstacle) <= bounds.min(axis=1) + 1e-9).all()
         for i, patch in enumerate(patches.patches):
             beyond = np.abs(obstacle.seen_from(SKIN.vertices(posed, patch.vertices))) - obstacle.half_size
             true = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1).min(axis=1)
@@ -232,10 +231,16 @@ def test_a_clean_mesh_tells_its_clearance() -> None:
 
 
 def test_without_a_mesh_only_capsules_are_judged() -> None:
-    humanoid, scene = proportional_humanoid(1.7), scene_with(upright(((0.0, 3.0, 0.0), (1.0, 1.0, 1.0))))
+    scene = scene_with(upright(((0.0, 3.0, 0.0), (1.0, 1.0, 1.0))))
     motion = ShownMotion.at_rate(*gliding(T_POSE, 3, 0.1))
-    assert judge(motion, humanoid, scene).mesh is None
-    assert judge(motion, STOCK, scene, JudgeSettings(mesh=False)).mesh is None
+    for verdict, note in (
+        (judge(motion, proportional_humanoid(1.7), scene), "no file"),
+        (judge(motion, odd_avatar(mesh=False), scene), "no mesh"),
+        (judge(motion, STOCK, scene, JudgeSettings(mesh=False)), "not asked for"),
+    ):
+        assert verdict.mesh is None
+        assert note in verdict.mesh_note
+        assert verdict.triangles == 0
 
 
 def test_regions() -> None:

@@ -65,6 +65,7 @@ def _as_json(verdict: "Verdict") -> dict[str, Any]:
         "seconds": verdict.seconds,
         "capsules": _body_json(verdict.capsules),
         "mesh": mesh,
+        "mesh_note": verdict.mesh_note,
         "smoothness": {name: asdict(figures) for name, figures in verdict.smoothness.items()},
     }
 
@@ -100,7 +101,9 @@ def _print(recorded: "Recording", scene: str, verdict: "Verdict") -> None:
         "frames recorded": f"{verdict.frames}, {verdict.seconds:.1f} s",
         "frames checked": str(verdict.poses),
     }
-    print_row(f"{recorded.path.name}, scene {scene}", judged | _body_rows("capsules", verdict.capsules))
+    capsules = _body_rows("capsules", verdict.capsules)
+    no_mesh = {} if verdict.mesh else {"mesh": f"not judged: {verdict.mesh_note}"}
+    print_row(f"{recorded.path.name}, scene {scene}", judged | capsules | no_mesh)
     if verdict.mesh is not None:
         left_out = f", {verdict.triangles_left_out} left out" if verdict.triangles_left_out else ""
         print_row("Skinned mesh", {"triangles": f"{verdict.triangles}{left_out}"} | _body_rows("mesh", verdict.mesh))

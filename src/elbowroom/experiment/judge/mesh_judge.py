@@ -1,6 +1,7 @@
 """The skinned mesh against obstacles: every triangle, none left out, the far ones dismissed in bulk."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,19 @@ from elbowroom.experiment.judge.skin import Skin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class _Moments(NamedTuple):
+    """Some poses: their numbers (n,), times (n,) and joints."""
+
+    numbers: Ints
+    times: Floats
+    posed: Posed
+
+    def at(self, rows: Ints) -> "_Moments":
+        """Those in some rows."""
+        posed = Posed(self.posed.positions[rows], self.posed.rotations[rows])
+        return _Moments(self.numbers[rows], self.times[rows], posed)
 
 
 class MeshJudge:
@@ -31,41 +45,35 @@ class MeshJudge:
 
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the surface does at N poses, whose numbers begin at `first`."""
-        if not self._obstacles:
-            return
-        bounds = np.stack([self._patches.bounds(posed, obstacle) for obstacle in self._obstacles], axis=-1)
-        nearest = bounds.min(axis=(0, 2))  # (P,)
-        for patch in np.argsort(nearest):
-            if nearest[patch] > ledger.limit:
+        every = _Moments(np.arange(first, first + len(times)), times, posed)
+        bounds = [self._patches.body_bounds(posed, obstacle) for obstacle in self._obstacles]
+        for which in sorted(range(len(bounds)), key=lambda which: float(bounds[which].min())):
+            near = np.flatnonzero(bounds[which] <= ledger.limit)
+            if len(near):
+                self._judge_obstacle(every.at(near), self._obstacles[which], ledger)
+
+    def _judge_obstacle(self, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+        bounds = self._patches.bounds(moments.posed, obstacle)  # (N, P)
+        nearest = bounds.min(axis=0)
+        for i in np.argsort(nearest):
+            if nearest[i] > ledger.limit:
                 return
-            self._judge_patch(self._patches.patches[patch], bounds[:, patch], posed, times, first, ledger)
+            patch = self._patches.patches[i]
+            if ledger.least is None:  # one pose first: from then on the ledger has a limit
+                self._judge_patch(patch, moments.at(bounds[:, [i]].argmin(axis=0)), obstacle, ledger)
+            self._judge_patch(patch, moments.at(np.flatnonzero(bounds[:, i] <= ledger.limit)), obstacle, ledger)
 
-    def _judge_patch(
-        self, patch: Patch, bounds: Floats, posed: Posed, times: Floats, first: int, ledger: Ledger
-    ) -> None:
-        """Judge one patch at the poses where `bounds` (N, B) do not say that it is far."""
-        if ledger.least is None:
-            closest = np.unravel_index(int(np.argmin(bounds)), bounds.shape)[0]
-            self._judge_poses(patch, bounds, np.array([closest]), posed, times, first, ledger)
-        poses = np.flatnonzero(bounds.min(axis=1) <= ledger.limit)
-        self._judge_poses(patch, bounds, poses, posed, times, first, ledger)
-
-    def _judge_poses(
-        self, patch: Patch, bounds: Floats, poses: Ints, posed: Posed, times: Floats, first: int, ledger: Ledger
-    ) -> None:
-        points = self._skin.vertices(Posed(posed.positions[poses], posed.rotations[poses]), patch.vertices)
-        for which, obstacle in enumerate(self._obstacles):
-            near = np.flatnonzero(bounds[poses, which] <= ledger.limit)
-            corners = obstacle.seen_from(points[near])[:, patch.triangles]  # (n, t, 3, 3)
-            gaps = obstacle.box_distance(corners.min(axis=2), corners.max(axis=2))  # (n, t)
-            for row in np.argsort(gaps.min(axis=1)):
-                close = gaps[row] <= ledger.limit
-                if not close.any():
-                    continue
-                pose = int(poses[near[row]])
-                distance = self._distance(points[near[row]], patch.triangles[close], obstacle)
-                found = Nearness(self._regions[patch.joint], obstacle.name, float(times[pose]), distance)
-                ledger.enter(first + pose, found)
+    def _judge_patch(self, patch: Patch, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+        points = self._skin.vertices(moments.posed, patch.vertices)
+        corners = obstacle.seen_from(points)[:, patch.triangles]  # (n, t, 3, 3)
+        gaps = obstacle.box_distance(corners.min(axis=2), corners.max(axis=2))  # (n, t)
+        for row in np.argsort(gaps.min(axis=1)):
+            close = gaps[row] <= ledger.limit
+            if not close.any():
+                return
+            distance = self._distance(points[row], patch.triangles[close], obstacle)
+            found = Nearness(self._regions[patch.joint], obstacle.name, float(moments.times[row]), distance)
+            ledger.enter(int(moments.numbers[row]), found)
 
     def _distance(self, points: Floats, triangles: Ints, obstacle: Obstacle) -> float:
         """Distance of the nearest triangle; negative: how far the deepest one would have to be moved to be free."""

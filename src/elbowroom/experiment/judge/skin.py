@@ -49,21 +49,22 @@ class Skin:
         return total
 
 
-def skin_of(humanoid: Humanoid) -> Skin | None:
-    """The skin of an avatar; None where it has no file, or the file no mesh of the body that we can read.
+def skin_of(humanoid: Humanoid) -> tuple[Skin | None, str]:
+    """The skin of an avatar, or None and the reason why there is none to judge.
 
     Raises `InputError` where the mesh is damaged.
     """
     if humanoid.glb is None or humanoid.rig is None:
-        return None
+        return None, "the avatar has no file"
     gltf = parse_gltf(humanoid.glb, humanoid.name)
-    if compression(gltf):
-        return None
+    packed = compression(gltf)
+    if packed:
+        return None, f"the mesh is compressed with {packed}, which is not read yet"
     tree = read_nodes(gltf)
     mesh = triangle_mesh(gltf, tree)
     vrm = read_vrm(gltf, len(tree))
     skin = _skin(mesh, tree, humanoid, humanoid.rig, vrm.spring_nodes if vrm else frozenset())
-    return skin if len(skin.triangles) else None
+    return (skin, "") if len(skin.triangles) else (None, "the file has no mesh on the body")
 
 
 def _skin(mesh: TriangleMesh, tree: NodeTree, humanoid: Humanoid, rig: Rig, springs: frozenset[int]) -> Skin:

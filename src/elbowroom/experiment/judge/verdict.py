@@ -59,6 +59,7 @@ class Verdict:
     seconds: float  # of motion
     capsules: BodyVerdict
     mesh: BodyVerdict | None  # None: not asked for, or the avatar has none
+    mesh_note: str  # why there is no mesh, else empty
     triangles: int  # of the mesh that were judged
     triangles_left_out: int  # moved by springs, or rigid things on a skinned body
     smoothness: dict[str, Smoothness]
@@ -90,7 +91,7 @@ def judge(
     """
     chosen = settings or JudgeSettings()
     obstacles, poser = obstacles_of(scene), Poser(humanoid)
-    skin = skin_of(humanoid) if chosen.mesh else None
+    skin, note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
     moments = motion.moments(chosen.rate)
     of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
     capsule_judge = CapsuleJudge(humanoid, obstacles)
@@ -103,16 +104,20 @@ def judge(
             mesh_judge.judge(posed, some.times, first, of_mesh)
         if progress is not None:
             progress(float(some.times[-1]))
-    return _verdict(motion, moments, skin, of_capsules, of_mesh)
+    return _verdict(motion, moments, (skin, note), of_capsules, of_mesh)
 
 
-def _verdict(motion: ShownMotion, moments: Moments, skin: Skin | None, capsules: Ledger, mesh: Ledger) -> Verdict:
+def _verdict(
+    motion: ShownMotion, moments: Moments, surface: tuple[Skin | None, str], capsules: Ledger, mesh: Ledger
+) -> Verdict:
+    skin, note = surface
     return Verdict(
         frames=len(motion),
         poses=len(moments.times),
         seconds=float(motion.times[-1] - motion.times[0]),
         capsules=_body_verdict(capsules, motion, moments),
         mesh=None if skin is None else _body_verdict(mesh, motion, moments),
+        mesh_note=note,
         triangles=0 if skin is None else len(skin.triangles),
         triangles_left_out=0 if skin is None else skin.left_out,
         smoothness=smoothness(motion),
