@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = "Examples:  elbowroom verify run.elbow  |  elbowroom verify run.elbow --rate 480 --no-mesh --json"
 TOUCHES = 1
+_ROUNDING = 1e-6
 _SHOWN = 12  # contacts in the table; --json has all
 _UNITS = {"root": ("m/s", "m/s²", "m/s³")}
 _ANGULAR = ("rad/s", "rad/s²", "rad/s³")
@@ -143,5 +144,10 @@ def _print_smoothness(verdict: "Verdict") -> None:
     rows = {}
     for name, figures in verdict.smoothness.items():
         extents = zip((figures.speed, figures.acceleration, figures.jerk), _UNITS.get(name, _ANGULAR), strict=True)
-        rows[name] = "  ".join(f"{extent.max:.3g} ({extent.p99:.3g}) {unit}" for extent, unit in extents)
+        rows[name] = "  ".join(f"{_short(extent.max)} ({_short(extent.p99)}) {unit}" for extent, unit in extents)
     print_row("Speed, acceleration, jerk: largest (99 %)", rows)
+
+
+def _short(value: float) -> str:
+    """Three digits, and no trace of rounding where nothing moves."""
+    return f"{value if abs(value) > _ROUNDING else 0.0:.3g}"
