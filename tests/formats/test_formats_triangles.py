@@ -31,7 +31,7 @@ def asset(primitive: dict[str, Any], arrays: Mapping[str, NDArray[Any]] | None =
         else:
             attributes[name] = len(views) - 1
     node = {"mesh": 0, "translation": [0.0, 0.0, 9.0]} | ({"skin": 0} if skinned else {})
-    content = {
+    content: dict[str, Any] = {
         "asset": {"version": "2.0"},
         "nodes": [{"children": [1]}, {"translation": [1.0, 0.0, 0.0]}, node],
         "meshes": [{"primitives": [primitive | {"attributes": attributes}]}],
