@@ -2,6 +2,8 @@
 
 import os
 import platform
+import tempfile
+import zipfile
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -84,16 +86,27 @@ def _kernels() -> dict[str, Any]:
     return {"known": len(kernels()), "kept": len(kept_kernels()), "folders": cache_folders()}
 
 
-def _wheel() -> dict[str, Any] | None:
-    """The newest wheel in `dist/` of this checkout or this folder."""
+def _wheel() -> dict[str, Any]:
+    """The newest wheel in `dist/` of this checkout or this folder; without one, what a wheel would weigh."""
     from elbowroom.server.app import client_folder
 
     places = [client_folder().parents[2] / "dist", Path.cwd() / "dist"]
     wheels = [wheel for place in places for wheel in place.glob("elbowroom-*.whl")]
     if not wheels:
-        return None
+        return {"file": None, "megabytes": _packed_megabytes(), "budget_megabytes": WHEEL_BUDGET_MB}
     newest = max(wheels, key=lambda wheel: wheel.stat().st_mtime)
     return {"file": newest.name, "megabytes": _megabytes(newest), "budget_megabytes": WHEEL_BUDGET_MB}
+
+
+def _packed_megabytes() -> float:
+    """The installed package as a compressed archive, which is what a wheel is."""
+    package = Path(__file__).parents[1]
+    with tempfile.TemporaryFile() as scratch:
+        with zipfile.ZipFile(scratch, "w", zipfile.ZIP_DEFLATED) as archive:
+            for file in package.rglob("*"):
+                if file.is_file() and "__pycache__" not in file.parts:
+                    archive.write(file, file.relative_to(package.parent))
+        return round(scratch.tell() / 1e6, 2)
 
 
 def _megabytes(path: Path) -> float:
@@ -107,7 +120,7 @@ def _faults(facts: dict[str, Any]) -> list[str]:
         from elbowroom.server.app import HOW_TO_BUILD
 
         faults.append(HOW_TO_BUILD)
-    if facts["wheel"] and facts["wheel"]["megabytes"] > WHEEL_BUDGET_MB:
+    if facts["wheel"]["megabytes"] > WHEEL_BUDGET_MB:
         faults.append(f"the wheel is larger than {WHEEL_BUDGET_MB:g} MB")
     cost = facts.get("session")
     if cost and cost["cpu_percent"] > cost["cpu_budget_percent"]:
@@ -125,10 +138,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         ("processor", f"{processor['name']}, {processor['cores']} cores, vectors of {processor['vector_bits']} bits"),
         ("kernels", f"{kernels['kept']} of {kernels['known']} compiled and kept in {', '.join(kernels['folders'])}"),
         ("page", f"built, {client['megabytes']} MB" if client["built"] else "not built"),
-        (
-            "wheel",
-            f"{wheel['file']}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})" if wheel else "none in dist/",
-        ),
+        ("wheel", f"{wheel['file'] or 'packed from here'}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})"),
         *_session_rows(facts.get("session")),
         *(("fault", fault) for fault in facts["faults"]),
     ]
