@@ -43,12 +43,12 @@ def _bare(mesh: Mesh, cover: Field, depth: float) -> Mesh:
 
 
 def _body() -> tuple[Part, ...]:
-    arm = _bare(left_arm_mesh(2330), clothes.shirt, 0.010)
-    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0090, 2350)
+    arm = _bare(left_arm_mesh(1300), clothes.shirt, 0.010)
+    shirt = _clay(clothes.shirt, (-0.34, 0.90, -0.16), (0.34, 1.49, 0.16), 0.0090, 1000)
     collar = clothes.collar_mesh()
-    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 2200)
-    shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), 0.0070, 850)
-    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0048, 440)
+    trousers = _clay(clothes.trousers, (-0.21, 0.06, -0.16), (0.21, 1.07, 0.14), 0.0115, 950)
+    shoe = _clay(clothes.shoe, (0.03, -0.01, -0.10), (0.17, 0.15, 0.20), 0.0070, 420)
+    sole = _clay(clothes.sole, (0.03, -0.01, -0.10), (0.17, 0.06, 0.20), 0.0048, 240)
     shirt = _bare(shirt, clothes.trousers, 0.018)
     trousers = _bare(trousers, clothes.shirt, 0.030)
     shirt, bands = cut(shirt, np.abs(shirt.points[:, 0]) - clothes.SLEEVE_BAND)
@@ -66,8 +66,8 @@ def _body() -> tuple[Part, ...]:
 
 
 def _head() -> tuple[Part, ...]:
-    skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), 0.0050, 3600)
-    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0056, 2180)
+    skin = _clay(head, (-0.12, 1.37, -0.12), (0.12, 1.75, 0.14), 0.0050, 2000)
+    locks = _clay(hair, (-0.14, 1.48, -0.15), (0.14, 1.78, 0.14), 0.0056, 1150)
     skin = _bare(_bare(skin, hair, 0.006), clothes.shirt, 0.012)
     locks_colours = tinted(locks, lambda p: np.minimum(hair(p), figure(p)), 0.8, np.array([0.45, 0.35, 0.3]))
     left, right = eyeball(1.0), mirrored_sheet(eyeball(-1.0))
