@@ -13,7 +13,12 @@ from rich.table import Table
 
 def print_json(result: Mapping[str, Any]) -> None:
     """One JSON object on stdout; what is no JSON number becomes null."""
-    print(json.dumps(_plain(result), indent=2, allow_nan=False))
+    print(json_text(result))
+
+
+def json_text(result: Mapping[str, Any]) -> str:
+    """One JSON object; what is no JSON number becomes null."""
+    return json.dumps(_plain(result), indent=2, allow_nan=False)
 
 
 def _plain(value: Any) -> Any:

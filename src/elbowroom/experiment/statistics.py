@@ -48,3 +48,26 @@ def mean_interval(values: Sequence[float], confidence: float = 0.95) -> Interval
 def percentile(values: Sequence[float], percent: float) -> float:
     """The percentile of some values, between neighbours linear; not a number without any."""
     return float(np.percentile(np.asarray(values, np.float64), percent)) if len(values) else math.nan
+
+
+def ratio_interval(
+    numerators: Sequence[float],
+    denominators: Sequence[float],
+    rng: np.random.Generator,
+    confidence: float = 0.95,
+    resamples: int = 2000,
+) -> Interval:
+    """The interval of sum / sum over trials, by the percentile bootstrap (Efron 1979), which draws pairs.
+
+    Infinite with fewer than two trials, or where the denominators may add up to nothing.
+    """
+    if len(numerators) < 2:
+        return Interval(-math.inf, math.inf)
+    drawn = rng.integers(len(numerators), size=(resamples, len(numerators)))
+    over = np.asarray(numerators, np.float64)[drawn].sum(axis=1)
+    under = np.asarray(denominators, np.float64)[drawn].sum(axis=1)
+    if not under.all():
+        return Interval(-math.inf, math.inf)
+    outside = 50.0 * (1.0 - confidence)
+    low, high = np.percentile(over / under, [outside, 100.0 - outside])
+    return Interval(float(low), float(high))

@@ -1,0 +1,137 @@
+"""`elbowroom table1`: the paper's experiment."""
+
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli.output import json_text, print_json, progress_bar
+from elbowroom.cli.time_left import time_left_bar
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.table1.tasks import Table1Settings
+
+EXAMPLES = (
+    "Examples:  elbowroom table1 --scenes a,d --queues 3,5 --seeds 3  |  elbowroom table1 --seeds 20 --out results"
+)
+FELL_SHORT = 1
+CSV, JSON, REPORT = "table1.csv", "table1.json", "report.html"
+
+
+def table1(
+    *,
+    planner: Annotated[str, typer.Option(help="Planners to compare, with commas between: figure6.")] = "figure6",
+    scenes: Annotated[str, typer.Option(help="Stock scenes by name, or scene files.")] = "a,b,c,d",
+    queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|.")] = "3,4,5,6,7",
+    seeds: Annotated[int, typer.Option(help="Trials for each cell, with the seeds 1 to N; the paper has 3.")] = 20,
+    jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for results; an interrupted run goes on there.")] = Path("table1"),
+    limit: Annotated[float, typer.Option(help="Seconds that the user has for each crossing.")] = 30.0,
+    avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Run the paper's crossing test for every scene, queue size and planner, and set it beside the paper's Table 1.
+
+    Writes table1.csv, table1.json and report.html. Every finished trial is kept at once: the same call again goes on
+    where an interrupted one was, and more seeds add to what is there. Exit code 0: done, 1: a shown pose touched an
+    obstacle (a crossing that fails is a result like any other).
+    """
+    from elbowroom.experiment.parallel import usable_cores
+    from elbowroom.experiment.report.crossings import successful_crossings
+    from elbowroom.experiment.report.page import report_html
+    from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
+    from elbowroom.experiment.table1.table import run_table1
+
+    settings = _settings(planner, scenes, queues, seeds, limit, avatar)
+    processes = usable_cores() if jobs is None else jobs
+    with progress_bar("Opening the avatar (the first run compiles kernels)", None, quiet):
+        about = _about(settings, processes)
+    with time_left_bar("Trials", quiet) as move:
+        table = run_table1(settings, out, processes, move)
+    with progress_bar("Drawing the report", None, quiet):
+        page = report_html(table, about, successful_crossings(table, processes))
+    document = table_document(table, about)
+    files = {
+        out / REPORT: page,
+        out / CSV: table_csv(table),
+        out / JSON: json_text(document | trials_document(table)) + "\n",
+    }
+    for path, text in files.items():
+        _write(path, text)
+    if json:
+        print_json(document | {"files": [str(path) for path in files]})
+    else:
+        from elbowroom.cli.table1_text import print_table1
+
+        print_table1(table, about, [str(path) for path in files])
+    raise typer.Exit(FELL_SHORT if document["touching_trials"] else 0)
+
+
+def _settings(
+    planner: str, scenes: str, queues: str, seeds: int, limit: float, avatar: Path | None
+) -> "Table1Settings":
+    from elbowroom.experiment.table1.table import check
+    from elbowroom.experiment.table1.tasks import Table1Settings
+
+    sizes = [_whole(size) for size in _listed(queues)]
+    settings = Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar)
+    check(settings)
+    return settings
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(part.strip() for part in text.split(",") if part.strip())
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(f"--queues: {text[:40]!r} is not a whole number") from None
+
+
+def _about(settings: "Table1Settings", processes: int) -> dict[str, Any]:
+    """What was asked, when, and on what kind of machine."""
+    from elbowroom.experiment.table1.table import identity, planner_settings, warm_kernels
+
+    warm_kernels(settings)
+    return {
+        "command": _command(settings, processes),
+        "date": datetime.now().astimezone().date().isoformat(),
+        "machine": identity(settings)["machine"]["kind"],
+        "settings": {
+            "planners": list(settings.planners),
+            "scenes": list(settings.scenes),
+            "queues": list(settings.queues),
+            "seeds": list(range(1, settings.seeds + 1)),
+            "limit": settings.limit,
+            "jobs": processes,
+        },
+        "identity": identity(settings),
+        "planner_settings": planner_settings(settings),
+    }
+
+
+def _command(settings: "Table1Settings", processes: int) -> str:
+    words = {
+        "planner": ",".join(settings.planners),
+        "scenes": ",".join(settings.scenes),
+        "queues": ",".join(map(str, settings.queues)),
+        "seeds": str(settings.seeds),
+        "jobs": str(processes),
+    }
+    if settings.limit != type(settings).limit:
+        words["limit"] = f"{settings.limit:g}"
+    if settings.avatar is not None:
+        words["avatar"] = settings.avatar.name
+    return "elbowroom table1 " + " ".join(f"--{name} {value}" for name, value in words.items())
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, "utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None

@@ -1,0 +1,71 @@
+"""Progress of long work, with the time that is left, on stderr."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+Move = Callable[[int, int], None]  # pieces done, pieces in all
+
+_SECONDS_BETWEEN_LINES = 15.0
+_WINDOW = 600.0  # seconds over which the speed is measured
+
+
+@contextmanager
+def time_left_bar(title: str, quiet: bool) -> Iterator[Move]:
+    """A bar while the block runs; a line now and then where stderr is no terminal; nothing where `quiet`.
+
+    What is done when the block first reports (by an earlier run) does not count for the speed.
+    """
+    console = Console(stderr=True)
+    if quiet:
+        yield _nothing
+    elif console.is_terminal:
+        with _bar(console) as progress:
+            task = progress.add_task(title, total=None)
+            yield lambda done, total: progress.update(task, completed=done, total=total)
+    else:
+        yield _Lines(title, console).move
+
+
+def _nothing(done: int, total: int) -> None:
+    del done, total
+
+
+def _bar(console: Console) -> Progress:
+    left = TimeRemainingColumn(compact=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    rest = (TextColumn("[dim]left"), left)
+    return Progress(*columns, *rest, console=console, transient=True, speed_estimate_period=_WINDOW)
+
+
+class _Lines:
+    """Progress as lines of text."""
+
+    def __init__(self, title: str, console: Console) -> None:
+        self._title, self._console = title, console
+        self._first: tuple[float, int] | None = None
+        self._told = -_SECONDS_BETWEEN_LINES
+
+    def move(self, done: int, total: int) -> None:
+        """Tell it, if the last line is long enough ago."""
+        now = time.monotonic()
+        if self._first is None:
+            self._first = (now, done)
+        began, before = self._first
+        if done < total and now - self._told < _SECONDS_BETWEEN_LINES:
+            return
+        self._told = now
+        text = f"{self._title}: {done} of {total}"
+        if before < done < total:
+            text += f", about {as_time((now - began) / (done - before) * (total - done))} left"
+        self._console.print(text, highlight=False)
+
+
+def as_time(seconds: float) -> str:
+    """A rough duration in words."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

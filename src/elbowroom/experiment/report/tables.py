@@ -1,0 +1,119 @@
+"""The report's tables."""
+
+import math
+from collections.abc import Sequence
+
+from elbowroom.experiment.paper_table import PaperCell
+from elbowroom.experiment.report.svg import tag
+from elbowroom.experiment.table1.cells import Cell, Estimate
+from elbowroom.experiment.table1.table import Table1
+
+_BESIDE = ("crossed", "straight", "stuck", "time, s", "calls", "found", "checks a call", "real time")
+_ALL = ("trials", "crossed", "straight", "times stuck", "time, s", "calls", "checks a call")
+
+
+def comparison_table(table: Table1) -> str:
+    """Ours and the paper's figures side by side."""
+    heads = [tag("th", name, colspan=2) for name in _BESIDE]
+    more = [tag("th", name) for name in ("late", "frame 99 %, ms", "slowest, ms")]
+    head = tag("tr", tag("th", "scene"), tag("th", "|Q|"), *heads, *more)
+    rows = []
+    for cell in table.cells:
+        paper = table.paper(cell)
+        theirs = _papers(paper) if paper is not None else [""] * len(_BESIDE)
+        pairs = zip(_ours(cell), theirs, strict=True)
+        beside = [tag("td", ours) + tag("td", paper, class_="paper") for ours, paper in pairs]
+        late = f"{cell.late_frames:,}".replace(",", " ")
+        times = [tag("td", text) for text in (late, f"{cell.frame_ms.p99:.1f}", f"{cell.frame_ms.worst:.0f}")]
+        rows.append(_row(table, cell, [*beside, *times]))
+    return _table(head, rows)
+
+
+def everything_table(table: Table1) -> str:
+    """Averages over all trials with their intervals."""
+    head = tag("tr", tag("th", "scene"), tag("th", "|Q|"), *(tag("th", name) for name in _ALL))
+    rows = []
+    for cell in table.cells:
+        texts = (
+            str(cell.trials),
+            _bounded(cell.pass_rate, ".2f"),
+            _bounded(cell.straight_rate, ".2f"),
+            _bounded(cell.all.stuck_times, ".1f"),
+            _bounded(cell.all.time_s, ".1f"),
+            _bounded(cell.all.plans_total, ".0f"),
+            _bounded(cell.all.checks_per_plan, ",.0f"),
+        )
+        rows.append(_row(table, cell, [tag("td", text) for text in texts]))
+    return _table(head, rows)
+
+
+def canned_table(table: Table1) -> str:
+    """What the walk without planning touches."""
+    names = ("scene", "walks", "of these touch", "frames that touch", "of all frames", "deepest, cm")
+    rows = []
+    for cell in table.canned:
+        texts = (
+            str(cell.trials),
+            str(cell.touching_trials),
+            str(cell.touching_frames),
+            f"{cell.share:.0%}",
+            f"{100.0 * cell.deepest:.1f}",
+        )
+        rows.append(tag("tr", tag("th", cell.scene.upper()), *(tag("td", text) for text in texts)))
+    return _table(tag("tr", *(tag("th", name) for name in names)), rows)
+
+
+def _table(head: str, rows: Sequence[str]) -> str:
+    return tag("div", tag("table", tag("thead", head), tag("tbody", *rows)), class_="scroll")
+
+
+def _row(table: Table1, cell: Cell, cells: Sequence[str]) -> str:
+    first = cell.queue_size == table.settings.queues[0]
+    name = cell.scene.upper() if first else ""
+    if first and len(table.settings.planners) > 1:
+        name += f" {cell.planner}"
+    return tag("tr", tag("th", name), tag("th", str(cell.queue_size)), *cells, class_="first" if first else None)
+
+
+def _ours(cell: Cell) -> list[str]:
+    return [
+        f"{cell.pass_rate.value:.2f}",
+        f"{cell.straight_rate.value:.2f}",
+        _value(cell.passed.stuck_times, ".1f"),
+        _value(cell.passed.time_s, ".1f"),
+        _value(cell.passed.plans_total, ".0f"),
+        _value(cell.passed.plan_success_rate, ".2f"),
+        _value(cell.passed.checks_per_plan, ",.0f"),
+        "yes" if cell.realtime else "no",
+    ]
+
+
+def _papers(paper: PaperCell) -> list[str]:
+    numbers = (
+        (paper.straight_rate, ".2f"),
+        (paper.stuck_times, ".1f"),
+        (paper.passed_time_s, ".1f"),
+        (paper.plans_total, ".0f"),
+        (paper.plan_success_rate, ".2f"),
+        (paper.checks_per_plan, ",.0f"),
+    )
+    texts = ["–" if value is None else _spaced(format(value, form)) for value, form in numbers]
+    realtime = "–" if paper.realtime is None else "yes" if paper.realtime else "no"
+    return [f"{paper.pass_rate:.2f}", *texts, realtime]
+
+
+def _value(estimate: Estimate | None, form: str) -> str:
+    return "–" if estimate is None else _spaced(format(estimate.value, form))
+
+
+def _bounded(estimate: Estimate | None, form: str) -> str:
+    text = _value(estimate, form)
+    if estimate is None or not math.isfinite(estimate.high):
+        return text
+    ends = f"{_spaced(format(estimate.low, form))} to {_spaced(format(estimate.high, form))}"
+    return text + tag("small", ends)
+
+
+def _spaced(number: str) -> str:
+    """Thousands apart by a narrow space."""
+    return number.replace(",", "\u202f")
