@@ -4,6 +4,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.body_rows import BodyRows
 from elbowroom.experiment.gauntlet.certificate import Certificate, certify
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
-from elbowroom.experiment.gauntlet.levels import Level, level_of
+from elbowroom.experiment.gauntlet.levels import TWIST, Level, level_of
 from elbowroom.experiment.gauntlet.line import CourseLine, Turn
 from elbowroom.experiment.gauntlet.motion import Passage, draw_motion
 from elbowroom.experiment.gauntlet.placing import Placed, fill_passage, surroundings
@@ -28,6 +29,7 @@ LARGEST_SEED = 2**32 - 1
 _ATTEMPTS = 200
 _SPEED = (0.8, 1.1)  # m/s
 _START = 1.7  # metres from the start to the first passage
+_TO_TWIST = 1.9  # metres of way before a doorway: the arms have to come down from wherever they are
 _FINISH, _RUN_OUT = 1.3, 0.5  # metres from the last passage to the finish, and on
 _WINDING = 0.6  # probability that a course of a level with turns is not straight
 _TURNS = 0.75  # probability of a turn between two passages of such a course
@@ -87,7 +89,7 @@ class CourseMaker:
     def _attempt(self, level: Level, seed: int, attempt: int) -> Course | None:
         winding = level.turn > 0.0 and Draw(level.number, seed).chance(_WINDING)  # the same in every attempt
         draw = Draw(level.number, seed, attempt)
-        passages = _passages(draw, level)
+        passages = _passages(draw, level, winding)
         line = _line(draw, passages, level.turn if winding else 0.0)
         motion = draw_motion(draw, passages, self.check, self.speeds)
         if motion is None:
@@ -128,24 +130,26 @@ def make_course(level: int, seed: int) -> Course:
     return _stock_maker().course(level, seed)
 
 
-def _passages(draw: Draw, level: Level) -> tuple[Passage, ...]:
-    """Where the body has to be held, and how."""
+def _passages(draw: Draw, level: Level, winding: bool) -> tuple[Passage, ...]:
+    """Where the body has to be held, and how; doorways are for straight lines, where nobody comes askew."""
+    kinds = tuple(asks for asks in level.asks if not (winding and asks == TWIST))
     count = draw.whole(*level.passages)
     places = list(range(count))
     long = {places.pop(draw.whole(0, len(places) - 1)) for _ in range(level.long_passages)}
     passages: list[Passage] = []
     end = 0.0
     for i in range(count):
-        begin = round(end + (_START if i == 0 else draw.between(level.gap)), GRAIN)
+        asks, gap = draw.one_of(kinds), _START if i == 0 else draw.between(level.gap)
+        begin = round(end + (max(gap, _TO_TWIST) if asks == TWIST else gap), GRAIN)
         end = round(begin + draw.between(level.long_hold if i in long else level.hold), GRAIN)
-        passages.append(Passage(begin, end, draw.one_of(level.asks), i in long, draw.sign()))
+        passages.append(Passage(begin, end, asks, i in long, draw.sign()))
     return tuple(passages)
 
 
 def _line(draw: Draw, passages: tuple[Passage, ...], sharpest: float) -> CourseLine:
     """A line with turns between the passages; through short passages it goes on turning."""
     turns: list[Turn] = []
-    for before, after in zip(passages, passages[1:], strict=False):
+    for before, after in pairwise(passages):
         begin = before.end if before.long else before.middle
         end = after.begin if after.long else after.middle
         most = min(sharpest, (end - begin) / (1.5 * _SHARPEST))

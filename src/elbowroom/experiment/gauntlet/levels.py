@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from elbowroom.errors import InputError
 
 # What a passage asks of the body, by the groups that must leave their natural motion.
-ONE_ARM, BOTH_ARMS, BEND, BEND_ARMS, TWIST_ARMS, BEND_TWIST = (
+ONE_ARM, BOTH_ARMS, BEND, TWIST, BEND_ARMS, TWIST_ARMS, BEND_TWIST = (
     "one arm",
     "both arms",
     "bend",
+    "twist",
     "bend, arms",
     "twist, arms",
     "bend, twist, arms",
@@ -33,8 +34,8 @@ class Level:
 
 _LONG = (3.2, 3.8)
 _SIMPLE = (ONE_ARM, BOTH_ARMS, BEND)
-_MIXED = (*_SIMPLE, BEND_ARMS, TWIST_ARMS)
-_HARD = (BOTH_ARMS, BEND_ARMS, TWIST_ARMS, BEND_TWIST)
+_MIXED = (*_SIMPLE, TWIST, BEND_ARMS, TWIST_ARMS)
+_HARD = (BOTH_ARMS, TWIST, BEND_ARMS, TWIST_ARMS, BEND_TWIST)
 
 LEVELS = {
     level.number: level

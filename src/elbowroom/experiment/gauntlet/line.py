@@ -68,12 +68,14 @@ class CourseLine:
         steps = _STEP * np.stack([np.sin(middles), np.cos(middles)], axis=1)
         points = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
         points += np.array([0.0, first])  # the line is straight before the origin
-        return first + _STEP * np.arange(count + 1), points
+        way: Floats = first + _STEP * np.arange(count + 1, dtype=np.float64)
+        return way, points
 
     def points(self, s: ArrayLike) -> Floats:
         """Points (..., 2), x and z."""
         way, points = self._table
-        return np.stack([np.interp(s, way, points[:, 0]), np.interp(s, way, points[:, 1])], axis=-1)
+        place = np.asarray(s, np.float64)
+        return np.stack([np.interp(place, way, points[:, 0]), np.interp(place, way, points[:, 1])], axis=-1)
 
     def nearest(self, x: float, z: float, around: float, reach: float = 1.0) -> float:
         """The way `s` of the point of the line nearest to (x, z), looked for within `reach` of `around`."""

@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.dof import DofGroup, clamp
 from elbowroom.control.canned import standing_posture
 from elbowroom.experiment.gauntlet import levels
-from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
+from elbowroom.experiment.gauntlet.draw import GRAIN, Draw, Range
 from elbowroom.experiment.gauntlet.line import smoothstep
 from elbowroom.experiment.gauntlet.self_clearance import SelfClearance
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED, HumanSpeeds
 
 Floats = NDArray[np.float64]
+
+ArmRanges = tuple[Range, Range, Range, Range]
 
 WAIST, LEFT, RIGHT = slice(0, 2), slice(2, 6), slice(6, 10)  # columns of an upper body (10,)
 
@@ -22,18 +24,29 @@ _TWISTED = (0.50, 0.78)
 _LITTLE = (-0.08, 0.08)  # what a group does that is not asked
 _AWAY = (0.0, 0.35)  # abduction of an arm that is not asked: a bent or twisted trunk takes it along
 _DRIFT = (-0.10, 0.10)  # change of an asked component during a passage
-# Ranges of flexion, abduction, internal rotation, elbow: of whatever an arm does in front of and beside the body; raised
-# ahead, raised to the side, folded before the chest.
+# Ranges of flexion, abduction, internal rotation, elbow: whatever an arm does in front of and beside the body; raised
+# ahead; raised to the side; folded before the chest; and how the arms make a twisted body slim: the one on the side to
+# which the trunk turns hangs a little back, the other a little ahead.
 _ANY_ARM = ((-0.70, 2.60), (-0.40, 2.40), (-1.20, 1.00), (0.0, 2.40))
 _RAISED_ARM = ((0.90, 2.60), (-0.40, 0.60), (-0.90, 0.90), (0.0, 2.20))
 _ASIDE_ARM = ((-0.40, 1.00), (0.90, 2.20), (-1.20, 0.90), (0.0, 2.20))
 _FOLDED_ARM = ((0.10, 1.20), (-0.45, 0.15), (0.0, 1.10), (0.9, 2.45))
-_NARROW_ARMS = (_FOLDED_ARM, _FOLDED_ARM, _RAISED_ARM, _ANY_ARM)
+_BACK_ARM = ((-0.50, 0.00), (-0.20, 0.15), (-0.30, 0.90), (0.0, 0.35))
+_AHEAD_ARM = ((0.00, 0.35), (-0.30, 0.00), (0.00, 0.90), (0.0, 0.90))
 _FREE_ARMS = (_RAISED_ARM, _ASIDE_ARM, _FOLDED_ARM, _ANY_ARM)
+_NARROW_ARMS = (_FOLDED_ARM, _BACK_ARM, _RAISED_ARM, _ANY_ARM)
+_ARMS = {  # what arms do in a passage that asks for both
+    levels.BOTH_ARMS: _FREE_ARMS,
+    levels.BEND_ARMS: _FREE_ARMS,
+    levels.TWIST_ARMS: _NARROW_ARMS,
+    levels.BEND_TWIST: _NARROW_ARMS,
+}
 
 _POSTURES = 60  # draws for one passage
+_DRIFTS = 6  # draws for the end of one
+_STEPS = 24  # poses that are checked for a draw: half on the way to it, half in it
 _TRANSITION_STEP = 0.03  # metres between the checked moments of a motion
-_APPROACH = 1.6  # metres before the first passage where the motion begins, and after the last where it ends
+_APPROACH = 1.6  # metres before the first passage where the motion begins; after the last it stays as it is
 
 
 @dataclass(frozen=True)
@@ -79,8 +92,8 @@ def draw_motion(
         if held is None:
             return None
         way += [passage.begin, passage.end]
-        postures += [held, _drifted(draw, held, hanging, farthest(speeds, passage.end - passage.begin))]
-    motion = BodyMotion(np.array([*way, way[-1] + _APPROACH]), np.array([*postures, hanging]))
+        postures += [held, _drifted(draw, held, hanging, check, farthest(speeds, passage.end - passage.begin))]
+    motion = BodyMotion(np.array(way), np.array(postures))
     return motion if _is_clear(motion, check) else None
 
 
@@ -98,8 +111,8 @@ def _posture(
     """A posture that can be reached in time, by a move without collision with itself."""
     for _ in range(_POSTURES):
         wanted = _limited(before, _asked(draw, passage, hanging), reach)
-        steps = before + np.linspace(0.0, 1.0, 12)[:, None] * (wanted - before)
-        if check.clear(np.zeros((len(steps), 7)), steps).all():
+        steps = before + np.minimum(np.arange(_STEPS) / 12.0, 1.0)[:, None] * (wanted - before)
+        if check.clear(_walking(_STEPS), steps).all():
             return wanted
     return None
 
@@ -113,25 +126,30 @@ def _asked(draw: Draw, passage: Passage, hanging: Floats) -> Floats:
         posture[0] = draw.between(_BENT)
     if asks == levels.BEND_TWIST:
         posture[0] = draw.between(_LEANING)
-    if asks in (levels.TWIST_ARMS, levels.BEND_TWIST):
+    if asks in (levels.TWIST, levels.TWIST_ARMS, levels.BEND_TWIST):
         posture[1] = passage.side * draw.between(_TWISTED)
-    narrow = asks in (levels.TWIST_ARMS, levels.BEND_TWIST)
-    if asks in (levels.BOTH_ARMS, levels.BEND_ARMS, levels.TWIST_ARMS, levels.BEND_TWIST):
-        posture[LEFT], posture[RIGHT] = _arm(draw, narrow), _arm(draw, narrow)
+    if asks in _ARMS:
+        posture[LEFT], posture[RIGHT] = _arm(draw, _ARMS[asks]), _arm(draw, _ARMS[asks])
+    near, other = (LEFT, RIGHT) if passage.side > 0 else (RIGHT, LEFT)
+    if asks == levels.TWIST:
+        posture[near], posture[other] = _arm(draw, (_BACK_ARM,)), _arm(draw, (_AHEAD_ARM,))
     if asks == levels.ONE_ARM:
-        posture[LEFT if passage.side > 0 else RIGHT] = _arm(draw, narrow)
+        posture[near] = _arm(draw, _FREE_ARMS)
     return posture
 
 
-def _arm(draw: Draw, narrow: bool) -> Floats:
-    spans = draw.one_of(_NARROW_ARMS if narrow else _FREE_ARMS)
-    return np.array([draw.between(span) for span in spans])
+def _arm(draw: Draw, kinds: tuple[ArmRanges, ...]) -> Floats:
+    return np.array([draw.between(span) for span in draw.one_of(kinds)])
 
 
-def _drifted(draw: Draw, held: Floats, hanging: Floats, reach: Floats) -> Floats:
-    """The posture at the end of a passage: a little further on in what differs from hanging."""
-    drift = np.array([draw.between(_DRIFT) for _ in held])
-    return _limited(held, held + np.where(np.abs(held - hanging) > 0.2, drift, 0.0), reach)
+def _drifted(draw: Draw, held: Floats, hanging: Floats, check: SelfClearance, reach: Floats) -> Floats:
+    """The posture at the end of a passage: a little further on in what differs from hanging, if there is room."""
+    for _ in range(_DRIFTS):
+        drift = np.array([draw.between(_DRIFT) for _ in held])
+        moved = _limited(held, held + np.where(np.abs(held - hanging) > 0.2, drift, 0.0), reach)
+        if check.clear(_walking(_STEPS), np.tile(moved, (_STEPS, 1))).all():
+            return moved
+    return held
 
 
 def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
@@ -147,8 +165,13 @@ def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
 
 
 def _is_clear(motion: BodyMotion, check: SelfClearance) -> bool:
-    """Whether the motion never runs into itself, at any phase of the stride near a checked moment."""
+    """Whether the motion never runs into itself."""
     way = np.arange(motion.way[0], motion.way[-1], _TRANSITION_STEP)
-    roots = np.zeros((len(way), 7))
-    roots[:, 3], roots[:, 6] = WALK_SPEED, 0.37 * np.arange(len(way))
-    return bool(check.clear(roots, motion.at(way)).all())
+    return bool(check.clear(_walking(len(way)), motion.at(way)).all())
+
+
+def _walking(count: int) -> Floats:
+    """Root states (count, 7) of a walk, in phases that soon have been all over the stride."""
+    roots = np.zeros((count, 7))
+    roots[:, 3], roots[:, 6] = WALK_SPEED, 0.37 * np.arange(count)
+    return roots

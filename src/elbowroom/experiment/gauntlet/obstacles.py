@@ -46,10 +46,9 @@ def propose(draw: Draw, passage: Passage, first: bool) -> tuple[Proposal, ...]:
 
 
 def _from_side(
-    draw: Draw, passage: Passage, name: str, side: int, size: Offset, height: float, yaw: float, ahead: float
+    passage: Passage, name: str, side: int, size: Offset, height: float, yaw: float, ahead: float
 ) -> Proposal:
     """A box that comes from one side at a height (of its centre)."""
-    del draw
     begin = (side * (_FAR + 0.5 * size[0]), height, ahead)
     word = "left" if side > 0 else "right"
     return Proposal(f"{name}, {word}", passage.middle, size, (0.0, yaw, 0.0), begin, (-float(side), 0.0, 0.0))
@@ -69,7 +68,7 @@ def _post(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     thick, deep = draw.between((0.06, 0.14)), draw.between((0.06, 0.14))
     tall = draw.between((0.7, 1.1) if passage.asks in _ARMS_ALONE else (1.2, 2.2))
     side, ahead, yaw = _sides(passage, draw), _ahead(draw, passage), draw.between((-0.7, 0.7))
-    return (_from_side(draw, passage, "post", side, (thick, tall, deep), 0.5 * tall, yaw, ahead),)
+    return (_from_side(passage, "post", side, (thick, tall, deep), 0.5 * tall, yaw, ahead),)
 
 
 def _board(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -84,7 +83,7 @@ def _one_board(draw: Draw, passage: Passage, name: str, side: int, ahead: float)
     tall = draw.between((0.6 * (high - low), high - low))
     centre = round(draw.between((low, high - tall)) + 0.5 * tall, 3)
     size = (draw.between((0.3, 0.6)), tall, draw.between((0.04, 0.10)))
-    return _from_side(draw, passage, name, side, size, centre, draw.between((-0.3, 0.3)), ahead)
+    return _from_side(passage, name, side, size, centre, draw.between((-0.3, 0.3)), ahead)
 
 
 def _gap(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -94,11 +93,12 @@ def _gap(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
 
 
 def _doorway(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
-    """Two jambs as high as a door, nearer to each other than the shoulders are wide."""
-    size = (draw.between((0.25, 0.45)), draw.between((1.9, 2.2)), draw.between((0.06, 0.14)))
+    """Two jambs, nearer to each other than the shoulders are wide; legs need more, so some begin above the hips."""
+    low, top = draw.one_of((0.0, 1.08)), draw.between((1.9, 2.2))
+    size = (draw.between((0.25, 0.45)), round(top - low, 3), draw.between((0.06, 0.14)))
     ahead, yaw = _ahead(draw, passage), draw.between((-0.15, 0.15))
     return tuple(
-        _from_side(draw, passage, "door jamb", side, size, round(0.5 * size[1], 3), yaw, ahead) for side in (1, -1)
+        _from_side(passage, "door jamb", side, size, round(0.5 * (low + top), 3), yaw, ahead) for side in (1, -1)
     )
 
 
@@ -136,7 +136,7 @@ def _one_wall(draw: Draw, passage: Passage, side: int, length: float) -> Proposa
     """A rail or shelf along the way, at the height of hands, elbows or shoulders."""
     low, high = draw.one_of(_LOW_BOARDS if passage.asks in _ARMS_ALONE else _RAILS)
     size = (draw.between((0.05, 0.30)), round(high - low, 3), length)
-    return _from_side(draw, passage, "rail", side, size, round(0.5 * (low + high), 3), 0.0, 0.0)
+    return _from_side(passage, "rail", side, size, round(0.5 * (low + high), 3), 0.0, 0.0)
 
 
 def _corridor(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -156,6 +156,7 @@ _SHORT: dict[str, tuple[Kind, ...]] = {
     levels.ONE_ARM: (_post, _board, _tilted),
     levels.BOTH_ARMS: (_gap, _gap, _board, _post, _tilted),
     levels.BEND: (_beam, _beam, _tilted),
+    levels.TWIST: (_doorway, _doorway, _doorway, _gap),
     levels.BEND_ARMS: (_beam, _tilted, _board, _gap),
     levels.TWIST_ARMS: (_gap, _doorway, _gap, _tilted, _board),
     levels.BEND_TWIST: (_beam, _gap, _doorway, _tilted, _board),
@@ -164,6 +165,7 @@ _LONG: dict[str, tuple[Kind, ...]] = {
     levels.ONE_ARM: (_wall,),
     levels.BOTH_ARMS: (_corridor, _wall),
     levels.BEND: (_ceiling,),
+    levels.TWIST: (_corridor, _wall),
     levels.BEND_ARMS: (_ceiling, _wall),
     levels.TWIST_ARMS: (_corridor, _wall),
     levels.BEND_TWIST: (_ceiling, _corridor, _wall),

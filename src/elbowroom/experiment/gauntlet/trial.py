@@ -26,6 +26,16 @@ class TrialSettings:
 
 
 @dataclass(frozen=True)
+class JudgeFigures:
+    """What the judge, another collision library, found in the shown motion, 240 poses a second."""
+
+    poses: int
+    touching: int  # of these
+    deepest: float  # metres, 0 where nothing touches
+    least_clearance: float | None  # metres
+
+
+@dataclass(frozen=True)
 class TrialResult:
     """How a walk through a course went."""
 
@@ -42,7 +52,8 @@ class TrialResult:
     limit: float  # seconds that the user had
     frames: int
     collision_checks: int
-    plan_ms: tuple[float, ...]  # what each planning call took
+    plan_ms: tuple[float, ...]  # what each step with a planning call took
+    judge: JudgeFigures | None = None  # None where the judge was not asked
 
 
 def controller_on(humanoid: Humanoid, course: Course, settings: TrialSettings) -> Controller:

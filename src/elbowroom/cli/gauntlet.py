@@ -1,0 +1,172 @@
+"""`elbowroom gauntlet`: random courses that are feasible by construction."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli.output import json_text, print_json, print_row, progress_bar
+from elbowroom.cli.time_left import time_left_bar
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.gauntlet.course import Course
+    from elbowroom.experiment.gauntlet.runner import GauntletSettings
+    from elbowroom.experiment.gauntlet.summary import GauntletSummary
+    from elbowroom.experiment.gauntlet.trial import TrialResult
+
+EXAMPLES = (
+    "Examples:  elbowroom gauntlet --level 3 --courses 50  |  elbowroom gauntlet --level 5 --show 2  |  "
+    "elbowroom gauntlet --level 4 --save 7 course.json"
+)
+FELL_SHORT = 1
+
+
+def gauntlet(
+    *,
+    level: Annotated[int, typer.Option(help="Difficulty, 1 to 5.")] = 1,
+    courses: Annotated[int, typer.Option(help="How many courses; course K has the seed S + K.")] = 20,
+    seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
+    planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
+    queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
+    jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
+    judge: Annotated[bool, typer.Option("--judge", help="Have every walk judged by another library, coal.")] = False,
+    save: Annotated[
+        tuple[int, Path] | None, typer.Option(metavar="K FILE", help="Write course K as a scene file instead.")
+    ] = None,
+    show: Annotated[int | None, typer.Option(metavar="K", help="Open course K on the page instead.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Walk random courses, each with a proof that it can be crossed, and count.
+
+    Crossed: through in time; straight: and never stuck; stuck: at least once; stopped: not through, but never touching.
+    Exit code 0: all crossed and nothing touched, 1: not.
+    """
+    from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
+    from elbowroom.experiment.gauntlet.summary import GauntletSummary
+    from elbowroom.experiment.gauntlet.trial import TrialSettings
+    from elbowroom.experiment.parallel import usable_cores
+
+    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge)
+    if save is not None:
+        _save(_course(settings, save[0], quiet), save[1])
+        return
+    if show is not None:
+        _show(_course(settings, show, quiet), settings)
+        return
+    processes = min(courses, usable_cores()) if jobs is None else jobs
+    with time_left_bar("Courses", quiet) as move:
+        results = run_gauntlet(settings, processes, out, move)
+    summary = GauntletSummary.of(results)
+    document = _document(settings, processes, summary)
+    if out is not None:
+        _write(out / f"gauntlet-{level}.json", json_text(document | _trials(results)) + "\n")
+    if json:
+        print_json(document | _trials(results))
+    else:
+        _print(settings, summary)
+    good = summary.crossed == summary.courses and not summary.touching_frames and not summary.judged_touching
+    raise typer.Exit(0 if good else FELL_SHORT)
+
+
+def _course(settings: "GauntletSettings", k: int, quiet: bool) -> "Course":
+    from elbowroom.experiment.gauntlet.course import make_course
+
+    if k < 0:
+        raise InputError(f"course {k}: courses are counted from 0")
+    with progress_bar("Making the course", None, quiet):
+        return make_course(settings.level, settings.seed + k)
+
+
+def _save(course: "Course", path: Path) -> None:
+    _write(path, json_text(course.scene.to_dict()) + "\n")
+    print(f"{path}: {course.scene.title}")
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, "utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def _show(course: "Course", settings: "GauntletSettings") -> None:
+    from elbowroom.cli.play import play
+
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"{course.name}.json"
+        _write(path, json_text(course.scene.to_dict()))
+        play(
+            host="127.0.0.1",
+            port=8765,
+            open_page=True,
+            scene=str(path),
+            avatar=None,
+            planner=settings.trial.planner,
+            queue=settings.trial.queue_size,
+        )
+
+
+def _document(settings: "GauntletSettings", jobs: int, summary: "GauntletSummary") -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from elbowroom.experiment.gauntlet.levels import level_of
+    from elbowroom.experiment.gauntlet.runner import identity
+    from elbowroom.experiment.gauntlet.speeds import HumanSpeeds
+    from elbowroom.experiment.statistics import wilson
+
+    counts = asdict(summary)
+    times = {name: counts.pop(f"plan_ms_{name}") for name in ("p50", "p99", "max")}
+    rates = {name: list(wilson(counts[name], summary.courses)) for name in ("crossed", "straight", "stuck", "stopped")}
+    return {
+        **counts,
+        "plan_ms": times,
+        "intervals_95": rates,
+        "settings": {
+            "level": asdict(level_of(settings.level)),
+            "speeds": asdict(HumanSpeeds()),
+            "courses": settings.courses,
+            "seed": settings.seed,
+            "jobs": jobs,
+            **identity(settings),
+        },
+    }
+
+
+def _trials(results: list["TrialResult"]) -> dict[str, Any]:
+    """Each walk without the list of its planning times."""
+    from dataclasses import asdict
+
+    return {"trials": [asdict(result) | {"plan_ms": max(result.plan_ms, default=0.0)} for result in results]}
+
+
+def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
+    from elbowroom.experiment.gauntlet.levels import level_of
+
+    def share(count: int) -> str:
+        from elbowroom.experiment.statistics import wilson
+
+        low, high = wilson(count, summary.courses)
+        return f"{count} of {summary.courses}   {100 * low:5.1f} to {100 * high:5.1f} %"
+
+    rows = {
+        "crossed": share(summary.crossed),
+        "straight": share(summary.straight),
+        "stuck at least once": f"{share(summary.stuck)}",
+        "stopped short, touching nothing": share(summary.stopped),
+        "times stuck": str(summary.stuck_times),
+        "touching frames": f"{summary.touching_frames} of {summary.frames}",
+        "least clearance": f"{1e3 * summary.least_clearance:.1f} mm",
+        "planning, ms: median, 99 %, worst": (
+            f"{summary.plan_ms_p50:.2f}, {summary.plan_ms_p99:.2f}, {summary.plan_ms_max:.2f}"
+        ),
+    }
+    if summary.judged_poses is not None:
+        rows["touching poses, by the judge"] = f"{summary.judged_touching} of {summary.judged_poses}"
+    last = settings.seed + settings.courses - 1
+    about = f"level {settings.level} ({100 * level_of(settings.level).margin:.0f} cm), seeds {settings.seed} to {last}"
+    trial = settings.trial
+    print_row(f"Gauntlet, {about}, {trial.planner}, |Q| {trial.queue_size}; 95 % intervals", rows)

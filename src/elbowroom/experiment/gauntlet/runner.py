@@ -1,0 +1,94 @@
+"""Many courses walked, in parallel and resumable."""
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from elbowroom import __version__
+from elbowroom.control.recording import this_machine
+from elbowroom.control.settings import ControlSettings
+from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.course import LARGEST_SEED
+from elbowroom.experiment.gauntlet.levels import level_of
+from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
+from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
+from elbowroom.experiment.machine import machine_kind, program_digest
+from elbowroom.experiment.parallel import run_all
+from elbowroom.experiment.trial_log import TrialLog, digest
+from elbowroom.planning.planner import PLANNERS
+
+MOST_COURSES = 1_000_000
+
+Progress = Callable[[int, int], None]  # courses done, courses in all
+
+
+@dataclass(frozen=True)
+class GauntletSettings:
+    """Which courses are walked, and how. Course k has the seed `seed + k`."""
+
+    level: int
+    courses: int = 20
+    seed: int = 0
+    trial: TrialSettings = field(default_factory=TrialSettings)
+    judge: bool = False  # whether another library judges every walk
+
+    def __post_init__(self) -> None:
+        level_of(self.level)
+        if not 1 <= self.courses <= MOST_COURSES:
+            raise InputError(f"courses: {self.courses} is not a whole number from 1 to {MOST_COURSES}")
+        if not 0 <= self.seed <= LARGEST_SEED + 1 - self.courses:
+            raise InputError(f"seed: {self.seed} is not a whole number from 0 to {LARGEST_SEED + 1 - self.courses}")
+        if self.trial.planner not in PLANNERS:
+            raise InputError(f"planner: {self.trial.planner!r} is not one of {', '.join(PLANNERS)}")
+        ControlSettings(queue_size=self.trial.queue_size)
+
+    def tasks(self) -> list[CourseTask]:
+        """A task for every course."""
+        return [CourseTask(self.level, self.seed + k, self.trial, self.judge) for k in range(self.courses)]
+
+
+def identity(settings: GauntletSettings) -> dict[str, Any]:
+    """All on which the outcome of a walk depends, besides the course's level and seed."""
+    return {
+        "experiment": "gauntlet",
+        "version": __version__,
+        "program": program_digest(),
+        "generator": _generator_digest(),
+        **asdict(settings.trial),
+        "interval": ControlSettings.interval,
+        "judge": settings.judge,
+        "machine": this_machine() | {"kind": machine_kind()},
+    }
+
+
+def run_gauntlet(
+    settings: GauntletSettings, jobs: int = 1, folder: Path | None = None, progress: Progress | None = None
+) -> list[TrialResult]:
+    """Walk all courses and give the results in their order.
+
+    With a `folder`, every result is kept there at once, and what it holds of an earlier run with the same settings is
+    not walked again. Raises `InputError` for settings out of range and where the folder cannot be used.
+    """
+    tasks = settings.tasks()
+    with nullcontext() if folder is None else TrialLog(folder, identity(settings)) as log:
+        done = {} if log is None else {task.key: log.done[task.key] for task in tasks if task.key in log.done}
+        missing = [task for task in tasks if task.key not in done]
+        if progress is not None:
+            progress(len(done), len(tasks))
+        for place, record in run_all(missing, jobs):
+            done[missing[place].key] = record
+            if log is not None:
+                log.append(missing[place].key, record)
+            if progress is not None:
+                progress(len(done), len(tasks))
+    return [result_of(done[task.key]) for task in tasks]
+
+
+def _generator_digest() -> str:
+    """A hash of the code that makes and walks courses."""
+    folder = files("elbowroom.experiment.gauntlet")
+    sources = {entry.name: entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".py")}
+    return digest(sources)

@@ -1,0 +1,77 @@
+"""One course walked as a task that another process can do."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.frame import Frame
+from elbowroom.experiment.crossing import DT, warm_up
+from elbowroom.experiment.gauntlet.course import Course, CourseMaker
+from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.planning.command import Command
+
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class CourseTask:
+    """Make a course, walk it, and have the walk judged if asked to."""
+
+    level: int
+    seed: int
+    settings: TrialSettings
+    judge: bool = False
+
+    @property
+    def key(self) -> str:
+        """What tells this task from all others with the same settings."""
+        return f"{self.level}-{self.seed}"
+
+    def run(self) -> Record:
+        """The result as a plain record, see `result_of`."""
+        humanoid, maker = _opened()
+        course = maker.course(self.level, self.seed)
+        controller = controller_on(humanoid, course, self.settings)
+        warm_up(controller)
+        shown: list[Frame] = []
+
+        def listen(command: Command, dt: float, frame: Frame) -> None:
+            del command, dt
+            shown.append(frame)
+
+        result = walk_course(controller, course, listen if self.judge else None)
+        if self.judge and shown:
+            result = replace(result, judge=_judged(humanoid, course, shown))
+        return asdict(result)
+
+
+def result_of(record: Mapping[str, Any]) -> TrialResult:
+    """The result that a record holds; raises TypeError or KeyError where it holds something else."""
+    judge = record["judge"]
+    figures = None if judge is None else JudgeFigures(**judge)
+    return TrialResult(**{**record, "plan_ms": tuple(record["plan_ms"]), "judge": figures})
+
+
+@lru_cache(maxsize=1)
+def _opened() -> tuple[Humanoid, CourseMaker]:
+    """The stock avatar and the maker of its courses, once in a process."""
+    humanoid = Humanoid.default()
+    return humanoid, CourseMaker.of(humanoid)
+
+
+def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigures:
+    """What another library says about the capsules of all that was shown."""
+    from elbowroom.experiment.judge.motion import ShownMotion
+    from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+
+    q, roots = np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown])
+    motion = ShownMotion.at_rate(q, roots, 1.0 / DT)
+    verdict = judge(motion, humanoid, course.scene, JudgeSettings(mesh=False))
+    least = verdict.capsules.least
+    return JudgeFigures(
+        verdict.poses, verdict.capsules.touching, verdict.capsules.deepest, None if least is None else least.clearance
+    )
