@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.interpolation import hermite, monotone_tangents
+from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.root_path import RootPath, interpolate_root
 
 Floats = NDArray[np.float64]

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
-from elbowroom.control.interpolation import hermite, monotone_tangents
+from elbowroom.planning.interpolation import hermite, monotone_tangents
 
 
 def random_keys(seed: int, count: int, size: int = 4) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
