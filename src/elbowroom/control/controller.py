@@ -12,7 +12,7 @@ from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.canned import canned_walk, standing_posture
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.rehearsal import Rehearsal, frozen_motion
+from elbowroom.control.rehearsal import Rehearsal, frozen_motion, partial_motions, standing_path
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -162,26 +162,32 @@ class Controller:
         self._command, self._plan_report, self._next = command, report, Phase.PLAY
         self._resting = False
         self._queue.start_count()
-        motions = [local.configurations] if report.found else []
+        motion = local.configurations if report.found else None
         if self._held and self._assist:
-            motions = self._ways_out(path, motions)
-        self._blocked = not motions and self._queue.empty
-        if motions:
-            self._queue.refill(path, motions[0], self._shown)
-            self._resting = command.idle and self._stands_still(path, motions[0])
+            path, motion = self._way_out(path, motion)
+        self._blocked = motion is None and self._queue.empty
+        if motion is not None:
+            self._queue.refill(path, motion, self._shown)
+            self._resting = command.idle and self._stands_still(path, motion)
 
-    def _ways_out(self, path: RootPath, motions: list[Floats]) -> list[Floats]:
-        """Of the motions that could follow a contact, those that do not touch again within the first key interval.
+    def _way_out(self, path: RootPath, motion: Floats | None) -> tuple[RootPath, Floats | None]:
+        """What can follow a contact: a motion that does not touch again within the first key interval, if there is one.
 
         Hard against an obstacle nearly every move of a limb touches it. So to keep the pose is a way out too: where the
         plan's way begins too close by, or, without a plan, where the root leads away: whoever walked in can walk out.
+        Where even that touches, the root stands and the limbs free themselves, together or one before the other.
         """
         rehearsal = Rehearsal(self._queue, self._shown, self._stance, self._check)
-        if any(rehearsal.is_playable(path, motion) for motion in motions):
-            return motions
+        if motion is not None and rehearsal.is_playable(path, motion):
+            return path, motion
         frozen = frozen_motion(path, self._shown.upper)
-        useful = bool(motions) or rehearsal.leads_away(path, frozen, self._clearance)
-        return [frozen] if useful and rehearsal.is_playable(path, frozen) else []
+        useful = motion is not None or rehearsal.leads_away(path, frozen, self._clearance)
+        if useful and rehearsal.is_playable(path, frozen):
+            return path, frozen
+        standing = standing_path(path, self._shown.root)
+        freed = self._planner.plan(standing, self._shown.upper, self._rng).configurations
+        parts = partial_motions(freed, self._shown.upper) if len(freed) else []
+        return standing, next((part for part in parts if rehearsal.is_playable(standing, part)), None)
 
     def _planning_start(self, command: Command) -> tuple[float, Floats, Floats]:
         """Time, root state and upper body from which to plan.

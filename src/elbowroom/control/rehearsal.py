@@ -1,10 +1,12 @@
 """Playing a motion in advance: how clear of everything it stays."""
 
 import copy
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.planning.root_path import RootPath
@@ -13,6 +15,7 @@ Floats = NDArray[np.float64]
 
 _SPACING = 1 / 60  # seconds between rehearsed poses
 _CLOSER = 0.002  # metres: the hips' bob brings a kept pose closer for a moment
+_MOVES = 0.02  # radians: less is no motion
 _HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 
 
@@ -42,6 +45,32 @@ class Rehearsal:
             root[3:6] += self._stance
             found.append(self._check.clearance(root, upper))
         return np.array(found)
+
+
+def standing_path(path: RootPath, root: Floats) -> RootPath:
+    """A path with the key times of `path` on which the root stands at `root` (7,)."""
+    still = root.copy()
+    still[3:6] = 0.0
+    return RootPath(path.start_time, path.interval, np.tile(still, (len(path.states), 1)))
+
+
+def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
+    """The motion (n+1, 10), and the same with some groups kept as in `upper`: one limb frees itself before another."""
+    columns = {group: _columns(group) for group in LOCAL_GROUPS}
+    found = []
+    for count in range(len(LOCAL_GROUPS)):
+        for kept in combinations(LOCAL_GROUPS, count):
+            part = motion.copy()
+            for group in kept:
+                part[:, columns[group]] = upper[columns[group]]
+            if np.abs(part - upper).max() > _MOVES:
+                found.append(part)
+    return found
+
+
+def _columns(group: DofGroup) -> slice:
+    first = DofGroup.WAIST.value.start
+    return slice(group.value.start - first, group.value.stop - first)
 
 
 def frozen_motion(path: RootPath, upper: Floats) -> Floats:
