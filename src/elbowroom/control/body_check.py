@@ -5,10 +5,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.world.clearance import clearance_of
+from elbowroom.world.clearance import clearance, clearance_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
+
+_BETWEEN = np.array([0.25, 0.5, 0.75])  # at 60 frames a second: 240 poses
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
@@ -29,9 +31,23 @@ class BodyCheck:
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
-        near, table = root.copy(), self._table.copy()
-        near[:2] = 0.0
-        table[:, 0] -= root[0]
-        table[:, 2] -= root[1]
-        segments = posture_capsules(self._model, configuration(near, upper)[None], near[None])
-        return clearance_of(segments[:, :, 0], self._radii, table)
+        segments = posture_capsules(self._model, configuration(root, upper)[None], self._near(root, root)[None])
+        return clearance_of(segments[:, :, 0], self._radii, self._around(root))
+
+    def clearance_between(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> float:
+        """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants."""
+        root = roots[0] + _BETWEEN[:, None] * (roots[1] - roots[0])
+        upper = uppers[0] + _BETWEEN[:, None] * (uppers[1] - uppers[0])
+        segments = posture_capsules(self._model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
+        return float(clearance(segments, self._radii, self._around(roots[0])).min())
+
+    def _near(self, roots: Floats, origin: Floats) -> Floats:
+        near = roots.copy()
+        near[..., :2] -= origin[:2]
+        return near
+
+    def _around(self, origin: Floats) -> Floats:
+        table = self._table.copy()
+        table[:, 0] -= origin[0]
+        table[:, 2] -= origin[1]
+        return table

@@ -28,6 +28,7 @@ LONGEST_STEP = 60.0  # seconds
 _SETTLE = 0.06  # seconds: time constant with which the legs come to a stand where the avatar is held, or lead over
 _STILL = 0.02  # m/s and rad/s: slower is standing
 _SAME = 1e-6  # radians
+_FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 
 
 class Controller:
@@ -221,7 +222,7 @@ class Controller:
         for stance in self._stances(dt):
             posed = _in_stance(playback, stance)
             clearance = self._check.clearance(posed.root, posed.upper)
-            if clearance >= 0.0 or not self._assist:
+            if not self._assist or self._is_free(posed, clearance):
                 self._held, self._blocked, self._stance = False, False, stance
                 self._show(posed, clearance)
                 break
@@ -229,6 +230,13 @@ class Controller:
             self._hold(dt)
         if self._queue.empty:
             self._next = Phase.RESET
+
+    def _is_free(self, posed: Playback, clearance: float) -> bool:
+        """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
+        if clearance < 0.0 or min(clearance, self._clearance) > _FAR:
+            return clearance >= 0.0
+        roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
+        return self._check.clearance_between(roots, uppers) >= 0.0
 
     def _stances(self, dt: float) -> list[Floats]:
         """What may be left of the stance in which the legs were held: less than before; all, where that touches."""
@@ -245,7 +253,7 @@ class Controller:
         root[3:6][np.abs(root[3:6]) < _STILL] = 0.0
         still = Playback(root, self._shown.upper, np.zeros_like(self._shown.upper))
         clearance = self._check.clearance(still.root, still.upper)
-        if clearance < 0.0 and self._assist:
+        if self._assist and not self._is_free(still, clearance):
             still, clearance = still._replace(root=self._shown.root), self._clearance
         self._show(still, clearance)
 
