@@ -150,12 +150,12 @@ def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
         from elbowroom.experiment.statistics import wilson
 
         low, high = wilson(count, summary.courses)
-        return f"{count} of {summary.courses}   {100 * low:5.1f} to {100 * high:5.1f} %"
+        return f"{count} of {summary.courses}   95 %: {100 * low:5.1f} to {100 * high:5.1f} %"
 
     rows = {
         "crossed": share(summary.crossed),
         "straight": share(summary.straight),
-        "stuck at least once": f"{share(summary.stuck)}",
+        "stuck at least once": share(summary.stuck),
         "stopped short, touching nothing": share(summary.stopped),
         "times stuck": str(summary.stuck_times),
         "touching frames": f"{summary.touching_frames} of {summary.frames}",
@@ -169,4 +169,4 @@ def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
     last = settings.seed + settings.courses - 1
     about = f"level {settings.level} ({100 * level_of(settings.level).margin:.0f} cm), seeds {settings.seed} to {last}"
     trial = settings.trial
-    print_row(f"Gauntlet, {about}, {trial.planner}, |Q| {trial.queue_size}; 95 % intervals", rows)
+    print_row(f"Gauntlet, {about}, {trial.planner}, |Q| {trial.queue_size}", rows)

@@ -136,10 +136,13 @@ def _passages(draw: Draw, level: Level, winding: bool) -> tuple[Passage, ...]:
     count = draw.whole(*level.passages)
     places = list(range(count))
     long = {places.pop(draw.whole(0, len(places) - 1)) for _ in range(level.long_passages)}
+    sure = draw.one_of(places)
     passages: list[Passage] = []
     end = 0.0
     for i in range(count):
         asks, gap = draw.one_of(kinds), _START if i == 0 else draw.between(level.gap)
+        if i == sure and level.surely is not None:
+            asks = level.surely
         begin = round(end + (max(gap, _TO_TWIST) if asks == TWIST else gap), GRAIN)
         end = round(begin + draw.between(level.long_hold if i in long else level.hold), GRAIN)
         passages.append(Passage(begin, end, asks, i in long, draw.sign()))
@@ -160,7 +163,7 @@ def _line(draw: Draw, passages: tuple[Passage, ...], sharpest: float) -> CourseL
 
 def _all_clear(groups: list[list[Placed]], swept: BodyRows, margin: float) -> bool:
     """Whether the certificate keeps its margin from all obstacles on the whole way."""
-    return all(swept.gap(obstacle.boxes().table[0]) >= margin for group in groups for obstacle in group)
+    return all(swept.gap(obstacle.row()) >= margin for group in groups for obstacle in group)
 
 
 def _indices(groups: list[list[Placed]]) -> tuple[tuple[int, ...], ...]:

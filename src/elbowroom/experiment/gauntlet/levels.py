@@ -29,6 +29,7 @@ class Level:
     obstacles: tuple[int, int]  # in a passage, least and most
     long_passages: int  # how many of the passages are long
     long_hold: tuple[float, float]  # length of a long passage
+    surely: str | None  # what one short passage asks at least
     turn: float  # greatest turn of the line between two passages; 0: the course is straight
 
 
@@ -40,11 +41,11 @@ _HARD = (BOTH_ARMS, TWIST, BEND_ARMS, TWIST_ARMS, BEND_TWIST)
 LEVELS = {
     level.number: level
     for level in (
-        Level(1, (2, 3), (1.8, 2.4), (0.4, 0.7), 0.06, _SIMPLE, (1, 1), 0, _LONG, 0.0),
-        Level(2, (3, 4), (1.6, 2.1), (0.4, 0.7), 0.05, _SIMPLE, (1, 2), 0, _LONG, 0.0),
-        Level(3, (4, 5), (1.4, 1.8), (0.4, 0.8), 0.04, _MIXED, (1, 2), 0, _LONG, 0.35),
-        Level(4, (5, 6), (1.2, 1.6), (0.4, 0.9), 0.03, (*_MIXED, BEND_TWIST), (1, 3), 1, _LONG, 0.45),
-        Level(5, (6, 8), (1.0, 1.4), (0.4, 1.0), 0.02, _HARD, (2, 3), 2, _LONG, 0.55),
+        Level(1, (2, 3), (1.8, 2.4), (0.4, 0.7), 0.06, _SIMPLE, (1, 1), 0, _LONG, None, 0.0),
+        Level(2, (3, 4), (1.6, 2.1), (0.4, 0.7), 0.05, _SIMPLE, (1, 2), 0, _LONG, None, 0.0),
+        Level(3, (4, 5), (1.4, 1.8), (0.4, 0.8), 0.04, _MIXED, (1, 2), 0, _LONG, None, 0.35),
+        Level(4, (5, 6), (1.2, 1.6), (0.4, 0.9), 0.03, (*_MIXED, BEND_TWIST), (2, 3), 1, _LONG, BEND_TWIST, 0.45),
+        Level(5, (6, 8), (1.0, 1.4), (0.4, 1.0), 0.02, _HARD, (2, 3), 2, _LONG, BEND_TWIST, 0.55),
     )
 }
 

@@ -67,7 +67,7 @@ class CourseLine:
         middles = self.heading(first + _STEP * (np.arange(count) + 0.5))
         steps = _STEP * np.stack([np.sin(middles), np.cos(middles)], axis=1)
         points = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-        points += np.array([0.0, first])  # the line is straight before the origin
+        points -= points[round(_BEFORE_AND_AFTER / _STEP)]
         way: Floats = first + _STEP * np.arange(count + 1, dtype=np.float64)
         return way, points
 

@@ -19,7 +19,7 @@ ArmRanges = tuple[Range, Range, Range, Range]
 
 WAIST, LEFT, RIGHT = slice(0, 2), slice(2, 6), slice(6, 10)  # columns of an upper body (10,)
 
-_BENT, _LEANING = (0.75, 1.25), (0.45, 0.90)  # forward bend alone, and with a twist
+_BENT, _LEANING = (0.75, 1.25), (0.60, 0.95)  # forward bend alone, and with a twist
 _TWISTED = (0.50, 0.78)
 _LITTLE = (-0.08, 0.08)  # what a group does that is not asked
 _AWAY = (0.0, 0.35)  # abduction of an arm that is not asked: a bent or twisted trunk takes it along

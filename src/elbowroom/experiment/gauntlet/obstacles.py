@@ -37,9 +37,11 @@ class Proposal:
 def propose(draw: Draw, passage: Passage, first: bool) -> tuple[Proposal, ...]:
     """Obstacles that belong together, of a random kind that suits what the passage asks.
 
-    The `first` ones of a long passage are as long as it is.
+    The `first` ones of a long passage are as long as it is; where the body has to bend they come from above.
     """
     kinds = (_LONG if passage.long else _SHORT)[passage.asks]
+    if first and not passage.long:
+        kinds = _FIRST.get(passage.asks, kinds)
     if passage.long and not first:
         kinds += _SHORT[passage.asks]
     return draw.one_of(kinds)(draw, passage)
@@ -169,4 +171,9 @@ _LONG: dict[str, tuple[Kind, ...]] = {
     levels.BEND_ARMS: (_ceiling, _wall),
     levels.TWIST_ARMS: (_corridor, _wall),
     levels.BEND_TWIST: (_ceiling, _corridor, _wall),
+}
+_FIRST: dict[str, tuple[Kind, ...]] = {
+    levels.BEND: (_beam, _beam, _tilted),
+    levels.BEND_ARMS: (_beam,),
+    levels.BEND_TWIST: (_beam,),
 }

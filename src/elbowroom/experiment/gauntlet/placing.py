@@ -13,8 +13,6 @@ from elbowroom.experiment.gauntlet.line import CourseLine
 from elbowroom.experiment.gauntlet.motion import Passage
 from elbowroom.experiment.gauntlet.obstacles import Proposal, propose
 from elbowroom.experiment.gauntlet.sweep import SweptBody
-from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
 
 Floats = NDArray[np.float64]
 
@@ -22,6 +20,7 @@ _REACH = 1.6  # metres of way before and after a passage that its obstacles may 
 _BESIDE = 0.6  # metres of way before and after a passage where the natural walk may touch
 _SIGHT = 3.4  # metres that walkers look ahead: stances there belong to a place before
 _ROUGHLY = 7  # of so many rows one is looked at first
+_ROUGH = 0.08  # metres by which that may lead too far
 _LEG_ROOM = 0.03  # metres that obstacles keep from the stances
 _TOUCHES = 0.005  # metres that the natural walk must get into an obstacle
 _PROPOSALS = 60  # for one passage
@@ -39,17 +38,19 @@ class Placed:
     turn: tuple[float, float, float]  # about X, Y, Z in the order "YXZ", radians
     size: tuple[float, float, float]
 
-    def boxes(self) -> Boxes:
-        """The obstacle alone as boxes."""
-        return Boxes(
-            np.array([self.center]), rotation_of(self.turn)[None], 0.5 * np.array([self.size], dtype=np.float64)
-        )
+    def row(self) -> Floats:
+        """The obstacle as a row (15,) of `Boxes.table`."""
+        return np.concatenate([self.center, _to_box(self.turn).ravel(), 0.5 * np.array(self.size)])
 
 
-def rotation_of(turn: tuple[float, float, float]) -> Floats:
-    """The quaternion of angles about X, Y, Z in the order "YXZ", as scene files have them."""
-    x, y, z = (quaternion.about_axis(axis, angle) for axis, angle in enumerate(turn))
-    return quaternion.multiply(y, quaternion.multiply(x, z))
+def _to_box(turn: tuple[float, float, float]) -> Floats:
+    """The rotation matrix (3, 3) from the world into a box turned by angles about X, Y, Z in the order "YXZ"."""
+    (sx, sy, sz), (cx, cy, cz) = np.sin(turn).tolist(), np.cos(turn).tolist()
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
+    about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
+    about_z = np.array([[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]])
+    to_box: Floats = (about_y @ about_x @ about_z).T
+    return to_box
 
 
 class Keepout(NamedTuple):
@@ -64,7 +65,7 @@ class Keepout(NamedTuple):
         return min(self.certificate.gap(box) - self.margin, self.stances.gap(box) - _LEG_ROOM)
 
     def pushed(self, box: Floats, push: Floats, done: float, most: float) -> float | None:
-        """How far in all the box can be pushed, from `done` metres on; None if it is hindered at once, or never.
+        """How far in all the box can be pushed, from `done` metres on; None if not at all, or farther than `most`.
 
         A box that moves as far as it has slack cannot touch, for the slack shrinks at most as fast as the box moves.
         """
@@ -88,10 +89,10 @@ class Surroundings:
     line: CourseLine
     rough: Keepout  # some of the rows of `fine`: finds quickly what will never do
     fine: Keepout
-    natural: list[BodyRows]  # one for each phase in which a natural walk may come
+    natural: list[BodyRows]  # the natural walk, once for each of eight phases in which it may come
 
     def touched(self, box: Floats) -> bool:
-        """Whether a natural walk runs into the box, in whatever phase it comes."""
+        """Whether every one of the natural walks runs into the box."""
         return all(rows.gap(box) < -_TOUCHES for rows in self.natural)
 
 
@@ -129,8 +130,8 @@ def _is_known(name: str, placed: list[Placed]) -> bool:
 
 def _overlaps(new: Placed, placed: list[Placed]) -> bool:
     """Whether an obstacle is half inside another: the middle of one in the other."""
-    box = new.boxes().table[0]
-    others = [obstacle.boxes().table[0] for obstacle in placed]
+    box = new.row()
+    others = [obstacle.row() for obstacle in placed]
     return any(_holds(box, other[:3]) or _holds(other, box[:3]) for other in others)
 
 
@@ -145,19 +146,20 @@ def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     turn = (proposal.turn[0], round(proposal.turn[1] + heading, GRAIN), proposal.turn[2])
     begin = around.line.local(proposal.way, proposal.begin)
     push = around.line.local(proposal.way, np.add(proposal.begin, proposal.push)) - begin
-    box = Placed(proposal.name, (0.0, 0.0, 0.0), turn, proposal.size).boxes().table[0].copy()
+    box = Placed(proposal.name, (0.0, 0.0, 0.0), turn, proposal.size).row()
     box[:3] = begin
     most = _way_to_line(proposal)
     farthest = around.rough.pushed(box, push, 0.0, most)
     if farthest is None or not around.touched(_moved(box, farthest * push)):
         return None
-    done = around.fine.pushed(box, push, 0.0, most)
+    done = around.fine.pushed(box, push, max(0.0, farthest - _ROUGH), most)
     if done is None:
         return None
-    x, y, z = (round(float(value), GRAIN) for value in begin + done * push)
-    placed = Placed(proposal.name, (x, y, z), turn, proposal.size)
-    final = placed.boxes().table[0]
-    return placed if around.fine.slack(final) >= 0.0 and around.touched(final) else None
+    box[:3] = np.round(begin + done * push, GRAIN)
+    if around.fine.slack(box) < 0.0 or not around.touched(box):
+        return None
+    x, y, z = box[:3].tolist()
+    return Placed(proposal.name, (x, y, z), turn, proposal.size)
 
 
 def _moved(box: Floats, by: Floats) -> Floats:

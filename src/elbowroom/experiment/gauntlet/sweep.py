@@ -16,10 +16,10 @@ from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
 
-STEERING = 0.05  # radians by which the heading may differ from that of a line that turns
+STEERING = 0.06  # radians by which the heading may differ from that of a line that turns
 _BEND = 2e-4  # metres: more than the path within a sample interval differs from its chord
 _PHASES = 32
-_OFFSETS = (0.0, 0.25, 0.5, 0.75)  # strides: the phases in which a natural walk may come along
+_OFFSETS = np.arange(8) / 8.0  # strides: the phases in which a natural walk may come along
 _SPACING = 0.02  # metres between the poses of the natural walk
 _STANCE_SPACING, _SIGHT_SPACING, _SIGHT_STEP = 0.05, 0.10, 0.20  # metres
 _LOW = 0.1  # metres: lower end of the stance's axis
@@ -58,7 +58,7 @@ class SweptBody:
         return joined(rows_of(segments, radii, proof.way), *(rows_of(poses, sizes, proof.way) for poses in variants))
 
     def natural_walks(self, line: CourseLine, first: float, last: float) -> list[BodyRows]:
-        """The upper body of the natural walk on a part of the way, once for every phase in which it may come."""
+        """The upper body of the natural walk on a part of the way, once for each of eight phases."""
         way = np.arange(first, last, _SPACING)
         strides = phase_rate(WALK_SPEED, 0.0, 0.0) / WALK_SPEED
         return [self._natural_walk(line, way, offset + strides * way) for offset in _OFFSETS]

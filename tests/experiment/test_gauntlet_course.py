@@ -1,0 +1,162 @@
+"""Courses: the same everywhere, as their level says, and usable as scenes."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.course import LARGEST_SEED, CourseMaker, make_course
+from elbowroom.experiment.gauntlet.draw import Draw
+from elbowroom.experiment.gauntlet.levels import BEND_TWIST, LEVELS
+from elbowroom.experiment.gauntlet.line import CourseLine, Turn, steady_walk
+from elbowroom.experiment.gauntlet.placing import Placed
+from elbowroom.world.scene import Scene
+from gauntlet_courses import SAMPLE, course, stock
+
+# A body of average proportions: these change only with the generator itself, and then the gauntlet is another one.
+PINNED = {
+    (1, 0): "af0881faaef583ae4d54bc355d8b4fa06b9cfb07c45ad007aa6f6aed2bb02512",
+    (2, 7): "4a72cc1284c6762c99f97d015331b3a57c40ff46e46ac899520818b8db1dcd49",
+    (3, 1): "96f29e225d1ef2ebc459ac995e4aa31691b4df10b97636a8375bf50a91ce0d46",
+    (4, 3): "77cdca11def614866f9c81d3156c69d0cdacdb699ae880d05de02459b01755a9",
+    (5, 2): "be838c0c3cf2535933dca49dba783f8c1b3a1821503af7cc2a75e2b0cc78236d",
+}
+# The stock avatar: these change with its collision body too.
+PINNED_STOCK = {
+    (1, 0): "f434effaaaa7fa9dc6820c6e9c3b600bc83da0d695a6df4b5401e115882cad4e",
+    (3, 1): "f9065bb2e73b7039b5763e48b5b478f60c58ec2a7c483fae6d54827565c41668",
+    (5, 2): "306bd352d57f1ee7f82f53f3be5d7e58621af319670fffedb66c3d5b3f82d065",
+}
+
+
+@pytest.mark.parametrize(("level", "seed"), PINNED)
+def test_courses_are_the_same_on_every_machine(level: int, seed: int) -> None:
+    maker = CourseMaker.of(proportional_humanoid(1.72))
+    assert maker.course(level, seed).fingerprint == PINNED[level, seed]
+
+
+@pytest.mark.parametrize(("level", "seed"), PINNED_STOCK)
+def test_courses_of_the_stock_avatar_are_the_same_on_every_machine(level: int, seed: int) -> None:
+    assert course(level, seed).fingerprint == PINNED_STOCK[level, seed]
+
+
+def test_the_stream_of_chance_is_pinned() -> None:
+    draw = Draw(3, 14, 15)
+    drawn = [draw.between((-1.0, 1.0)), draw.whole(0, 99), draw.chance(0.5), draw.sign(), draw.one_of("abc")]
+    assert drawn == [-0.295, 53, False, 1, "b"]
+
+
+def test_a_course_does_not_depend_on_what_was_made_before() -> None:
+    again = CourseMaker.of(stock()[0]).course(2, 1)
+    assert again.fingerprint == course(2, 1).fingerprint == make_course(2, 1).fingerprint
+    assert again.scene.to_dict() == course(2, 1).scene.to_dict()
+    assert np.array_equal(again.certificate.uppers, course(2, 1).certificate.uppers)
+
+
+def test_seeds_and_levels_give_different_courses() -> None:
+    assert len({course(level, seed).fingerprint for level, seed in SAMPLE}) == len(SAMPLE)
+
+
+@pytest.mark.parametrize(("level", "seed"), SAMPLE)
+def test_a_course_is_as_its_level_says(level: int, seed: int) -> None:
+    made, settings = course(level, seed), LEVELS[level]
+    least, most = settings.passages
+    assert least <= len(made.passages) <= most
+    assert sum(passage.long for passage in made.passages) == settings.long_passages
+    assert all(passage.end - passage.begin >= 3.0 for passage in made.passages if passage.long)
+    assert all(after.begin - before.end >= settings.gap[0] - 1e-9 for before, after in pairwise(made.passages))
+    assert made.certificate.margin == settings.margin
+    assert settings.surely is None or any(passage.asks == settings.surely for passage in made.passages)
+    assert settings.turn > 0.0 or made.line.straight
+    assert all(len(group) >= settings.obstacles[0] for group in made.groups)
+    assert sorted(index for group in made.groups for index in group) == list(range(len(made.scene.boxes)))
+
+
+def test_long_passages_have_an_obstacle_of_3_metres() -> None:
+    for level, seed in SAMPLE:
+        made = course(level, seed)
+        longest = 2.0 * made.scene.boxes.half_sizes[:, 2]
+        for passage, group in zip(made.passages, made.groups, strict=True):
+            if passage.long:
+                assert longest[list(group)].max() >= 3.0
+
+
+def test_levels_get_harder() -> None:
+    levels = [LEVELS[number] for number in range(1, 6)]
+    assert [level.margin for level in levels] == [0.06, 0.05, 0.04, 0.03, 0.02]
+    for easier, harder in pairwise(levels):
+        assert harder.passages >= easier.passages
+        assert harder.gap[0] < easier.gap[0]
+        assert harder.obstacles >= easier.obstacles
+        assert harder.turn >= easier.turn
+    assert levels[3].surely == levels[4].surely == BEND_TWIST
+
+
+def test_some_courses_of_the_higher_levels_wind_and_some_do_not() -> None:
+    assert {course(level, seed).line.straight for level, seed in SAMPLE if level >= 3} == {True, False}
+
+
+@pytest.mark.parametrize(("level", "seed"), SAMPLE)
+def test_a_course_is_a_scene_file(level: int, seed: int) -> None:
+    made = course(level, seed)
+    document = made.scene.to_dict()
+    assert Scene.from_dict(document).to_dict() == document
+    assert not made.scene.finished(made.scene.start)
+    ends = made.line.points(np.array([made.line.length]))[0]
+    assert made.scene.finish.passed(*ends)
+
+
+def test_numbers_of_a_scene_are_whole_millimetres() -> None:
+    for level, seed in SAMPLE:
+        boxes = course(level, seed).scene.boxes
+        for values in (boxes.centers, 2.0 * boxes.half_sizes):
+            assert np.allclose(1e3 * values, np.round(1e3 * values), atol=1e-9)
+
+
+@pytest.mark.parametrize(("level", "seed"), [(0, 0), (6, 0), (1, -1), (1, LARGEST_SEED + 1)])
+def test_what_is_no_level_or_seed_is_refused(level: int, seed: int) -> None:
+    with pytest.raises(InputError, match="is not a whole number"):
+        make_course(level, seed)
+
+
+def test_an_obstacle_is_the_same_in_the_generator_and_in_the_scene() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        turn, size = tuple(rng.uniform(-3.0, 3.0, 3).tolist()), tuple(rng.uniform(0.1, 1.0, 3).tolist())
+        document = course(1, 0).scene.to_dict()
+        document["obstacles"] = [{"type": "box", "center": [9.0, 1.0, 9.0], "size": list(size), "euler": list(turn)}]
+        row = Scene.from_dict(document).boxes.table[0]
+        placed = Placed("box", (9.0, 1.0, 9.0), turn, size)  # type: ignore[arg-type]
+        assert np.allclose(placed.row(), row, atol=1e-12)
+
+
+def test_a_line_is_the_integral_of_its_heading() -> None:
+    line = CourseLine(8.0, (Turn(1.0, 3.0, 0.4), Turn(4.0, 6.5, -0.5)))
+    way = np.linspace(0.0, 8.0, 4001)
+    points, heading = line.points(way), line.heading(way)
+    steps = np.diff(points, axis=0) / np.diff(way)[:, None]
+    middle = 0.5 * (heading[1:] + heading[:-1])
+    assert np.allclose(steps, np.stack([np.sin(middle), np.cos(middle)], axis=1), atol=2e-3)
+    assert np.allclose(np.gradient(heading, way), line.curvature(way), atol=1e-3)
+    assert line.heading(8.0) == pytest.approx(-0.1)
+    assert line.nearest(*line.points(5.0), around=4.5) == pytest.approx(5.0, abs=0.005)
+    assert np.allclose(line.local(5.0, (0.3, 1.0, 0.0))[[0, 2]] - line.points(5.0), 0.3 * left_of(line, 5.0))
+
+
+def left_of(line: CourseLine, way: float) -> np.ndarray:
+    heading = float(line.heading(way))
+    return np.array([np.cos(heading), -np.sin(heading)])
+
+
+def test_a_walk_moves_as_its_states_say() -> None:
+    walk = steady_walk(CourseLine(6.0, (Turn(1.0, 3.0, 0.4),)), 0.9, 240.0)
+    velocity = np.gradient(walk.states[:, :2], walk.times, axis=0)
+    heading = walk.states[:, 2]
+    ahead = walk.states[:, 3, None] * np.stack([np.sin(heading), np.cos(heading)], axis=1)
+    assert np.abs(velocity - ahead)[2:-2].max() < 0.02
+    assert np.allclose(np.gradient(heading, walk.times)[2:-2], walk.states[2:-2, 5], atol=0.02)
+    assert walk.states[0, 3] == 0.0
+    assert walk.way[-1] >= 6.0
+    assert np.all(np.diff(walk.states[:, 6]) > 0.0)

@@ -1,0 +1,57 @@
+"""The generator's own distances against coal, and its search for self-contact."""
+
+import coal
+import numpy as np
+
+from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
+from elbowroom.experiment.gauntlet.placing import Placed
+from gauntlet_courses import stock
+
+
+def test_gaps_equal_those_of_coal() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
+        placed = Placed("box", tuple(rng.uniform(-0.5, 0.5, 3).tolist()), turn, size)  # type: ignore[arg-type]
+        axes, radii = rng.uniform(-1.5, 1.5, (4, 6)), rng.uniform(0.01, 0.2, 4)
+        gap = BodyRows(axes, radii, np.zeros(4)).gap(placed.row())
+        wanted = min(coal_gap(axis, radius, placed.row()) for axis, radius in zip(axes, radii, strict=True))
+        assert abs(gap - wanted) < 1e-6 if wanted > -0.9 * radii.min() else gap <= 0.0
+
+
+def coal_gap(axis: np.ndarray, radius: float, row: np.ndarray) -> float:
+    step = axis[3:] - axis[:3]
+    length = float(np.linalg.norm(step))
+    z = step / length
+    x = np.cross(z, [1.0, 0.0, 0.0] if abs(z[0]) < 0.9 else [0.0, 1.0, 0.0])
+    x /= np.linalg.norm(x)
+    capsule_place = coal.Transform3s(np.stack([x, np.cross(z, x), z], axis=1), 0.5 * (axis[:3] + axis[3:]))
+    box_place = coal.Transform3s(row[3:12].reshape(3, 3).T, row[:3])
+    request, result = coal.DistanceRequest(), coal.DistanceResult()
+    axis_only = coal.Capsule(1e-9, length)
+    coal.distance(axis_only, capsule_place, coal.Box(*(2.0 * row[12:])), box_place, request, result)
+    return max(result.min_distance, 0.0) - radius
+
+
+def test_rows_keep_what_capsules_are() -> None:
+    rng = np.random.default_rng(1)
+    segments, radii, way = rng.normal(size=(3, 6, 5)), rng.uniform(0.1, 0.2, 3), np.arange(5.0)
+    rows = rows_of(segments, radii, way)
+    assert rows.axes.shape == (15, 6)
+    assert np.array_equal(rows.axes[7], segments[1, :, 2])
+    assert rows.radii[7] == radii[1]
+    part = joined(rows, rows).between(1.0, 2.0)
+    assert len(part.way) == 12
+    assert len(part.every(5).radii) == 3
+    assert rows.between(9.0, 10.0).gap(Placed("box", (0, 0, 0), (0, 0, 0), (1, 1, 1)).row()) == np.inf
+
+
+def test_a_hand_in_the_chest_and_hands_in_each_other_are_seen() -> None:
+    check = stock()[1].check
+    hanging = np.zeros(10)
+    hanging[[3, 7]] = 0.15
+    hugged, folded = hanging.copy(), hanging.copy()
+    hugged[2:6] = [0.5, -0.7, 1.2, 2.4]
+    folded[[2, 6]], folded[[4, 8]], folded[[5, 9]], folded[[3, 7]] = 0.5, 1.0, 1.57, -0.2
+    standing = np.zeros((3, 7))
+    assert check.clear(standing, np.stack([hanging, hugged, folded])).tolist() == [True, False, False]

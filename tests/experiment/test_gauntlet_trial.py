@@ -1,0 +1,139 @@
+"""Walks through courses: legs are never hindered, who follows the certificate gets through, results add up."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
+from elbowroom.experiment.gauntlet.summary import GauntletSummary
+from elbowroom.experiment.gauntlet.sweep import STEERING
+from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
+from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.planning.command import Command
+from elbowroom.planning.root_planner import RootPlanKind
+from elbowroom.world.boxes import Boxes
+from gauntlet_courses import course, stock
+
+WALKED = [(1, 0), (2, 1), (3, 0), (3, 1), (4, 0), (5, 1), (5, 2)]
+
+
+def canned_walk(level: int, seed: int) -> tuple[TrialResult, list[Frame]]:
+    """The walk of the course's user without any planning of the upper body."""
+    made, shown = course(level, seed), []
+
+    def listen(command: Command, dt: float, frame: Frame) -> None:
+        shown.append(frame)
+
+    return walk_course(Controller(stock()[0], made.scene, assist=False), made, listen), shown
+
+
+@pytest.mark.parametrize(("level", "seed"), WALKED)
+def test_legs_walk_the_line_and_who_does_as_the_certificate_gets_through(level: int, seed: int) -> None:
+    made = course(level, seed)
+    result, shown = canned_walk(level, seed)
+    assert result.crossed
+    assert result.touching_frames > 0
+    assert not result.stopped
+    assert {frame.plan.root.kind for frame in shown if frame.plan is not None} == {RootPlanKind.STRAIGHT}
+    check, proof, way = BodyCheck(stock()[0], made.scene), made.certificate, 0.0
+    for frame in shown:
+        way = made.line.nearest(frame.root[0], frame.root[1], way)
+        assert np.hypot(*(frame.root[:2] - made.line.points(way))) < 0.015
+        assert abs(frame.root[2] - made.line.heading(way)) <= STEERING
+        upper = np.array([np.interp(way, proof.way, column) for column in proof.uppers.T])
+        assert check.clearance(frame.root, upper) > proof.margin - 0.012
+
+
+def test_an_empty_course_is_crossed_straight() -> None:
+    made = course(3, 0)
+    empty = replace(made, scene=replace(made.scene, boxes=Boxes.empty(), box_names=()))
+    result = walk_course(controller_on(stock()[0], empty, TrialSettings()), empty)
+    assert result.crossed
+    assert result.straight
+    assert result.stuck_times == result.touching_frames == 0
+    assert result.seconds < made.line.length / 0.9
+    assert len(result.plan_ms) >= 10
+
+
+def test_a_walk_repeats() -> None:
+    made = replace(course(1, 0), limit=9.0)
+    first, second = (walk_course(controller_on(stock()[0], made, TrialSettings()), made) for _ in range(2))
+    assert replace(first, plan_ms=()) == replace(second, plan_ms=())
+    assert first.touching_frames == 0
+    assert first.crossed or first.stopped
+
+
+def result(**changes: object) -> TrialResult:
+    fields: dict[str, object] = {
+        "level": 1, "seed": 0, "fingerprint": "", "crossed": True, "straight": True, "stuck_times": 0,
+        "stopped": False, "touching_frames": 0, "least_clearance": 0.01, "seconds": 9.0, "limit": 40.0, "frames": 540,
+        "collision_checks": 10, "plan_ms": (1.0, 2.0, 3.0),
+    }  # fmt: skip
+    return TrialResult(**{**fields, **changes})  # type: ignore[arg-type]
+
+
+def test_results_add_up() -> None:
+    stuck = result(straight=False, stuck_times=3, least_clearance=0.002, plan_ms=(9.0,))
+    failed = result(crossed=False, straight=False, stuck_times=7, stopped=True)
+    touched = result(crossed=False, straight=False, touching_frames=5, least_clearance=-0.01)
+    total = GauntletSummary.of([result(), stuck, failed, touched])
+    assert (total.courses, total.crossed, total.straight, total.stuck, total.stopped) == (4, 2, 1, 2, 1)
+    assert (total.touching, total.touching_frames, total.stuck_times, total.frames) == (1, 5, 10, 2160)
+    assert total.least_clearance == -0.01
+    assert (total.plan_ms_p50, total.plan_ms_max) == (2.0, 9.0)
+    assert total.judged_poses is None
+    judged = result(judge=JudgeFigures(100, 2, 0.001, -0.001))
+    assert GauntletSummary.of([judged, judged]).judged_touching == 4
+    assert GauntletSummary.of([judged, result()]).judged_touching is None
+
+
+def test_a_task_gives_a_record_that_is_its_result() -> None:
+    assert CourseTask(2, 5, TrialSettings()).key != CourseTask(2, 6, TrialSettings()).key
+    judged = result(judge=JudgeFigures(100, 0, 0.0, None))
+    for each in (judged, result()):
+        record = {**vars(each), "plan_ms": list(each.plan_ms)}
+        record["judge"] = None if each.judge is None else vars(each.judge)
+        assert result_of(record) == each
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"level": 7}, "level"),
+        ({"level": 1, "courses": 0}, "courses"),
+        ({"level": 1, "seed": 2**32 - 5}, "seed"),
+        ({"level": 1, "trial": TrialSettings("guess")}, "planner"),
+        ({"level": 1, "trial": TrialSettings(queue_size=1)}, "queue size"),
+    ],
+)
+def test_wrong_settings_are_refused(settings: dict[str, int], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        GauntletSettings(**settings)  # type: ignore[arg-type]
+
+
+def test_an_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    walked: list[int] = []
+
+    def run_here(tasks: list[CourseTask], jobs: int):  # type: ignore[no-untyped-def]
+        for place, task in enumerate(tasks):
+            walked.append(task.seed)
+            if len(walked) == 3:
+                raise KeyboardInterrupt
+            yield place, {**vars(result(seed=task.seed)), "judge": None}
+
+    monkeypatch.setattr("elbowroom.experiment.gauntlet.runner.run_all", run_here)
+    settings, told = GauntletSettings(level=1, courses=4, seed=10), []
+    with pytest.raises(KeyboardInterrupt):
+        run_gauntlet(settings, folder=tmp_path)
+    results = run_gauntlet(settings, folder=tmp_path, progress=lambda done, total: told.append((done, total)))
+    assert walked == [10, 11, 12, 12, 13]
+    assert told == [(2, 4), (3, 4), (4, 4)]
+    assert [each.seed for each in results] == [10, 11, 12, 13]
+    assert len(run_gauntlet(replace(settings, judge=True), folder=tmp_path)) == 4
+    assert walked[5:] == [10, 11, 12, 13]  # other settings, other results
