@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from live_page import LivePage, open_live_page
-from live_server import LiveServer
 
 from elbowroom.server.app import HOW_TO_BUILD, client_is_built
+from live_page import LivePage, open_live_page
+from live_server import LiveServer
 
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # SwiftShader draws WebGL without a graphics card. The frame limit stays: without it frame pacing is erratic.

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from live_page import LivePage
-from live_server import LiveServer
 
 import elbowroom
+from live_page import LivePage
+from live_server import LiveServer
 from shared_data import SHARED
 
 Open = Callable[..., LivePage]

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+
 from live_page import LivePage
 from live_server import LiveServer
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-import naive_figure6 as naive
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import naive_figure6 as naive
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, trunk_capsules
 from elbowroom.body.proportions import proportional_humanoid
