@@ -39,7 +39,7 @@ def table1(
     where an interrupted one was, and more seeds add to what is there. Exit code 0: done, 1: a shown pose touched an
     obstacle (a crossing that fails is a result like any other).
     """
-    from elbowroom.experiment.parallel import usable_cores
+    from elbowroom.experiment.parallel import check_jobs, usable_cores
     from elbowroom.experiment.report.crossings import successful_crossings
     from elbowroom.experiment.report.page import report_html
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
@@ -47,10 +47,15 @@ def table1(
 
     settings = _settings(planner, scenes, queues, seeds, limit, avatar)
     processes = usable_cores() if jobs is None else jobs
+    check_jobs(processes)
     with progress_bar("Opening the avatar (the first run compiles kernels)", None, quiet):
         about = _about(settings, processes)
-    with time_left_bar("Trials", quiet) as move:
-        table = run_table1(settings, out, processes, move)
+    try:
+        with time_left_bar("Trials", quiet) as move:
+            table = run_table1(settings, out, processes, move)
+    except KeyboardInterrupt:
+        typer.echo(f"elbowroom: interrupted; what is done is kept in {out}, the same call goes on from there", err=True)
+        raise
     with progress_bar("Drawing the report", None, quiet):
         page = report_html(table, about, successful_crossings(table, processes))
     document = table_document(table, about)

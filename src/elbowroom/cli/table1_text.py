@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from elbowroom.experiment.paper_table import PaperCell, paper_table
-from elbowroom.experiment.table1.cells import CannedCell, Cell, Estimate
+from elbowroom.experiment.table1.cells import CannedCell, Cell, Estimate, scene_label
 from elbowroom.experiment.table1.table import Table1
 
 _WIDTH = 118  # characters: of the widest table
@@ -57,7 +57,7 @@ def _row(cell: Cell, paper: PaperCell | None) -> list[str]:
     theirs = [""] * len(ours) if paper is None else _paper_row(paper)
     widths = [max(len(text) for text in _papers_texts(place)) for place in range(len(ours))]
     beside = [f"{our} [dim]{text:>{width}}[/]" for our, text, width in zip(ours, theirs, widths, strict=True)]
-    return [cell.scene.upper(), str(cell.queue_size), *beside, str(cell.late_frames)]
+    return [scene_label(cell.scene), str(cell.queue_size), *beside, str(cell.late_frames)]
 
 
 def _papers_texts(place: int) -> list[str]:
@@ -94,7 +94,7 @@ def _over_all(planner: str, cells: Sequence[Cell]) -> Table:
             _bounded(cell.all.time_s, ".1f"),
             _bounded(cell.all.checks_per_plan, ".0f"),
         )
-        first = (cell.scene.upper(), str(cell.queue_size), str(cell.trials))
+        first = (scene_label(cell.scene), str(cell.queue_size), str(cell.trials))
         view.add_row(*first, *texts, end_section=_is_last(place, cells))
     return view
 
@@ -108,7 +108,7 @@ def _times(planner: str, cells: Sequence[Cell]) -> Table:
         frame, plan = cell.frame_ms, cell.plan_ms
         texts = (f"{frame.count}", f"{frame.p99:.1f}", f"{frame.worst:.1f}", f"{cell.late_frames}")
         more = (f"{plan.count}", f"{plan.median:.1f}", f"{plan.p99:.1f}", f"{plan.worst:.1f}")
-        view.add_row(cell.scene.upper(), str(cell.queue_size), *texts, *more, end_section=_is_last(place, cells))
+        view.add_row(scene_label(cell.scene), str(cell.queue_size), *texts, *more, end_section=_is_last(place, cells))
     return view
 
 
@@ -125,7 +125,7 @@ def _canned(cells: Sequence[CannedCell]) -> Table:
     for cell in cells:
         share = f"{cell.touching_frames} of {cell.frames} ({cell.share:.0%})"
         deepest = f"{100.0 * cell.deepest:.1f}"
-        view.add_row(cell.scene.upper(), str(cell.trials), str(cell.touching_trials), share, deepest)
+        view.add_row(scene_label(cell.scene), str(cell.trials), str(cell.touching_trials), share, deepest)
     return view
 
 

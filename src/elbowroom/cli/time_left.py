@@ -5,7 +5,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 Move = Callable[[int, int], None]  # pieces done, pieces in all
 
@@ -24,8 +32,7 @@ def time_left_bar(title: str, quiet: bool) -> Iterator[Move]:
         yield _nothing
     elif console.is_terminal:
         with _bar(console) as progress:
-            task = progress.add_task(title, total=None)
-            yield lambda done, total: progress.update(task, completed=done, total=total)
+            yield _Bar(progress, progress.add_task(title, total=None)).move
     else:
         yield _Lines(title, console).move
 
@@ -39,6 +46,22 @@ def _bar(console: Console) -> Progress:
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     rest = (TextColumn("[dim]left"), left)
     return Progress(*columns, *rest, console=console, transient=True, speed_estimate_period=_WINDOW)
+
+
+class _Bar:
+    """Progress as a bar."""
+
+    def __init__(self, progress: Progress, task: TaskID) -> None:
+        self._progress, self._task = progress, task
+        self._begun = False
+
+    def move(self, done: int, total: int) -> None:
+        """Show it."""
+        if self._begun:
+            self._progress.update(self._task, completed=done)
+        else:
+            self._progress.reset(self._task, total=total, completed=done)
+        self._begun = True
 
 
 class _Lines:

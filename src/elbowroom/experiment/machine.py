@@ -5,7 +5,6 @@ import platform
 from functools import cache
 from pathlib import Path
 
-import elbowroom
 from elbowroom.experiment.parallel import usable_cores
 
 _MEASURED = ("jit.py", "geometry", "body", "world", "planning", "control")
@@ -26,7 +25,7 @@ def machine_kind() -> str:
 @cache
 def program_digest() -> str:
     """A hash of all code and data on which the outcome of a trial depends, besides scenes and avatars."""
-    package = Path(elbowroom.__file__).parent
+    package = Path(__file__).parents[1]
     paths = [package / name for name in _MEASURED] + [package / "experiment" / name for name in _IN_EXPERIMENT]
     total = hashlib.sha256()
     for path in paths:

@@ -28,14 +28,19 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def check_jobs(jobs: int) -> None:
+    """Raises `InputError` unless this many processes may be started."""
+    if not 1 <= jobs <= MAX_JOBS:
+        raise InputError(f"jobs: {jobs} is not between 1 and {MAX_JOBS}")
+
+
 def run_all(tasks: Sequence[Task[Result]], jobs: int) -> Iterator[tuple[int, Result]]:
     """Run the tasks in `jobs` processes; gives (index of the task, its result) as they finish.
 
     The processes are fresh ones (spawned), end with the iterator, and do not outlive this process, however it ends.
     What a task raises is raised here; raises `InputError` if a process dies.
     """
-    if not 1 <= jobs <= MAX_JOBS:
-        raise InputError(f"jobs: {jobs} is not between 1 and {MAX_JOBS}")
+    check_jobs(jobs)
     if not tasks:
         return
     context = multiprocessing.get_context("spawn")

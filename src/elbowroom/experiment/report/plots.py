@@ -127,8 +127,9 @@ def _axis(quantity: _Quantity, series: Sequence[Series]) -> Axis:
         return _RATE
     highest = max((mark.value for row in series for mark in row.marks), default=1.0)
     if not quantity.heading.startswith("Collision"):
-        step = next(step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, math.inf) if 4.0 * step >= highest)
-        return Axis(0.0, max(highest, step), ticks=tuple(np.arange(0.0, highest + 0.01, min(step, highest)).tolist()))
+        step = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if 4.0 * step >= highest), highest)
+        top = max(highest, step)
+        return Axis(0.0, top, ticks=tuple(np.arange(0.0, top + 0.01, step).tolist()))
     lowest = min((mark.value for row in series for mark in row.marks), default=1.0)
     return _log_axis(max(1.0, lowest), highest)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from elbowroom.experiment.paper_table import PaperCell
 from elbowroom.experiment.report.svg import tag
-from elbowroom.experiment.table1.cells import Cell, Estimate
+from elbowroom.experiment.table1.cells import Cell, Estimate, scene_label
 from elbowroom.experiment.table1.table import Table1
 
 _BESIDE = ("crossed", "straight", "stuck", "time, s", "calls", "found", "checks a call", "real time")
@@ -59,7 +59,7 @@ def canned_table(table: Table1) -> str:
             f"{cell.share:.0%}",
             f"{100.0 * cell.deepest:.1f}",
         )
-        rows.append(tag("tr", tag("th", cell.scene.upper()), *(tag("td", text) for text in texts)))
+        rows.append(tag("tr", tag("th", scene_label(cell.scene)), *(tag("td", text) for text in texts)))
     return _table(tag("tr", *(tag("th", name) for name in names)), rows)
 
 
@@ -69,7 +69,7 @@ def _table(head: str, rows: Sequence[str]) -> str:
 
 def _row(table: Table1, cell: Cell, cells: Sequence[str]) -> str:
     first = cell.queue_size == table.settings.queues[0]
-    name = cell.scene.upper() if first else ""
+    name = scene_label(cell.scene) if first else ""
     if first and len(table.settings.planners) > 1:
         name += f" {cell.planner}"
     return tag("tr", tag("th", name), tag("th", str(cell.queue_size)), *cells, class_="first" if first else None)

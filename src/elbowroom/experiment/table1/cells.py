@@ -97,6 +97,11 @@ class CannedCell:
         return self.touching_frames / max(1, self.frames)
 
 
+def scene_label(name: str) -> str:
+    """How tables call a scene: "a" is the paper's A, other names stay as they are."""
+    return name.upper() if len(name) == 1 else name
+
+
 def fold_cell(records: Sequence[Record], limit: float) -> Cell:
     """The cell of these trials (all of one planner, scene and queue size, at least one)."""
     first, trials = records[0], len(records)

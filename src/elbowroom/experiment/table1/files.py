@@ -9,7 +9,7 @@ from typing import Any
 
 from elbowroom.experiment.paper_table import COLUMNS as PAPER_COLUMNS
 from elbowroom.experiment.paper_table import TRIALS
-from elbowroom.experiment.table1.cells import Averages, Cell, Estimate
+from elbowroom.experiment.table1.cells import Averages, Cell, Estimate, scene_label
 from elbowroom.experiment.table1.table import Table1
 
 TIME_COLUMNS = ("frame_ms_worst", "frame_ms_p99", "plan_ms_worst", "plan_ms_p99")
@@ -39,7 +39,7 @@ def table_csv(table: Table1) -> str:
 def _csv_row(cell: Cell) -> dict[str, str]:
     passed = cell.passed
     row: dict[str, Any] = {
-        "scene": cell.scene.upper() if len(cell.scene) == 1 else cell.scene,
+        "scene": scene_label(cell.scene),
         "queue_size": cell.queue_size,
         "pass_rate": cell.pass_rate.value,
         "straight_rate": cell.straight_rate.value,

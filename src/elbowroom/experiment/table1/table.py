@@ -93,7 +93,7 @@ def planner_settings(settings: Table1Settings) -> Record:
 def run_table1(settings: Table1Settings, folder: Path, jobs: int, progress: Progress | None = None) -> Table1:
     """Run all trials that the folder's log does not hold yet, and fold the table from all of them."""
     check(settings)
-    tasks: list[CrossingTask | CannedTask] = [*canned_tasks(settings), *crossing_tasks(settings)]
+    tasks: list[CrossingTask | CannedTask] = [*crossing_tasks(settings), *canned_tasks(settings)]
     with TrialLog(folder, identity(settings)) as log:
         missing = [task for task in tasks if task.key not in log.done]
         done = len(tasks) - len(missing)
