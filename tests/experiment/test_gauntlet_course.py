@@ -128,7 +128,7 @@ def test_an_obstacle_is_the_same_in_the_generator_and_in_the_scene() -> None:
         document = course(1, 0).scene.to_dict()
         document["obstacles"] = [{"type": "box", "center": [9.0, 1.0, 9.0], "size": list(size), "euler": list(turn)}]
         row = Scene.from_dict(document).boxes.table[0]
-        placed = Placed("box", (9.0, 1.0, 9.0), turn, size)  # type: ignore[arg-type]
+        placed = Placed("box", (9.0, 1.0, 9.0), turn, size)
         assert np.allclose(placed.row(), row, atol=1e-12)
 
 
@@ -141,7 +141,7 @@ def test_a_line_is_the_integral_of_its_heading() -> None:
     assert np.allclose(steps, np.stack([np.sin(middle), np.cos(middle)], axis=1), atol=2e-3)
     assert np.allclose(np.gradient(heading, way), line.curvature(way), atol=1e-3)
     assert line.heading(8.0) == pytest.approx(-0.1)
-    assert line.nearest(*line.points(5.0), around=4.5) == pytest.approx(5.0, abs=0.005)
+    assert line.nearest(float(line.points(5.0)[0]), float(line.points(5.0)[1]), 4.5) == pytest.approx(5.0, abs=0.005)
     assert np.allclose(line.local(5.0, (0.3, 1.0, 0.0))[[0, 2]] - line.points(5.0), 0.3 * left_of(line, 5.0))
 
 

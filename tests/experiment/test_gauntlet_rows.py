@@ -12,7 +12,7 @@ def test_gaps_equal_those_of_coal() -> None:
     rng = np.random.default_rng(0)
     for _ in range(300):
         turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
-        placed = Placed("box", tuple(rng.uniform(-0.5, 0.5, 3).tolist()), turn, size)  # type: ignore[arg-type]
+        placed = Placed("box", tuple(rng.uniform(-0.5, 0.5, 3).tolist()), turn, size)
         axes, radii = rng.uniform(-1.5, 1.5, (4, 6)), rng.uniform(0.01, 0.2, 4)
         gap = BodyRows(axes, radii, np.zeros(4)).gap(placed.row())
         wanted = min(coal_gap(axis, radius, placed.row()) for axis, radius in zip(axes, radii, strict=True))
@@ -30,7 +30,7 @@ def coal_gap(axis: np.ndarray, radius: float, row: np.ndarray) -> float:
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     axis_only = coal.Capsule(1e-9, length)
     coal.distance(axis_only, capsule_place, coal.Box(*(2.0 * row[12:])), box_place, request, result)
-    return max(result.min_distance, 0.0) - radius
+    return max(float(result.min_distance), 0.0) - radius
 
 
 def test_rows_keep_what_capsules_are() -> None:
