@@ -196,7 +196,7 @@ def test_margins_grow_with_the_way_between_key_frames(humanoid: Humanoid) -> Non
 
 
 def test_planners_are_made_by_name(humanoid: Humanoid) -> None:
-    assert list(PLANNERS) == ["figure6"]
+    assert list(PLANNERS) == ["figure6", "exact"]
     plan = make_planner("figure6", humanoid, Scene.load("empty")).plan(walk(), hanging(), np.random.default_rng(0))
     assert plan.status is PlanStatus.FOUND
     with pytest.raises(InputError, match="figure6"):

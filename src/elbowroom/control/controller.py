@@ -16,6 +16,7 @@ from elbowroom.control.rehearsal import Rehearsal, frozen_motion, partial_motion
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.motion import Lead, Motion, MotionPlanner, MotionQuery
 from elbowroom.planning.planner import make_planner
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanKind, RootPlanner
@@ -28,6 +29,7 @@ LONGEST_STEP = 60.0  # seconds
 _SETTLE = 0.06  # seconds: time constant with which the legs come to a stand where the avatar is held, or lead over
 _STILL = 0.02  # m/s and rad/s: slower is standing
 _SAME = 1e-6  # radians
+_LEAD_POSES = 8  # poses of the interval in play that a planner may look at
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 
 
@@ -155,9 +157,9 @@ class Controller:
         """Flow A: a root path, its upper-body motion; on success the queue is refilled, else it keeps what it has."""
         time, root, upper = self._planning_start(command)
         horizon, interval = self.settings.queue_size, self.settings.interval
-        root_plan = self._root_planner.plan(RootState(*root.tolist()), command, horizon, interval, time)
+        query = MotionQuery(time, RootState(*root.tolist()), upper, command, horizon, interval, self._lead(time))
+        root_plan, local = self._search(query)
         path = root_plan.path
-        local = self._planner.plan(path, upper, self._rng) if self._assist else canned_walk(path)
         number = 1 if self._plan_report is None else self._plan_report.number + 1
         report = PlanReport(number, self._queue.time, root_plan, local)
         self._command, self._plan_report, self._next = command, report, Phase.PLAY
@@ -170,6 +172,24 @@ class Controller:
         if motion is not None:
             self._queue.refill(path, motion, self._shown)
             self._resting = command.idle and self._stands_still(path, motion)
+
+    def _search(self, query: MotionQuery) -> Motion:
+        """A root path and its upper body; from the planner as one if it can do that."""
+        if self._assist and isinstance(self._planner, MotionPlanner):
+            return self._planner.plan_motion(self._root_planner, query)
+        root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
+        if not self._assist:
+            return Motion(root, canned_walk(root.path))
+        return Motion(root, self._planner.plan(root.path, query.upper, self._rng))
+
+    def _lead(self, time: float) -> Lead:
+        """What is shown now, and the root's way to the key frame at `time`."""
+        return Lead(
+            time - self._queue.time,
+            self._queue.roots_until(time, _LEAD_POSES),
+            self._shown.upper,
+            self._shown.upper_velocity,
+        )
 
     def _way_out(self, path: RootPath, motion: Floats | None) -> tuple[RootPath, Floats | None]:
         """What can follow a contact: a motion that does not touch again within the first key interval, if there is one.

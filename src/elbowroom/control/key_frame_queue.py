@@ -102,13 +102,22 @@ class KeyFrameQueue:
     def sample(self) -> Playback:
         """Root and upper body at the play head: C1 in time, across refills too; the queue has key frames."""
         upper, velocity = hermite(self._knots, self._uppers, self._tangents, self.time)
-        return Playback(self._root(), upper, velocity)
+        return Playback(self._root(self.time), upper, velocity)
 
-    def _root(self) -> Floats:
+    def roots_until(self, time: float, count: int) -> Floats:
+        """Root states (count, 7) at equal steps from the play head to `time`, which is not among them.
+
+        None, (0, 7), if that time has come; the queue must reach to `time`.
+        """
+        if time <= self.time + _SAME_TIME:
+            return np.empty((0, ROOT_STATE))
+        return np.stack([self._root(self.time + i / count * (time - self.time)) for i in range(count)])
+
+    def _root(self, time: float) -> Floats:
         last = len(self._times) - 1
-        k = max(int(np.searchsorted(self._times, self.time, side="right")) - 1, 0)
+        k = max(int(np.searchsorted(self._times, time, side="right")) - 1, 0)
         if k >= last:
             return np.array(self._roots[last])
-        share = max((self.time - self._times[k]) / self.interval, 0.0)
+        share = max((time - self._times[k]) / self.interval, 0.0)
         state: Floats = interpolate_root(self._roots[k], self._roots[k + 1], share, self.interval)
         return state

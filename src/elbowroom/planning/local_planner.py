@@ -106,7 +106,7 @@ class LocalPlanner:
         tables = tables_in_frames(boxes, positions, rotations)
         margins = self.margins(path)
         for group in LOCAL_GROUPS:
-            columns = _columns(group)
+            columns = columns_of(group)
             roadmap = self._roadmap(group, tables, start[columns])
             result = figure6.search(roadmap, goals[:, columns], rng, margins, self.settings.budget)
             evidence.append(_evidence(group, result))
@@ -148,7 +148,7 @@ class LocalPlanner:
             return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
         graph = ActivityGraph.from_clips(
-            _clips(group), chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept
+            group_clips(group), chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept
         )
         return PosedGraph(limb, graph)
 
@@ -160,7 +160,7 @@ class LocalPlanner:
         return max(waist.reach, *(shoulders + self._posed[group].reach for group in LOCAL_GROUPS[1:]))
 
 
-def _clips(group: DofGroup) -> tuple[MotionClip, ...]:
+def group_clips(group: DofGroup) -> tuple[MotionClip, ...]:
     """The clips of a group's graph: the stock clips, and for an arm its swing at other speeds."""
     if group is DofGroup.WAIST:
         return stock_clips(group)
@@ -169,7 +169,7 @@ def _clips(group: DofGroup) -> tuple[MotionClip, ...]:
     return stock_clips(group) + tuple(MotionClip("arm_swing", group, phases, swing, loop=True) for swing in swings)
 
 
-def _columns(group: DofGroup) -> slice:
+def columns_of(group: DofGroup) -> slice:
     """The group's columns of a configuration without the root (10,)."""
     first = DofGroup.WAIST.value.start
     return slice(group.value.start - first, group.value.stop - first)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
+from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.local_planner import LocalPlanner
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_path import RootPath
@@ -25,6 +26,7 @@ PlannerFactory = Callable[[Humanoid, Scene], Planner]
 
 PLANNERS: dict[str, PlannerFactory] = {
     "figure6": LocalPlanner,  # the paper's own search
+    "exact": ExactPlanner,  # dynamic programming, checked as shown
 }
 
 

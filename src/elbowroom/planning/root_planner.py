@@ -88,7 +88,7 @@ class RootPlanner:
         self.settings = settings or RootPlannerSettings()
         self.body = LowerBody(humanoid, scene.boxes)
         motion = self.settings.motion
-        self._bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
+        self.bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
         self._line: TravelLine | None = None
         self._last: Floats | None = None
 
@@ -97,9 +97,18 @@ class RootPlanner:
         self._line = self._last = None
 
     def plan(
-        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+        self,
+        start: RootState,
+        command: Command,
+        horizon: int,
+        interval: float,
+        start_time: float = 0.0,
+        pace: float = 1.0,
     ) -> RootPlan:
-        """A path of `horizon` key intervals of `interval` seconds that starts exactly in the state `start`."""
+        """A path of `horizon` key intervals of `interval` seconds that starts exactly in the state `start`.
+
+        It is walked at the share `pace`, above 0 and up to 1, of the speed that the command asks for.
+        """
         began = time.perf_counter_ns()
         query = _Query(self, start, horizon, interval)
         if command.idle:
@@ -107,10 +116,10 @@ class RootPlanner:
             states, kind, goal = query.stop(), RootPlanKind.STRAIGHT, (start.x, start.z)
         elif command.turn != 0.0 and command.direction is None:
             self._line = None
-            states, kind, goal = query.steered(wanted_velocities(command, self.settings.motion))
+            states, kind, goal = query.steered(pace * wanted_velocities(command, self.settings.motion))
         else:
             self._line = self._travel_line(start, command)
-            states, kind, goal = query.travelled(self._line, wanted_speed(command, self.settings.motion))
+            states, kind, goal = query.travelled(self._line, pace * wanted_speed(command, self.settings.motion))
         self._last = states
         path = RootPath(start_time, interval, states)
         return RootPlan(path, kind, goal, query.checks, time.perf_counter_ns() - began)
@@ -139,7 +148,7 @@ class _Query:
     """One plan in the making: the start, the boxes within reach, and the count of checks."""
 
     def __init__(self, planner: RootPlanner, start: RootState, horizon: int, interval: float) -> None:
-        self.settings, self.body, self.bounds = planner.settings, planner.body, planner._bounds
+        self.settings, self.body, self.bounds = planner.settings, planner.body, planner.bounds
         self.start, self.horizon, self.interval = start, horizon, interval
         run = self.settings.motion.run_speed
         reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0

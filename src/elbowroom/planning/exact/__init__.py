@@ -1,0 +1,1 @@
+"""The exact planner: each posture at each key time settled once, checked as playback shows it."""

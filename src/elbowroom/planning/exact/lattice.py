@@ -1,0 +1,174 @@
+"""The cheapest way through a time lattice: dynamic programming, each (posture, key time) settled once.
+
+The nodes of a depth are the V postures of a group and E postures of that key time alone: the goal itself, what the last
+plan had there, and the like. A step leads from a node to a free node of the next depth at most `step` radians away. A
+node costs its own price, a step costs the squared change of the deviation from the goal: so a group that follows
+its goal pays nothing, and evading begins and ends gently. The least sum is found exactly in one sweep: no node is
+expanded twice, so the cost grows with the horizon and never explodes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+_WIDTH = 4  # components of the widest group: inner loops of a fixed length
+_ROUNDING = 1.0 + 1e-9
+
+
+class Lattice(NamedTuple):
+    """One group's problem along one root path."""
+
+    postures: Floats  # (V, d) radians
+    first: Ints  # (V+1,) steps between the postures, as in `Postures`
+    targets: Ints
+    own: Floats  # (n+1, E, d) postures of one key time each
+    goals: Floats  # (n+1, d)
+    start: Floats  # (d,) the posture at depth 0
+    price: Floats  # (n+1, V+E) of each node; infinite where it is not free; row 0 is not used
+    step: float  # radians
+    step_weight: float
+
+
+class Ban(NamedTuple):
+    """Steps that must not be taken: those near to one that was found to touch."""
+
+    depths: Ints  # (K,) depth at which the step begins
+    steps: Floats  # (K, 2d) its two postures
+    radius: float  # radians
+
+
+class Way(NamedTuple):
+    """The outcome."""
+
+    reached: int  # greatest depth that has a way; n if the lattice is crossed
+    cost: float  # of the cheapest way to that depth
+    path: Floats  # (reached+1, d)
+    nodes: int  # nodes settled
+
+
+@exact_kernel
+def _banned(ban: Ban, depth: int, a: Floats, b: Floats) -> bool:
+    size = ban.steps.shape[1] // 2
+    for k in range(ban.depths.shape[0]):
+        if ban.depths[k] != depth:
+            continue
+        total = 0.0
+        for i in range(size):
+            total += (ban.steps[k, i] - a[i]) ** 2 + (ban.steps[k, size + i] - b[i]) ** 2
+        if total <= ban.radius * ban.radius:
+            return True
+    return False
+
+
+@exact_kernel
+def _fill(lattice: Lattice, depth: int, rows: Floats) -> None:
+    """The configurations of a depth's nodes into rows (V+E, 4), without those that are the same at all depths."""
+    size = lattice.postures.shape[0]
+    for e in range(lattice.own.shape[1]):
+        for i in range(lattice.own.shape[2]):
+            rows[size + e, i] = lattice.own[depth, e, i]
+
+
+@exact_kernel
+def _offer(
+    lattice: Lattice,
+    depth: int,
+    banning: tuple[Ban, bool, float],
+    source: tuple[Floats, int, float],
+    shift: Floats,
+    targets: tuple[Floats, Ints, int, int],
+    costs: Floats,
+    parents: Ints,
+) -> None:
+    """Offer the way to one node to the nodes that may follow it; `costs` and `parents` are those of the next depth."""
+    ban, bans, longest = banning
+    a, node, cost = source
+    rows, numbers, first, last = targets
+    price = lattice.price[depth + 1]
+    for k in range(first, last):
+        target = numbers[k]
+        bound = cost + price[target]
+        if bound >= costs[target]:
+            continue
+        moved, changed = 0.0, 0.0
+        for i in range(_WIDTH):
+            step = rows[target, i] - a[i]
+            moved += step * step
+            changed += (step - shift[i]) * (step - shift[i])
+        total = bound + lattice.step_weight * changed
+        if moved > longest or total >= costs[target] or (bans and _banned(ban, depth, a, rows[target])):
+            continue
+        costs[target] = total
+        parents[target] = node
+
+
+@exact_kernel
+def _settle(
+    lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, everyone: Ints, costs: Floats, parents: Ints
+) -> None:
+    """From the costs of the nodes at `depth` those of the next; rows `before`, `after` (V+E, 4) are configurations."""
+    size, total = lattice.postures.shape[0], lattice.price.shape[1]
+    bans = False
+    for k in range(ban.depths.shape[0]):
+        bans |= ban.depths[k] == depth
+    shift = np.zeros(_WIDTH)
+    for i in range(lattice.goals.shape[1]):
+        shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
+    banning = (ban, bans, lattice.step * lattice.step * _ROUNDING)
+    out, origins = costs[depth + 1], parents[depth + 1]
+    for node in range(total - 1, -1, -1):
+        cost = costs[depth, node]
+        if cost == np.inf:
+            continue
+        source = (before[node], node, cost)
+        if depth == 0 or node >= size:
+            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total), out, origins)
+        else:
+            known = (after, lattice.targets, lattice.first[node], lattice.first[node + 1])
+            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total), out, origins)
+            _offer(lattice, depth, banning, source, shift, known, out, origins)
+
+
+@exact_kernel
+def cheapest_way(lattice: Lattice, ban: Ban) -> Way:
+    """The cheapest way from the start to the last depth, or to the deepest that can be reached."""
+    size, total, width = lattice.postures.shape[0], lattice.price.shape[1], lattice.start.shape[0]
+    horizon = lattice.price.shape[0] - 1
+    costs = np.full((horizon + 1, total), np.inf)
+    parents = np.full((horizon + 1, total), -1, np.int32)
+    everyone = np.arange(total).astype(np.int32)
+    before, after = np.zeros((total, _WIDTH)), np.zeros((total, _WIDTH))
+    before[:size, :width] = lattice.postures
+    after[:size, :width] = lattice.postures
+    before[total - 1, :width] = lattice.start
+    costs[0, total - 1] = 0.0
+    reached, nodes = 0, 1
+    for depth in range(horizon):
+        _fill(lattice, depth + 1, after)
+        _settle(lattice, ban, depth, before, after, everyone, costs, parents)
+        found = 0
+        for node in range(total):
+            found += costs[depth + 1, node] < np.inf
+        if found == 0:
+            break
+        reached, nodes = depth + 1, nodes + found
+        before, after = after, before
+    return Way(reached, costs[reached].min(), _traced(lattice, costs, parents, reached), nodes)
+
+
+@exact_kernel
+def _traced(lattice: Lattice, costs: Floats, parents: Ints, reached: int) -> Floats:
+    """The configurations (reached+1, d) of the cheapest way to that depth."""
+    path, size = np.empty((reached + 1, lattice.start.shape[0])), lattice.postures.shape[0]
+    node = np.argmin(costs[reached])
+    for depth in range(reached, 0, -1):
+        path[depth] = lattice.postures[node] if node < size else lattice.own[depth, node - size]
+        node = parents[depth, node]
+    path[0] = lattice.start
+    return path

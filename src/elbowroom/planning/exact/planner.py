@@ -1,0 +1,119 @@
+"""The exact planner: upper body and root together, farther ahead than the queue holds, with a safe end.
+
+The root goes at the wanted pace if the upper body has a way along all that is looked at. If not, a slower pace is tried
+and taken if it gets beyond the place where the faster one failed; else the root walks on as far as there is a way and
+comes to a stand there: a posture that is free stays free when the root stands.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
+from elbowroom.planning.motion import Motion, MotionQuery, no_lead
+from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root_motion import brake
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_planner import RootPlan, RootPlanKind, RootPlanner
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+_EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that has no way, at which braking is tried
+_FARTHER = 0.05  # metres that a slower way must get beyond the place where a faster one failed
+_STANDING = 0.02  # metres: a path that is shorter stands
+
+
+class _Whole(NamedTuple):
+    """A motion over the whole look-ahead."""
+
+    root: RootPlan
+    local: LocalPlan
+
+
+class ExactPlanner:
+    """Plans motion for one humanoid in one scene; it remembers the last plan and keeps to it while it is good."""
+
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None) -> None:
+        self.settings = settings or ExactSettings()
+        self._body = UpperBody(humanoid, scene, self.settings)
+        self._last: _Whole | None = None
+
+    def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
+        """Motion along `path` that begins at rest at `start` (10,); nothing is left to chance."""
+        del rng
+        return self._body.plan(path, start, no_lead(start)).plan
+
+    def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
+        """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
+        whole = self._whole(root_planner, query)
+        self._last = whole
+        return _first_part(whole, query.horizon)
+
+    def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> _Whole:
+        horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
+        first: tuple[RootPlan, UpperPlan] | None = None
+        blocked_at = 0.0
+        for pace in self.settings.paces:
+            root = root_planner.plan(query.root, query.command, horizon, query.interval, query.time, pace)
+            if first is not None and _way(root.path, horizon) < blocked_at + _FARTHER:
+                break
+            upper = self._dress(root.path, query)
+            if upper.reached == horizon:
+                return _Whole(root, upper.plan)
+            if first is None:
+                first = root, upper
+            blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
+        assert first is not None
+        return self._stop(root_planner, query, *first)
+
+    def _stop(self, root_planner: RootPlanner, query: MotionQuery, root: RootPlan, upper: UpperPlan) -> _Whole:
+        """Walk on while there is a way, then brake; or do what the last plan had in mind."""
+        for moving in _moving(upper.reached):
+            states = root.path.states.copy()
+            brake(states, moving, query.interval, root_planner.bounds)
+            path = replace(root.path, states=states)
+            stopping = self._dress(path, query)
+            if stopping.reached == path.horizon:
+                kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
+                return _Whole(replace(root, path=path, kind=kind), stopping.plan)
+        return _Whole(root, upper.plan)
+
+    def _dress(self, path: RootPath, query: MotionQuery) -> UpperPlan:
+        return self._body.plan(path, query.upper, query.lead, self._kept(path))
+
+    def _kept(self, path: RootPath) -> Floats | None:
+        """What the last plan had at the key times of `path` (n+1, 10), if it has any of them."""
+        if self._last is None or not len(self._last.local.configurations):
+            return None
+        last = self._last.root.path
+        at = (path.start_time - last.start_time) / path.interval
+        known = self._last.local.configurations
+        if path.interval != last.interval or abs(at - round(at)) > 1e-6 or not 0 <= round(at) < len(known):
+            return None
+        kept: Floats = known[np.minimum(round(at) + np.arange(len(path.states)), len(known) - 1)]
+        return kept
+
+
+def _moving(reached: int) -> Iterator[int]:
+    """Key frames at which to begin to brake, latest first; at last at once."""
+    yield from (reached - earlier for earlier in _EARLIER if reached - earlier > 0)
+    yield 0
+
+
+def _way(path: RootPath, depth: int) -> float:
+    """Metres walked until a key frame."""
+    return float(np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum())
+
+
+def _first_part(whole: _Whole, horizon: int) -> Motion:
+    """The first `horizon` key intervals."""
+    path, local = whole.root.path, whole.local
+    shown = replace(path, states=path.states[: horizon + 1])
+    part = replace(local, configurations=local.configurations[: horizon + 1], goals=local.goals[: horizon + 1])
+    return Motion(replace(whole.root, path=shown), part)

@@ -1,0 +1,24 @@
+"""What the exact planner is told once."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ExactSettings:
+    """How far the planner looks, how fast limbs may move, and what it prefers. Metres, radians, seconds."""
+
+    look_ahead: float = 2.4  # seconds, whatever the size of the queue
+    waist_samples: int = 6  # postures taken from each clip
+    arm_samples: int = 10
+    waist_speed: float = 2.7  # rad/s, over both components together: a quick bend or turn
+    arm_speed: float = 5.0  # rad/s, over the four components together: a reach at ease is half as fast
+    margin: float = 0.01  # clearance of a posture around its key time
+    skin: float = 0.004  # clearance of the motion that is shown
+    comfort: float = 0.05  # postures with less clearance cost more
+    samples: int = 8  # shown poses checked in each key interval; an even number
+    rounds: int = 16  # motions that may turn out to touch before a group gives up
+    waist_rounds: int = 4  # waist motions that are tried for the arms' sake
+    step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself
+    near_weight: float = 20.0  # of lacking comfort, for each square metre
+    keeping: float = 0.02  # squared radians that another way must be better than the one being followed
+    paces: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried

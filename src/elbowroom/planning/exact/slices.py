@@ -1,0 +1,77 @@
+"""Clearance along a path: of many postures around every key time, and of one motion at every shown moment.
+
+Obstacles come as tables in the frame that carries the limb, one for each of the moments (S to a key interval), and only
+those within the limb's reach of a moment are looked at there.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.world.clearance import clearance_into
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+
+@exact_kernel
+def near_rows(table: Floats32, reach: float, rows: Floats32) -> int:
+    """Copy the boxes of `table` (B, 15) that come within `reach` of the frame's origin to `rows`; their number."""
+    count = 0
+    for b in range(table.shape[0]):
+        box = table[b]
+        size = math.sqrt(box[12] * box[12] + box[13] * box[13] + box[14] * box[14])
+        if math.sqrt(box[0] * box[0] + box[1] * box[1] + box[2] * box[2]) - size < reach:
+            rows[count] = box
+            count += 1
+    return count
+
+
+@exact_kernel
+def swept_clearances(
+    segments: Floats32, own: Floats32, radii: Floats32, tables: Floats32, samples: int, stride: int, reach: float
+) -> tuple[Floats32, int]:
+    """The least clearance (n+1, V+E) of every posture while the frame moves half a key interval to either side.
+
+    `segments` (C, 6, V) stand at every key time, `own` (n+1, C, 6, E) at theirs only; `tables` (n S + 1, B, 15) at
+    `samples` S moments an interval, of which every `stride`-th is looked at. Also the postures that were checked.
+    """
+    depths, size, extra = own.shape[0], segments.shape[2], own.shape[3]
+    out = np.full((depths, size + extra), np.inf, np.float32)
+    rows, moment = np.empty((tables.shape[1], tables.shape[2]), np.float32), np.empty(size, np.float32)
+    moment_own = np.empty(extra, np.float32)
+    half, checks = samples // 2, 0
+    for at in range(0, tables.shape[0], stride):
+        count = near_rows(tables[at], reach, rows)
+        if count == 0:
+            continue
+        clearance_into(segments, radii, rows[:count], moment)
+        checks += size
+        for depth in range(max((at + half - 1) // samples, 0), min((at + half) // samples, depths - 1) + 1):
+            if abs(at - depth * samples) > half:
+                continue
+            clearance_into(own[depth], radii, rows[:count], moment_own)
+            checks += extra
+            for v in range(size):
+                out[depth, v] = min(out[depth, v], moment[v])
+            for e in range(extra):
+                out[depth, size + e] = min(out[depth, size + e], moment_own[e])
+    return out, checks
+
+
+@exact_kernel
+def motion_clearances(segments: Floats32, radii: Floats32, tables: Floats32, reach: float) -> Floats32:
+    """The clearance (M,) of a motion, capsules (C, 6, M), each pose among its own boxes, tables (M, B, 15)."""
+    out = np.full(tables.shape[0], np.inf, np.float32)
+    rows, posture = (
+        np.empty((tables.shape[1], tables.shape[2]), np.float32),
+        np.empty((segments.shape[0], 6, 1), np.float32),
+    )
+    for at in range(tables.shape[0]):
+        count = near_rows(tables[at], reach, rows)
+        if count > 0:
+            posture[:, :, 0] = segments[:, :, at]
+            clearance_into(posture, radii, rows[:count], out[at : at + 1])
+    return out

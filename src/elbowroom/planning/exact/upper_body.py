@@ -1,0 +1,191 @@
+"""Waist, left arm and right arm along a root path, each by its own cheapest way.
+
+The arms hang on the waist. Where the waist's way leaves an arm none, the waist yields: postures under which that arm
+has no free posture at all are ruled out there, and the posture that failed becomes dearer; then all is planned anew.
+"""
+
+from collections.abc import Mapping
+from time import perf_counter_ns
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.clip import MotionClip
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
+from elbowroom.planning.activity_graph import ActivityGraph
+from elbowroom.planning.exact.group_search import OWN, GroupTask, GroupWay, search_group
+from elbowroom.planning.exact.postures import Postures, postures_of
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.shown import Moments, moments_of
+from elbowroom.planning.frames import compose
+from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
+from elbowroom.planning.limb import Limb, limb_of, pose
+from elbowroom.planning.local_planner import columns_of, group_clips
+from elbowroom.planning.motion import Lead
+from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.self_contact import clear_of_trunk
+from elbowroom.world.boxes import tables_in_frames
+from elbowroom.world.clearance import clearance
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_NEARLY = 0.5  # metres: more than any margin
+_DEARER = 0.5  # squared radians: what a waist posture costs more where an arm found no way under it
+_ALIKE = 0.2  # radians: waist postures that are made dearer with it
+
+
+class UpperPlan(NamedTuple):
+    """A local plan and how far it got."""
+
+    plan: LocalPlan
+    reached: int  # n if found, else the deepest key time with a way for every group
+
+
+class _Frames(NamedTuple):
+    positions: Floats  # (M, 3) of the pelvis at the moments
+    rotations: Floats  # (M, 4)
+    boxes: Floats  # (B, 15) in the world
+
+
+class UpperBody:
+    """A humanoid's upper body in a scene: posture sets for a key interval, made once."""
+
+    def __init__(
+        self,
+        humanoid: Humanoid,
+        scene: Scene,
+        settings: ExactSettings,
+        goals: Mapping[DofGroup, GoalFunction] | None = None,
+    ) -> None:
+        self.settings = settings
+        self.goals = goals or natural_walk()
+        self._model = body_model(humanoid)
+        self._limbs = {group: limb_of(self._model, group) for group in LOCAL_GROUPS}
+        self._points = {group: _points(group, limb, settings) for group, limb in self._limbs.items()}
+        self._postures: dict[tuple[DofGroup, float], Postures] = {}
+        self._boxes = scene.boxes.table
+        self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
+
+    def plan(self, path: RootPath, start: Floats, lead: Lead, kept: Floats | None = None) -> UpperPlan:
+        """Motion along `path` from `start` (10,), shown after `lead`; near `kept` (n+1, 10), the last plan's."""
+        moments = moments_of(path, lead, self.settings.samples)
+        postures = {group: self._postures_of(group, path.interval) for group in LOCAL_GROUPS}
+        frames = self._frames(moments, postures)
+        goals = goal_configurations(self.goals, path)
+        before = goals if kept is None else kept
+        ledger = _Ledger()
+
+        def task(group: DofGroup, tables: Floats32) -> GroupTask:
+            at = columns_of(group)
+            return GroupTask(
+                postures[group], tables, goals[:, at], before[:, at], start[at], lead.upper[at],
+                lead.velocity[at],
+            )  # fmt: skip
+
+        waist_task = task(DofGroup.WAIST, tables_in_frames(frames.boxes, frames.positions, frames.rotations))
+        extra = np.zeros((len(goals), len(waist_task.postures.configurations) + OWN))
+        deepest = 0
+        for _ in range(self.settings.waist_rounds):
+            waist = ledger.enter(DofGroup.WAIST, path.horizon, search_group, waist_task, moments, self.settings, extra)
+            if waist.reached < path.horizon:
+                deepest = max(deepest, waist.reached)
+                break
+            tables = self._chest_tables(frames, waist.shown)
+            ways = [waist]
+            for group in LOCAL_GROUPS[1:]:
+                way = ledger.enter(group, path.horizon, search_group, task(group, tables), moments, self.settings, None)
+                if way.reached < path.horizon:
+                    break
+                ways.append(way)
+            else:
+                keys = np.concatenate([way.keys for way in ways], axis=1)
+                return UpperPlan(LocalPlan(PlanStatus.FOUND, keys, goals, ledger.evidence()), path.horizon)
+            deepest = max(deepest, way.reached)
+            self._make_waist_yield(extra, waist_task, waist, postures[group], way.reached + 1, moments, frames)
+        return UpperPlan(LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence()), deepest)
+
+    def _make_waist_yield(
+        self,
+        extra: Floats,
+        task: GroupTask,
+        waist: GroupWay,
+        arm: Postures,
+        depth: int,
+        moments: Moments,
+        frames: _Frames,
+    ) -> None:
+        """Raise the price of waist postures at a depth at which an arm had no way."""
+        points = task.postures.configurations
+        for near in range(max(depth - 1, 1), min(depth + 2, len(extra))):
+            alike = np.linalg.norm(points - waist.keys[near], axis=1) < _ALIKE
+            extra[near, : len(points)][alike] += _DEARER
+            extra[near, len(points) :] += _DEARER
+        at = moments.lead + depth * moments.samples
+        for vertex in np.flatnonzero(waist.free[depth]):
+            if not self._arm_is_free(arm, points[vertex], at, frames):
+                extra[depth, vertex] = np.inf
+
+    def _arm_is_free(self, arm: Postures, waist: Floats, at: int, frames: _Frames) -> bool:
+        """Whether any posture of an arm is free at a moment under a waist posture."""
+        places, turns = chest_frames(self._model, waist[None])
+        here = slice(at, at + 1)
+        table = tables_in_frames(frames.boxes, *compose(frames.positions[here], frames.rotations[here], places, turns))
+        return bool((clearance(arm.segments, arm.limb.radii, table[0]) >= self.settings.margin).any())
+
+    def _frames(self, moments: Moments, postures: Mapping[DofGroup, Postures]) -> _Frames:
+        """The pelvis at the moments and the boxes that the upper body could reach from it, or nearly."""
+        positions, rotations = pelvis_frames(self._model, moments.roots)
+        waist = postures[DofGroup.WAIST]
+        chests = float(np.linalg.norm(chest_frames(self._model, waist.configurations)[0], axis=1).max())
+        reach = max(waist.reach, *(chests + postures[arm].reach for arm in LOCAL_GROUPS[1:])) + _NEARLY
+        gaps = np.linalg.norm(self._boxes[:, None, :3] - positions, axis=2).min(axis=1, initial=np.inf)
+        return _Frames(positions, rotations, self._boxes[gaps - self._box_radii < reach])
+
+    def _chest_tables(self, frames: _Frames, waist: Floats) -> Floats32:
+        places, turns = chest_frames(self._model, waist)
+        return tables_in_frames(frames.boxes, *compose(frames.positions, frames.rotations, places, turns))
+
+    def _postures_of(self, group: DofGroup, interval: float) -> Postures:
+        if (group, interval) not in self._postures:
+            speed = self.settings.waist_speed if group is DofGroup.WAIST else self.settings.arm_speed
+            self._postures[group, interval] = postures_of(self._limbs[group], self._points[group], speed * interval)
+        return self._postures[group, interval]
+
+
+class _Ledger:
+    """What the searches of each group cost together."""
+
+    def __init__(self) -> None:
+        self._rows: dict[DofGroup, GroupEvidence] = {}
+
+    def enter(self, group: DofGroup, horizon: int, search, *arguments) -> GroupWay:  # type: ignore[no-untyped-def]
+        began = perf_counter_ns()
+        way: GroupWay = search(*arguments)
+        spent = perf_counter_ns() - began
+        old = self._rows.get(group)
+        status = PlanStatus.FOUND if way.reached == horizon else PlanStatus.EXHAUSTED
+        checks, nodes, spent_before = (old.checks, old.nodes, old.nanoseconds) if old else (0, 0, 0)
+        self._rows[group] = GroupEvidence(
+            group, status, checks + way.checks, nodes + way.nodes, 0, spent_before + spent
+        )
+        return way
+
+    def evidence(self) -> tuple[GroupEvidence, ...]:
+        return tuple(self._rows.values())
+
+
+def _points(group: DofGroup, limb: Limb, settings: ExactSettings) -> Floats:
+    """The postures of a group: those of its clips that keep clear of the trunk."""
+    samples = settings.waist_samples if group is DofGroup.WAIST else settings.arm_samples
+
+    def accept(configurations: Floats) -> NDArray[np.bool_]:
+        return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
+
+    clips: tuple[MotionClip, ...] = group_clips(group)
+    return ActivityGraph.from_clips(clips, samples, 1.0, 1024, accept).vertices.copy()

@@ -1,0 +1,58 @@
+"""A root path and the upper-body motion on it: what control asks for, and who answers.
+
+The paper's planners dress the root path that they are given. A planner may also choose the path itself, look farther
+ahead than the queue holds, and mind what is shown at this moment: then it is a `MotionPlanner`.
+"""
+
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.planning.command import Command
+from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root_planner import RootPlan, RootPlanner
+
+Floats = NDArray[np.float64]
+
+
+class Lead(NamedTuple):
+    """What is shown at the moment from which a new plan is played, and the way of the root from there to its start."""
+
+    duration: float  # seconds until the plan's first key frame, 0 or more
+    roots: Floats  # (L, 7) root states at equal steps of the duration, the first of them now; none for duration 0
+    upper: Floats  # (10,) waist, left arm, right arm now, radians
+    velocity: Floats  # (10,) their rate of change, rad/s
+
+
+def no_lead(upper: Floats) -> Lead:
+    """A plan that starts now, from rest, at `upper` (10,)."""
+    return Lead(0.0, np.empty((0, 7)), upper, np.zeros_like(upper))
+
+
+class MotionQuery(NamedTuple):
+    """What to plan for."""
+
+    time: float  # seconds, of the first key frame
+    root: RootState  # there
+    upper: Floats  # (10,) there, radians
+    command: Command
+    horizon: int  # key frames that the queue holds
+    interval: float  # seconds between key frames
+    lead: Lead
+
+
+class Motion(NamedTuple):
+    """What was planned."""
+
+    root: RootPlan
+    local: LocalPlan
+
+
+@runtime_checkable
+class MotionPlanner(Protocol):
+    """Plans the root path together with the upper body."""
+
+    def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
+        """Motion of at most `query.horizon` key intervals."""
