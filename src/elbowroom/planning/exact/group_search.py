@@ -1,7 +1,8 @@
 """The way of one group along a root path: cheapest through the lattice, then checked as it will be shown.
 
-What touches between its key frames is banned, with the steps near it, and the next cheapest way is taken: only steps of
-candidate ways are ever swept, and every candidate is swept as a whole.
+A way that touches between its key frames is banned there, with the steps near it; where that happens, all steps of that
+key interval are looked at in one batch, and the next cheapest way is taken. So steps are swept only where the search is
+blocked, and every candidate is swept as a whole.
 """
 
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, shown_motion
-from elbowroom.planning.exact.slices import motion_clearances, swept_clearances
+from elbowroom.planning.exact.slices import closed_steps, motion_clearances, swept_clearances
 from elbowroom.planning.limb import pose
 from elbowroom.planning.self_contact import clear_of_trunk
 
@@ -64,12 +65,14 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
     free = np.isfinite(price[:, : len(task.postures.configurations)])
     if extra is not None:
         price = price + extra
+    closed = np.zeros((len(own) - 1, len(task.postures.targets)), np.bool_)
     lattice = Lattice(
         task.postures.configurations, task.postures.first, task.postures.targets, own, task.goals, task.start, price,
-        task.postures.step, settings.step_weight,
+        closed, len(task.postures.configurations) + _KEPT, task.postures.step, settings.step_weight,
     )  # fmt: skip
     horizon, nodes = len(own) - 1, 0
     ban = Ban(np.empty(0, np.int32), np.empty((0, 2 * len(task.start))), _BAN_RADIUS)
+    looked_at = np.zeros(horizon, np.bool_)
     deepest, way = 0, cheapest_way(lattice, ban)
     for _ in range(settings.rounds):
         nodes += way.nodes
@@ -84,6 +87,10 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         depths = np.unique(np.maximum(touching - moments.lead - 1, 0) // moments.samples)
         deepest = max(deepest, int(depths[0]))
         ban = _banned_too(ban, way.path, depths)
+        for depth in depths[~looked_at[depths]]:
+            at = moments.lead + int(depth) * moments.samples
+            checks += closed_steps(task.postures, task.tables[at : at + moments.samples + 1], skin, closed[depth])
+            looked_at[depth] = True
         way = cheapest_way(lattice, ban)
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
 

@@ -16,9 +16,11 @@ from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
 
 _WIDTH = 4  # components of the widest group: inner loops of a fixed length
 _ROUNDING = 1.0 + 1e-9
+_SAME = 1e-9  # radians
 
 
 class Lattice(NamedTuple):
@@ -31,6 +33,8 @@ class Lattice(NamedTuple):
     goals: Floats  # (n+1, d)
     start: Floats  # (d,) the posture at depth 0
     price: Floats  # (n+1, V+E) of each node; infinite where it is not free; row 0 is not used
+    closed: Bools  # (n, steps) of `targets` that must not be taken at a depth
+    kept: int  # the node of every depth that is the last plan's: its steps are banned only for themselves
     step: float  # radians
     step_weight: float
 
@@ -53,7 +57,7 @@ class Way(NamedTuple):
 
 
 @exact_kernel
-def _banned(ban: Ban, depth: int, a: Floats, b: Floats) -> bool:
+def _banned(ban: Ban, depth: int, a: Floats, b: Floats, radius: float) -> bool:
     size = ban.steps.shape[1] // 2
     for k in range(ban.depths.shape[0]):
         if ban.depths[k] != depth:
@@ -61,7 +65,7 @@ def _banned(ban: Ban, depth: int, a: Floats, b: Floats) -> bool:
         total = 0.0
         for i in range(size):
             total += (ban.steps[k, i] - a[i]) ** 2 + (ban.steps[k, size + i] - b[i]) ** 2
-        if total <= ban.radius * ban.radius:
+        if total <= radius * radius:
             return True
     return False
 
@@ -82,19 +86,19 @@ def _offer(
     banning: tuple[Ban, bool, float],
     source: tuple[Floats, int, float],
     shift: Floats,
-    targets: tuple[Floats, Ints, int, int],
+    targets: tuple[Floats, Ints, int, int, Bools],
     costs: Floats,
     parents: Ints,
 ) -> None:
     """Offer the way to one node to the nodes that may follow it; `costs` and `parents` are those of the next depth."""
     ban, bans, longest = banning
     a, node, cost = source
-    rows, numbers, first, last = targets
-    price = lattice.price[depth + 1]
+    rows, numbers, first, last, closed = targets
+    price, kept = lattice.price[depth + 1], lattice.kept
     for k in range(first, last):
         target = numbers[k]
         bound = cost + price[target]
-        if bound >= costs[target]:
+        if bound >= costs[target] or closed[k]:
             continue
         moved, changed = 0.0, 0.0
         for i in range(_WIDTH):
@@ -102,7 +106,11 @@ def _offer(
             moved += step * step
             changed += (step - shift[i]) * (step - shift[i])
         total = bound + lattice.step_weight * changed
-        if moved > longest or total >= costs[target] or (bans and _banned(ban, depth, a, rows[target])):
+        if (
+            moved > longest
+            or total >= costs[target]
+            or (bans and _banned(ban, depth, a, rows[target], _SAME if node == kept and target == kept else ban.radius))
+        ):
             continue
         costs[target] = total
         parents[target] = node
@@ -121,17 +129,17 @@ def _settle(
     for i in range(lattice.goals.shape[1]):
         shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
     banning = (ban, bans, lattice.step * lattice.step * _ROUNDING)
-    out, origins = costs[depth + 1], parents[depth + 1]
+    out, origins, none = costs[depth + 1], parents[depth + 1], np.zeros(total, np.bool_)
     for node in range(total - 1, -1, -1):
         cost = costs[depth, node]
         if cost == np.inf:
             continue
         source = (before[node], node, cost)
         if depth == 0 or node >= size:
-            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total), out, origins)
+            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total, none), out, origins)
         else:
-            known = (after, lattice.targets, lattice.first[node], lattice.first[node + 1])
-            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total), out, origins)
+            known = (after, lattice.targets, lattice.first[node], lattice.first[node + 1], lattice.closed[depth])
+            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total, none), out, origins)
             _offer(lattice, depth, banning, source, shift, known, out, origins)
 
 

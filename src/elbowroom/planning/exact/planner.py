@@ -68,6 +68,8 @@ class ExactPlanner:
                 return _Whole(root, upper.plan)
             if first is None:
                 first = root, upper
+                if upper.reached == 0:
+                    break
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         assert first is not None
         return self._stop(root_planner, query, *first)
@@ -82,7 +84,19 @@ class ExactPlanner:
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
                 return _Whole(replace(root, path=path, kind=kind), stopping.plan)
-        return _Whole(root, upper.plan)
+        return self._continued(query) or _Whole(root, upper.plan)
+
+    def _continued(self, query: MotionQuery) -> _Whole | None:
+        """What is left of the last plan, if it led to where this one starts."""
+        if self._last is None or not len(self._last.local.configurations):
+            return None
+        root, local = self._last
+        at = round((query.time - root.path.start_time) / query.interval)
+        if not 0 <= at < len(root.path.states) - 1 or not np.allclose(root.path.states[at], query.root, atol=1e-9):
+            return None
+        path = RootPath(query.time, query.interval, root.path.states[at:])
+        rest = replace(local, configurations=local.configurations[at:], goals=local.goals[at:])
+        return _Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
 
     def _dress(self, path: RootPath, query: MotionQuery) -> UpperPlan:
         return self._body.plan(path, query.upper, query.lead, self._kept(path))

@@ -10,10 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.postures import BETWEEN, Postures
 from elbowroom.world.clearance import clearance_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+EARLY = 1  # moments before and after its own at which a posture on the way is looked at
 
 
 @exact_kernel
@@ -75,3 +79,33 @@ def motion_clearances(segments: Floats32, radii: Floats32, tables: Floats32, rea
             posture[:, :, 0] = segments[:, :, at]
             clearance_into(posture, radii, rows[:count], out[at : at + 1])
     return out
+
+
+@exact_kernel
+def closed_steps(postures: Postures, tables: Floats32, skin: float, closed: Bools) -> int:
+    """Mark in `closed` (E,) the steps within one key interval that touch; returns the postures that were checked.
+
+    `tables` (S+1, B, 15) are the boxes at the interval's moments. A step is looked at on its way, as if it went evenly,
+    and a moment earlier and later: playback eases in and out.
+    """
+    count = postures.between.shape[3]
+    free = np.ones((2, count), np.bool_)  # upward, downward
+    found = np.empty(count, np.float32)
+    rows = np.empty((tables.shape[1], tables.shape[2]), np.float32)
+    last, checks = tables.shape[0] - 1, 0
+    for part in range(BETWEEN):
+        for way in range(2):
+            middle = (part + 1 if way == 0 else BETWEEN - part) * last // (BETWEEN + 1)
+            for at in range(middle - EARLY, middle + EARLY + 1):
+                near = near_rows(tables[at], postures.reach, rows)
+                if near == 0:
+                    continue
+                clearance_into(postures.between[part], postures.limb.radii, rows[:near], found)
+                checks += count
+                for i in range(count):
+                    free[way, i] &= found[i] >= skin
+    for k in range(closed.shape[0]):
+        pair = postures.pairs[k]
+        if pair >= 0:
+            closed[k] = not free[0 if postures.upward[k] else 1, pair]
+    return checks
