@@ -20,11 +20,13 @@ from elbowroom.planning.self_contact import clear_of_trunk
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Ints = NDArray[np.int32]
 
 OWN = 4  # postures of a key time alone: goal, what the last plan had, the start, on the way from start to goal
 _GOAL, _KEPT, _HOLD, _BACK = range(OWN)
 _STRIDE = 2  # every other shown moment is looked at around a key time
 _BAN_RADIUS = 0.1  # radians: steps so near to one that touches are banned with it
+_LIKE = 0.15  # radians: postures so near to each other are taken to touch in the same steps
 _BACK_STEP = 0.8  # of the longest step
 
 
@@ -66,9 +68,11 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
     if extra is not None:
         price = price + extra
     closed = np.zeros((len(own) - 1, len(task.postures.targets)), np.bool_)
+    known = task.postures
+    likes, start_like = _likes(task, own), int(_likes(task, task.start[None])[0])
     lattice = Lattice(
-        task.postures.configurations, task.postures.first, task.postures.targets, own, task.goals, task.start, price,
-        closed, len(task.postures.configurations) + _KEPT, task.postures.step, settings.step_weight,
+        known.configurations, known.first, known.targets, own, task.goals, task.start, price, closed, likes, start_like,
+        len(known.configurations) + _KEPT, known.step, settings.step_weight,
     )  # fmt: skip
     horizon, nodes = len(own) - 1, 0
     ban = Ban(np.empty(0, np.int32), np.empty((0, 2 * len(task.start))), _BAN_RADIUS)
@@ -93,6 +97,13 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
             looked_at[depth] = True
         way = cheapest_way(lattice, ban)
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
+
+
+def _likes(task: GroupTask, postures: Floats) -> Ints:
+    """The known posture most like each of `postures` (..., d), or -1 where none is near."""
+    away = np.linalg.norm(postures[..., None, :] - task.postures.configurations, axis=-1)
+    nearest = np.argmin(away, axis=-1)
+    return np.where(away.min(axis=-1) < _LIKE, nearest, -1).astype(np.int32)
 
 
 def _start_clearance(task: GroupTask, moments: Moments) -> float:

@@ -34,6 +34,8 @@ class Lattice(NamedTuple):
     start: Floats  # (d,) the posture at depth 0
     price: Floats  # (n+1, V+E) of each node; infinite where it is not free; row 0 is not used
     closed: Bools  # (n, steps) of `targets` that must not be taken at a depth
+    like: Ints  # (n+1, E) the posture most like each of `own`, or -1
+    start_like: int
     kept: int  # the node of every depth that is the last plan's: its steps are banned only for themselves
     step: float  # radians
     step_weight: float
@@ -117,6 +119,30 @@ def _offer(
 
 
 @exact_kernel
+def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
+    """Which steps from `node` to and from a key time's own postures are closed: as for the posture most like each.
+
+    Steps between two such postures, the goal's own motion among them, stay open until they are found to touch.
+    """
+    size = lattice.postures.shape[0]
+    gates[:] = False
+    twin = node
+    if depth == 0:
+        twin = lattice.start_like
+    elif node >= size:
+        twin = lattice.like[depth, node - size]
+    if twin < 0:
+        return
+    for k in range(lattice.first[twin], lattice.first[twin + 1]):
+        if not lattice.closed[depth, k]:
+            continue
+        target = lattice.targets[k]
+        gates[target] = True
+        for e in range(lattice.like.shape[1]):
+            gates[size + e] |= twin == node and lattice.like[depth + 1, e] == target
+
+
+@exact_kernel
 def _settle(
     lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, everyone: Ints, costs: Floats, parents: Ints
 ) -> None:
@@ -129,17 +155,18 @@ def _settle(
     for i in range(lattice.goals.shape[1]):
         shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
     banning = (ban, bans, lattice.step * lattice.step * _ROUNDING)
-    out, origins, none = costs[depth + 1], parents[depth + 1], np.zeros(total, np.bool_)
+    out, origins, gates = costs[depth + 1], parents[depth + 1], np.zeros(total, np.bool_)
     for node in range(total - 1, -1, -1):
         cost = costs[depth, node]
         if cost == np.inf:
             continue
         source = (before[node], node, cost)
+        _set_gates(lattice, depth, node, gates)
         if depth == 0 or node >= size:
-            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total, none), out, origins)
+            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total, gates), out, origins)
         else:
             known = (after, lattice.targets, lattice.first[node], lattice.first[node + 1], lattice.closed[depth])
-            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total, none), out, origins)
+            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total, gates), out, origins)
             _offer(lattice, depth, banning, source, shift, known, out, origins)
 
 
