@@ -33,7 +33,8 @@ class Axis:
         """A tick's name."""
         if self.percent:
             return f"{100.0 * value:.0f} %"
-        return f"{value:,.0f}".replace(",", " ") if value >= 10.0 or value == int(value) else f"{value:g}"
+        thousands = value >= 1e3 and value % 1e3 == 0.0
+        return f"{value / 1e3:g}k" if thousands else f"{value:g}"
 
 
 @dataclass(frozen=True)

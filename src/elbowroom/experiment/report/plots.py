@@ -167,7 +167,7 @@ def _plan_ms(table: Table1, cell: Cell) -> Floats:
 
 def _frame_line(axis: Axis) -> str:
     y = axis.place(FRAME_MS)
-    return tag("line", x1=38, x2=240, y1=y, y2=y, class_="limit") + label("1/60 s", 240.0, y - 3.0, class_="note")
+    return tag("line", x1=38, x2=240, y1=y, y2=y, class_="limit") + label("1/60 s", 41.0, y - 3.0, class_="note")
 
 
 def _violin(axis: Axis, place: tuple[Sequence[int], int, int, int], planner: str, values: Floats) -> str:
