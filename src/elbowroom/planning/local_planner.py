@@ -49,7 +49,7 @@ class LocalPlannerSettings:
     arm: GroupSettings = field(default=GroupSettings(samples_per_clip=10, radius=0.5))
     margin: float = 0.01  # metres of clearance that count as free while the root stands
     margin_of_way: float = 0.35  # what is added to it for each metre that the root moves to or from the key frame
-    budget: int = 20_000  # collision checks for each group and plan
+    budget: int = 60_000  # collision checks for each group and plan
     capacity: int = 384  # vertices of a graph; a plan that begins with a full graph begins it anew
 
     def of(self, group: DofGroup) -> GroupSettings:
