@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way
+from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way, new_work
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, shown_motion
@@ -77,7 +77,8 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
     horizon, nodes = len(own) - 1, 0
     ban = Ban(np.empty(0, np.int32), np.empty((0, 2 * len(task.start))), _BAN_RADIUS)
     looked_at = np.zeros(horizon, np.bool_)
-    deepest, way = 0, cheapest_way(lattice, ban)
+    work = new_work(lattice)
+    deepest, way = 0, cheapest_way(lattice, ban, work, 0)
     for _ in range(settings.rounds):
         nodes += way.nodes
         if way.reached < horizon:
@@ -93,9 +94,10 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         ban = _banned_too(ban, way.path, depths)
         for depth in depths[~looked_at[depths]]:
             at = moments.lead + int(depth) * moments.samples
-            checks += closed_steps(task.postures, task.tables[at : at + moments.samples + 1], skin, closed[depth])
+            tables, sources = task.tables[at : at + moments.samples + 1], np.isfinite(work.costs[depth])
+            checks += closed_steps(known, tables, skin, sources, np.isfinite(price[depth + 1]), closed[depth])
             looked_at[depth] = True
-        way = cheapest_way(lattice, ban)
+        way = cheapest_way(lattice, ban, work, int(depths[0]))
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
 
 

@@ -111,7 +111,16 @@ def _offer(
         if (
             moved > longest
             or total >= costs[target]
-            or (bans and _banned(ban, depth, a, rows[target], _SAME if node == kept and target == kept else ban.radius))
+            or (
+                bans
+                and _banned(
+                    ban,
+                    depth,
+                    a,
+                    rows[target],
+                    _SAME if target == kept and (depth == 0 or node == kept) else ban.radius,
+                )
+            )
         ):
             continue
         costs[target] = total
@@ -156,10 +165,10 @@ def _settle(
         shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
     banning = (ban, bans, lattice.step * lattice.step * _ROUNDING)
     out, origins, gates = costs[depth + 1], parents[depth + 1], np.zeros(total, np.bool_)
-    for node in range(total - 1, -1, -1):
+    for node in np.argsort(costs[depth], kind="mergesort"):
         cost = costs[depth, node]
         if cost == np.inf:
-            continue
+            break
         source = (before[node], node, cost)
         _set_gates(lattice, depth, node, gates)
         if depth == 0 or node >= size:
@@ -170,21 +179,39 @@ def _settle(
             _offer(lattice, depth, banning, source, shift, known, out, origins)
 
 
+class Work(NamedTuple):
+    """What is known of the cheapest ways, kept while bans are added."""
+
+    costs: Floats  # (n+1, V+E) of the cheapest way to each node
+    parents: Ints  # (n+1, V+E) the node before it on that way
+
+
+def new_work(lattice: Lattice) -> Work:
+    """Nothing but the start: any node of depth 0 may stand for it."""
+    work = Work(np.full(lattice.price.shape, np.inf), np.full(lattice.price.shape, -1, np.int32))
+    work.costs[0, 0] = 0.0
+    return work
+
+
 @exact_kernel
-def cheapest_way(lattice: Lattice, ban: Ban) -> Way:
-    """The cheapest way from the start to the last depth, or to the deepest that can be reached."""
+def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
+    """The cheapest way from the start to the last depth, or to the deepest that can be reached.
+
+    `work` is right up to depth `begin`, 0 at first: later it is the least depth at which steps were banned or closed.
+    """
     size, total, width = lattice.postures.shape[0], lattice.price.shape[1], lattice.start.shape[0]
-    horizon = lattice.price.shape[0] - 1
-    costs = np.full((horizon + 1, total), np.inf)
-    parents = np.full((horizon + 1, total), -1, np.int32)
+    costs, parents = work.costs, work.parents
     everyone = np.arange(total).astype(np.int32)
     before, after = np.zeros((total, _WIDTH)), np.zeros((total, _WIDTH))
     before[:size, :width] = lattice.postures
     after[:size, :width] = lattice.postures
-    before[total - 1, :width] = lattice.start
-    costs[0, total - 1] = 0.0
-    reached, nodes = 0, 1
-    for depth in range(horizon):
+    _fill(lattice, begin, before)
+    if begin == 0:
+        before[0, :] = 0.0
+        before[0, :width] = lattice.start
+    reached, nodes = begin, 0
+    costs[begin + 1 :] = np.inf
+    for depth in range(begin, costs.shape[0] - 1):
         _fill(lattice, depth + 1, after)
         _settle(lattice, ban, depth, before, after, everyone, costs, parents)
         found = 0
@@ -193,6 +220,8 @@ def cheapest_way(lattice: Lattice, ban: Ban) -> Way:
         if found == 0:
             break
         reached, nodes = depth + 1, nodes + found
+        if depth == 0:
+            before[:size, :width] = lattice.postures
         before, after = after, before
     return Way(reached, costs[reached].min(), _traced(lattice, costs, parents, reached), nodes)
 

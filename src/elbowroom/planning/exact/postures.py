@@ -32,6 +32,8 @@ class Postures(NamedTuple):
     first: Ints  # (V+1,) where the steps from a posture begin in `targets`
     targets: Ints  # (E,) where each step leads, ascending for each posture
     pairs: Ints  # (E,) the unordered pair of postures that a step joins; -1 for staying
+    low: Ints  # (P,) the lower number of each pair
+    high: Ints  # (P,)
     upward: Bools  # (E,) whether it goes from the lower number to the higher
     between: Floats32  # (BETWEEN, C, 6, P) capsules of the postures on the way from the lower number to the higher
     step: float  # radians
@@ -49,8 +51,9 @@ def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
     ways = [pose(limb, points[low] + part * (points[high] - points[low])) for part in parts]
     clear = np.all([clear_of_trunk(way, limb.trunk, limb.allowed) for way in ways], axis=0)
     between = np.ascontiguousarray(np.stack(ways)[..., clear])
-    steps = _steps(len(points), low[clear], high[clear])
-    return Postures(limb, points, segments, *steps, between, float(step), reach)
+    low, high = low[clear], high[clear]
+    first, targets, pairs, upward = _steps(len(points), low, high)
+    return Postures(limb, points, segments, first, targets, pairs, low, high, upward, between, float(step), reach)
 
 
 @exact_kernel

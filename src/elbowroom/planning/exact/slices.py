@@ -4,8 +4,6 @@ Obstacles come as tables in the frame that carries the limb, one for each of the
 those within the limb's reach of a moment are looked at there.
 """
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +14,7 @@ from elbowroom.world.clearance import clearance_into
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 EARLY = 1  # moments before and after its own at which a posture on the way is looked at
 
@@ -25,12 +24,28 @@ def near_rows(table: Floats32, reach: float, rows: Floats32) -> int:
     """Copy the boxes of `table` (B, 15) that come within `reach` of the frame's origin to `rows`; their number."""
     count = 0
     for b in range(table.shape[0]):
-        box = table[b]
-        size = math.sqrt(box[12] * box[12] + box[13] * box[13] + box[14] * box[14])
-        if math.sqrt(box[0] * box[0] + box[1] * box[1] + box[2] * box[2]) - size < reach:
+        box, total = table[b], 0.0
+        for i in range(3):
+            place = box[3 + 3 * i] * box[0] + box[4 + 3 * i] * box[1] + box[5 + 3 * i] * box[2]
+            beyond = max(abs(place) - box[12 + i], 0.0)
+            total += beyond * beyond
+        if total < reach * reach:
             rows[count] = box
             count += 1
     return count
+
+
+@exact_kernel
+def any_free(segments: Floats32, radii: Floats32, tables: Floats32, reach: float, margin: float) -> Bools:
+    """Whether any of the postures (C, 6, V) keeps `margin` from the boxes of each table (F, B, 15): shape (F,)."""
+    free = np.ones(tables.shape[0], np.bool_)
+    rows, found = np.empty((tables.shape[1], tables.shape[2]), np.float32), np.empty(segments.shape[2], np.float32)
+    for f in range(tables.shape[0]):
+        count = near_rows(tables[f], reach, rows)
+        if count > 0:
+            clearance_into(segments, radii, rows[:count], found)
+            free[f] = found.max() >= margin
+    return free
 
 
 @exact_kernel
@@ -82,28 +97,54 @@ def motion_clearances(segments: Floats32, radii: Floats32, tables: Floats32, rea
 
 
 @exact_kernel
-def closed_steps(postures: Postures, tables: Floats32, skin: float, closed: Bools) -> int:
+def _open_pairs(postures: Postures, sources: Bools, targets: Bools) -> Indices:
+    """The pairs that a way may use: from a source to a target, in one direction or the other."""
+    pairs, count = np.empty(postures.low.shape[0], np.int64), 0
+    for i in range(pairs.shape[0]):
+        low, high = postures.low[i], postures.high[i]
+        if (sources[low] and targets[high]) or (sources[high] and targets[low]):
+            pairs[count] = i
+            count += 1
+    return pairs[:count]
+
+
+@exact_kernel
+def _gathered(segments: Floats32, pairs: Indices) -> Floats32:
+    out = np.empty((segments.shape[0], segments.shape[1], pairs.shape[0]), np.float32)
+    for c in range(segments.shape[0]):
+        for i in range(segments.shape[1]):
+            for n in range(pairs.shape[0]):
+                out[c, i, n] = segments[c, i, pairs[n]]
+    return out
+
+
+@exact_kernel
+def closed_steps(
+    postures: Postures, tables: Floats32, skin: float, sources: Bools, targets: Bools, closed: Bools
+) -> int:
     """Mark in `closed` (E,) the steps within one key interval that touch; returns the postures that were checked.
 
-    `tables` (S+1, B, 15) are the boxes at the interval's moments. A step is looked at on its way, as if it went evenly,
-    and a moment earlier and later: playback eases in and out.
+    `tables` (S+1, B, 15) are the boxes at the interval's moments; only steps from `sources` (V,) to `targets` (V,) are
+    looked at. A step is looked at on its way, as if it went evenly, and a moment earlier and later: playback eases in
+    and out.
     """
-    count = postures.between.shape[3]
-    free = np.ones((2, count), np.bool_)  # upward, downward
-    found = np.empty(count, np.float32)
+    pairs = _open_pairs(postures, sources, targets)
+    free = np.ones((2, postures.low.shape[0]), np.bool_)  # upward, downward
+    found = np.empty(pairs.shape[0], np.float32)
     rows = np.empty((tables.shape[1], tables.shape[2]), np.float32)
     last, checks = tables.shape[0] - 1, 0
     for part in range(BETWEEN):
+        segments = _gathered(postures.between[part], pairs)
         for way in range(2):
             middle = (part + 1 if way == 0 else BETWEEN - part) * last // (BETWEEN + 1)
             for at in range(middle - EARLY, middle + EARLY + 1):
                 near = near_rows(tables[at], postures.reach, rows)
                 if near == 0:
                     continue
-                clearance_into(postures.between[part], postures.limb.radii, rows[:near], found)
-                checks += count
-                for i in range(count):
-                    free[way, i] &= found[i] >= skin
+                clearance_into(segments, postures.limb.radii, rows[:near], found)
+                checks += found.shape[0]
+                for i in range(found.shape[0]):
+                    free[way, pairs[i]] &= found[i] >= skin
     for k in range(closed.shape[0]):
         pair = postures.pairs[k]
         if pair >= 0:

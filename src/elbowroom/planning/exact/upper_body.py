@@ -20,6 +20,7 @@ from elbowroom.planning.exact.group_search import OWN, GroupTask, GroupWay, sear
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, moments_of
+from elbowroom.planning.exact.slices import any_free
 from elbowroom.planning.frames import compose
 from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
@@ -29,7 +30,6 @@ from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import clear_of_trunk
 from elbowroom.world.boxes import tables_in_frames
-from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -126,17 +126,16 @@ class UpperBody:
             alike = np.linalg.norm(points - waist.keys[near], axis=1) < _ALIKE
             extra[near, : len(points)][alike] += _DEARER
             extra[near, len(points) :] += _DEARER
-        at = moments.lead + depth * moments.samples
-        for vertex in np.flatnonzero(waist.free[depth]):
-            if not self._arm_is_free(arm, points[vertex], at, frames):
-                extra[depth, vertex] = np.inf
+        candidates = np.flatnonzero(waist.free[depth])
+        tables = self._tables_under(points[candidates], moments.lead + depth * moments.samples, frames)
+        free = any_free(arm.segments, arm.limb.radii, tables, arm.reach, self.settings.margin)
+        extra[depth, candidates[~free]] = np.inf
 
-    def _arm_is_free(self, arm: Postures, waist: Floats, at: int, frames: _Frames) -> bool:
-        """Whether any posture of an arm is free at a moment under a waist posture."""
-        places, turns = chest_frames(self._model, waist[None])
-        here = slice(at, at + 1)
-        table = tables_in_frames(frames.boxes, *compose(frames.positions[here], frames.rotations[here], places, turns))
-        return bool((clearance(arm.segments, arm.limb.radii, table[0]) >= self.settings.margin).any())
+    def _tables_under(self, waists: Floats, at: int, frames: _Frames) -> Floats32:
+        """The boxes (F, B, 15) in the chest frames that waist postures (F, 2) would have at a moment."""
+        places, turns = chest_frames(self._model, waists)
+        here = np.full(len(waists), at)
+        return tables_in_frames(frames.boxes, *compose(frames.positions[here], frames.rotations[here], places, turns))
 
     def _frames(self, moments: Moments, postures: Mapping[DofGroup, Postures]) -> _Frames:
         """The pelvis at the moments and the boxes that the upper body could reach from it, or nearly."""
