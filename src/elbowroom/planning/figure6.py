@@ -34,7 +34,7 @@ _INSIDE = 1.0 - 1e-9  # random neighbours lie strictly within r, rounding includ
 
 
 def search(
-    roadmap: Roadmap, goals: Floats, rng: np.random.Generator, margins: Floats, budget: int = 20_000
+    roadmap: Roadmap, goals: Floats, rng: np.random.Generator, margins: Floats, budget: int = 60_000
 ) -> SearchResult:
     """Search a path of depth n from the roadmap's source (paper, Figure 6).
 
