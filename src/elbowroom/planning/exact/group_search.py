@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way, new_work
+from elbowroom.planning.exact.lattice import Ban, Lattice, Work, cheapest_way, new_work
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, shown_motion
@@ -21,6 +21,7 @@ from elbowroom.planning.self_contact import clear_of_trunk
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
 
 OWN = 4  # postures of a key time alone: goal, what the last plan had, the start, on the way from start to goal
 _GOAL, _KEPT, _HOLD, _BACK = range(OWN)
@@ -94,11 +95,24 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         ban = _banned_too(ban, way.path, depths)
         for depth in depths[~looked_at[depths]]:
             at = moments.lead + int(depth) * moments.samples
-            tables, sources = task.tables[at : at + moments.samples + 1], np.isfinite(work.costs[depth])
-            checks += closed_steps(known, tables, skin, sources, np.isfinite(price[depth + 1]), closed[depth])
+            tables = task.tables[at : at + moments.samples + 1]
+            sources, targets = _ends(lattice, work, int(depth))
+            checks += closed_steps(known, tables, skin, sources, targets, closed[depth])
             looked_at[depth] = True
         way = cheapest_way(lattice, ban, work, int(depths[0]))
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
+
+
+def _ends(lattice: Lattice, work: Work, depth: int) -> tuple[Bools, Bools]:
+    """The known postures (V,) from which, and to which, steps at a depth may go, or steps of postures like them."""
+    size = len(lattice.postures)
+    reached, free = np.isfinite(work.costs[depth]), np.isfinite(lattice.price[depth + 1])
+    sources, targets = reached[:size] & (depth > 0), free[:size].copy()
+    like = lattice.like[depth][reached[size:]] if depth > 0 else np.array([lattice.start_like])
+    sources[like[like >= 0]] = True
+    like = lattice.like[depth + 1][free[size:]]
+    targets[like[like >= 0]] = True
+    return sources, targets
 
 
 def _likes(task: GroupTask, postures: Floats) -> Ints:

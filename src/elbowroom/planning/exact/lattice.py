@@ -82,52 +82,6 @@ def _fill(lattice: Lattice, depth: int, rows: Floats) -> None:
 
 
 @exact_kernel
-def _offer(
-    lattice: Lattice,
-    depth: int,
-    banning: tuple[Ban, bool, float],
-    source: tuple[Floats, int, float],
-    shift: Floats,
-    targets: tuple[Floats, Ints, int, int, Bools],
-    costs: Floats,
-    parents: Ints,
-) -> None:
-    """Offer the way to one node to the nodes that may follow it; `costs` and `parents` are those of the next depth."""
-    ban, bans, longest = banning
-    a, node, cost = source
-    rows, numbers, first, last, closed = targets
-    price, kept = lattice.price[depth + 1], lattice.kept
-    for k in range(first, last):
-        target = numbers[k]
-        bound = cost + price[target]
-        if bound >= costs[target] or closed[k]:
-            continue
-        moved, changed = 0.0, 0.0
-        for i in range(_WIDTH):
-            step = rows[target, i] - a[i]
-            moved += step * step
-            changed += (step - shift[i]) * (step - shift[i])
-        total = bound + lattice.step_weight * changed
-        if (
-            moved > longest
-            or total >= costs[target]
-            or (
-                bans
-                and _banned(
-                    ban,
-                    depth,
-                    a,
-                    rows[target],
-                    _SAME if target == kept and (depth == 0 or node == kept) else ban.radius,
-                )
-            )
-        ):
-            continue
-        costs[target] = total
-        parents[target] = node
-
-
-@exact_kernel
 def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
     """Which steps from `node` to and from a key time's own postures are closed: as for the posture most like each.
 
@@ -152,31 +106,48 @@ def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
 
 
 @exact_kernel
-def _settle(
-    lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, everyone: Ints, costs: Floats, parents: Ints
-) -> None:
-    """From the costs of the nodes at `depth` those of the next; rows `before`, `after` (V+E, 4) are configurations."""
+def _settle(lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, costs: Floats, parents: Ints) -> int:
+    """From the costs of the nodes at `depth` those of the next; returns how many of those have a way.
+
+    Rows of `before` and `after` (V+E, 4) are the nodes' configurations; `costs` and `parents` are the next depth's in
+    row 1, row 0 is known. Cheap nodes go first, so that most dearer ways are dismissed by their price alone.
+    """
     size, total = lattice.postures.shape[0], lattice.price.shape[1]
-    bans = False
-    for k in range(ban.depths.shape[0]):
-        bans |= ban.depths[k] == depth
     shift = np.zeros(_WIDTH)
     for i in range(lattice.goals.shape[1]):
         shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
-    banning = (ban, bans, lattice.step * lattice.step * _ROUNDING)
-    out, origins, gates = costs[depth + 1], parents[depth + 1], np.zeros(total, np.bool_)
-    for node in np.argsort(costs[depth], kind="mergesort"):
-        cost = costs[depth, node]
+    price, closed, gates = lattice.price[depth + 1], lattice.closed[depth], np.zeros(total, np.bool_)
+    first, targets, known, out, origins = lattice.first, lattice.targets, costs[0], costs[1], parents[1]
+    gated, bans = closed.any(), (ban.depths == depth).any()
+    longest, weight, kept = lattice.step * lattice.step * _ROUNDING, lattice.step_weight, lattice.kept
+    for node in np.argsort(known, kind="mergesort"):
+        cost = known[node]
         if cost == np.inf:
             break
-        source = (before[node], node, cost)
-        _set_gates(lattice, depth, node, gates)
-        if depth == 0 or node >= size:
-            _offer(lattice, depth, banning, source, shift, (after, everyone, 0, total, gates), out, origins)
-        else:
-            known = (after, lattice.targets, lattice.first[node], lattice.first[node + 1], lattice.closed[depth])
-            _offer(lattice, depth, banning, source, shift, (after, everyone, size, total, gates), out, origins)
-            _offer(lattice, depth, banning, source, shift, known, out, origins)
+        if gated:
+            _set_gates(lattice, depth, node, gates)
+        listed = depth > 0 and node < size  # its steps are listed; others may lead to any node
+        begin, own = (first[node], size) if listed else (0, 0)
+        steps = first[node + 1] - begin if listed else 0
+        for k in range(steps + total - own):
+            target = targets[begin + k] if k < steps else own + k - steps
+            bound = cost + price[target]
+            if bound >= out[target] or (closed[begin + k] if k < steps else gates[target]):
+                continue
+            moved, changed = 0.0, 0.0
+            for i in range(_WIDTH):
+                step = after[target, i] - before[node, i]
+                moved += step * step
+                changed += (step - shift[i]) * (step - shift[i])
+            if moved > longest or bound + weight * changed >= out[target]:
+                continue
+            if bans:
+                radius = _SAME if target == kept and (depth == 0 or node == kept) else ban.radius
+                if _banned(ban, depth, before[node], after[target], radius):
+                    continue
+            out[target] = bound + weight * changed
+            origins[target] = node
+    return np.sum(out < np.inf)
 
 
 class Work(NamedTuple):
@@ -201,7 +172,6 @@ def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
     """
     size, total, width = lattice.postures.shape[0], lattice.price.shape[1], lattice.start.shape[0]
     costs, parents = work.costs, work.parents
-    everyone = np.arange(total).astype(np.int32)
     before, after = np.zeros((total, _WIDTH)), np.zeros((total, _WIDTH))
     before[:size, :width] = lattice.postures
     after[:size, :width] = lattice.postures
@@ -213,10 +183,7 @@ def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
     costs[begin + 1 :] = np.inf
     for depth in range(begin, costs.shape[0] - 1):
         _fill(lattice, depth + 1, after)
-        _settle(lattice, ban, depth, before, after, everyone, costs, parents)
-        found = 0
-        for node in range(total):
-            found += costs[depth + 1, node] < np.inf
+        found = _settle(lattice, ban, depth, before, after, costs[depth : depth + 2], parents[depth : depth + 2])
         if found == 0:
             break
         reached, nodes = depth + 1, nodes + found
