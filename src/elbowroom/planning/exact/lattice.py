@@ -89,11 +89,10 @@ def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
     """
     size = lattice.postures.shape[0]
     gates[:] = False
+    listed = depth > 0 and node < size
     twin = node
-    if depth == 0:
-        twin = lattice.start_like
-    elif node >= size:
-        twin = lattice.like[depth, node - size]
+    if not listed:
+        twin = lattice.like[depth, node - size] if depth > 0 else lattice.start_like
     if twin < 0:
         return
     for k in range(lattice.first[twin], lattice.first[twin + 1]):
@@ -102,7 +101,7 @@ def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
         target = lattice.targets[k]
         gates[target] = True
         for e in range(lattice.like.shape[1]):
-            gates[size + e] |= twin == node and lattice.like[depth + 1, e] == target
+            gates[size + e] |= listed and lattice.like[depth + 1, e] == target
 
 
 @exact_kernel
@@ -147,7 +146,7 @@ def _settle(lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Float
                     continue
             out[target] = bound + weight * changed
             origins[target] = node
-    return np.sum(out < np.inf)
+    return int(np.sum(out < np.inf))
 
 
 class Work(NamedTuple):
