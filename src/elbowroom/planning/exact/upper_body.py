@@ -75,7 +75,7 @@ class UpperBody:
     def plan(self, path: RootPath, start: Floats, lead: Lead, kept: Floats | None = None) -> UpperPlan:
         """Motion along `path` from `start` (10,), shown after `lead`; near `kept` (n+1, 10), the last plan's."""
         moments = moments_of(path, lead, self.settings.samples)
-        postures = {group: self._postures_of(group, path.interval) for group in LOCAL_GROUPS}
+        postures = {group: self.postures(group, path.interval) for group in LOCAL_GROUPS}
         frames = self._frames(moments, postures)
         goals = goal_configurations(self.goals, path)
         before = goals if kept is None else kept
@@ -150,7 +150,8 @@ class UpperBody:
         places, turns = chest_frames(self._model, waist)
         return tables_in_frames(frames.boxes, *compose(frames.positions, frames.rotations, places, turns))
 
-    def _postures_of(self, group: DofGroup, interval: float) -> Postures:
+    def postures(self, group: DofGroup, interval: float) -> Postures:
+        """The posture set of a group for key frames `interval` seconds apart."""
         if (group, interval) not in self._postures:
             speed = self.settings.waist_speed if group is DofGroup.WAIST else self.settings.arm_speed
             self._postures[group, interval] = postures_of(self._limbs[group], self._points[group], speed * interval)
