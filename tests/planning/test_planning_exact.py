@@ -11,6 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.planner import ExactPlanner
@@ -165,7 +166,7 @@ def test_it_stops_before_what_it_cannot_pass_and_walks_on_elsewhere(humanoid: Hu
 def test_scene_d_is_crossed_straight_with_any_queue(humanoid: Humanoid, queue_size: int) -> None:
     scene = Scene.load("d")
     controller = Controller(humanoid, scene, planner="exact", queue_size=queue_size)
-    frames = []
+    frames: list[Frame] = []
     while not scene.finished(controller.root) and len(frames) < 900:
         frames.append(controller.step(FORWARD, DT))
     assert scene.finished(controller.root)
