@@ -79,7 +79,7 @@ class UpperBody:
         frames = self._frames(moments, postures)
         goals = goal_configurations(self.goals, path)
         before = goals if kept is None else kept
-        ledger = _Ledger()
+        ledger = _Ledger(moments, self.settings)
 
         def task(group: DofGroup, tables: Floats32) -> GroupTask:
             at = columns_of(group)
@@ -92,14 +92,14 @@ class UpperBody:
         extra = np.zeros((len(goals), len(waist_task.postures.configurations) + OWN))
         deepest = 0
         for _ in range(self.settings.waist_rounds):
-            waist = ledger.enter(DofGroup.WAIST, path.horizon, search_group, waist_task, moments, self.settings, extra)
+            waist = ledger.search(DofGroup.WAIST, waist_task, extra)
             if waist.reached < path.horizon:
                 deepest = max(deepest, waist.reached)
                 break
             tables = self._chest_tables(frames, waist.shown)
             ways = [waist]
             for group in LOCAL_GROUPS[1:]:
-                way = ledger.enter(group, path.horizon, search_group, task(group, tables), moments, self.settings, None)
+                way = ledger.search(group, task(group, tables))
                 if way.reached < path.horizon:
                     break
                 ways.append(way)
@@ -120,7 +120,7 @@ class UpperBody:
         moments: Moments,
         frames: _Frames,
     ) -> None:
-        """Raise the price of waist postures at a depth at which an arm had no way."""
+        """Make waist postures dearer where an arm had no way, and rule out those that leave it none at all."""
         points = task.postures.configurations
         for near in range(max(depth - 1, 1), min(depth + 2, len(extra))):
             alike = np.linalg.norm(points - waist.keys[near], axis=1) < _ALIKE
@@ -128,7 +128,7 @@ class UpperBody:
             extra[near, len(points) :] += _DEARER
         candidates = np.flatnonzero(waist.free[depth])
         tables = self._tables_under(points[candidates], moments.lead + depth * moments.samples, frames)
-        free = any_free(arm.segments, arm.limb.radii, tables, arm.reach, self.settings.margin)
+        free = any_free(arm.segments, arm.limb.radii, tables, arm.reach, 0.0)
         extra[depth, candidates[~free]] = np.inf
 
     def _tables_under(self, waists: Floats, at: int, frames: _Frames) -> Floats32:
@@ -159,24 +159,25 @@ class UpperBody:
 
 
 class _Ledger:
-    """What the searches of each group cost together."""
+    """Searches one group after the other and keeps what each group's searches cost together."""
 
-    def __init__(self) -> None:
+    def __init__(self, moments: Moments, settings: ExactSettings) -> None:
+        self._moments, self._settings = moments, settings
         self._rows: dict[DofGroup, GroupEvidence] = {}
 
-    def enter(self, group: DofGroup, horizon: int, search, *arguments) -> GroupWay:  # type: ignore[no-untyped-def]
+    def search(self, group: DofGroup, task: GroupTask, extra: Floats | None = None) -> GroupWay:
+        """`search_group`, entered under `group`."""
         began = perf_counter_ns()
-        way: GroupWay = search(*arguments)
+        way = search_group(task, self._moments, self._settings, extra)
         spent = perf_counter_ns() - began
-        old = self._rows.get(group)
-        status = PlanStatus.FOUND if way.reached == horizon else PlanStatus.EXHAUSTED
-        checks, nodes, spent_before = (old.checks, old.nodes, old.nanoseconds) if old else (0, 0, 0)
-        self._rows[group] = GroupEvidence(
-            group, status, checks + way.checks, nodes + way.nodes, 0, spent_before + spent
-        )
+        status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
+        old = self._rows.get(group, GroupEvidence(group, status, 0, 0, 0, 0))
+        checks, nodes, nanoseconds = old.checks + way.checks, old.nodes + way.nodes, old.nanoseconds + spent
+        self._rows[group] = GroupEvidence(group, status, checks, nodes, 0, nanoseconds)
         return way
 
     def evidence(self) -> tuple[GroupEvidence, ...]:
+        """A row for each group that was searched, in order."""
         return tuple(self._rows.values())
 
 
