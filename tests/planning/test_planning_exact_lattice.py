@@ -28,7 +28,6 @@ def random_lattice(seed: int, size: int = 3) -> Lattice:
         price=price,
         closed=rng.random((HORIZON, int(near.sum()))) < rng.choice([0.0, 0.4]),
         like=rng.integers(-1, size, (HORIZON + 1, OWN)).astype(np.int32),
-        start_like=int(rng.integers(-1, size)),
         kept=size,
         step=STEP,
         step_weight=1.5,
@@ -59,7 +58,7 @@ def is_closed(lattice: Lattice, depth: int, source: int, target: int) -> bool:
         return False
     twin = source
     if special:
-        twin = lattice.start_like if depth == 0 else int(lattice.like[depth, source - size])
+        twin = int(lattice.like[0, 0]) if depth == 0 else int(lattice.like[depth, source - size])
     aim = int(lattice.like[depth + 1, target - size]) if target >= size else target
     if twin < 0:
         return False

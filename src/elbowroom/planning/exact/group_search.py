@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice import Ban, Lattice, Work, cheapest_way, new_work
+from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way, new_work
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, shown_motion
@@ -70,9 +70,9 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         price = price + extra
     closed = np.zeros((len(own) - 1, len(task.postures.targets)), np.bool_)
     known = task.postures
-    likes, start_like = _likes(task, own), int(_likes(task, task.start[None])[0])
+    likes = np.full((len(own), OWN), -1, np.int32)
     lattice = Lattice(
-        known.configurations, known.first, known.targets, own, task.goals, task.start, price, closed, likes, start_like,
+        known.configurations, known.first, known.targets, own, task.goals, task.start, price, closed, likes,
         len(known.configurations) + _KEPT, known.step, settings.step_weight,
     )  # fmt: skip
     horizon, nodes = len(own) - 1, 0
@@ -93,30 +93,34 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         depths = np.unique(np.maximum(touching - moments.lead - 1, 0) // moments.samples)
         deepest = max(deepest, int(depths[0]))
         ban = _banned_too(ban, way.path, depths)
+        if not looked_at.any():
+            likes[:] = _likes(task, own)
         for depth in depths[~looked_at[depths]]:
             at = moments.lead + int(depth) * moments.samples
             tables = task.tables[at : at + moments.samples + 1]
-            sources, targets = _ends(lattice, work, int(depth))
+            sources, targets = _ends(lattice, int(depth))
             checks += closed_steps(known, tables, skin, sources, targets, closed[depth])
             looked_at[depth] = True
         way = cheapest_way(lattice, ban, work, int(depths[0]))
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
 
 
-def _ends(lattice: Lattice, work: Work, depth: int) -> tuple[Bools, Bools]:
+def _ends(lattice: Lattice, depth: int) -> tuple[Bools, Bools]:
     """The known postures (V,) from which, and to which, steps at a depth may go, or steps of postures like them."""
     size = len(lattice.postures)
-    reached, free = np.isfinite(work.costs[depth]), np.isfinite(lattice.price[depth + 1])
-    sources, targets = reached[:size] & (depth > 0), free[:size].copy()
-    like = lattice.like[depth][reached[size:]] if depth > 0 else np.array([lattice.start_like])
-    sources[like[like >= 0]] = True
-    like = lattice.like[depth + 1][free[size:]]
-    targets[like[like >= 0]] = True
+    sources, targets = np.zeros(size, np.bool_), np.zeros(size, np.bool_)
+    for ends, row in ((sources, depth), (targets, depth + 1)):
+        free = np.isfinite(lattice.price[row])
+        ends[:] = free[:size] & (row > 0)
+        like = lattice.like[row][free[size:]] if row > 0 else lattice.like[0]
+        ends[like[like >= 0]] = True
     return sources, targets
 
 
-def _likes(task: GroupTask, postures: Floats) -> Ints:
-    """The known posture most like each of `postures` (..., d), or -1 where none is near."""
+def _likes(task: GroupTask, own: Floats) -> Ints:
+    """The known posture most like each of a key time's own (n+1, E), or -1 where none is near; row 0 for the start."""
+    postures = own.copy()
+    postures[0] = task.start
     away = np.linalg.norm(postures[..., None, :] - task.postures.configurations, axis=-1)
     nearest = np.argmin(away, axis=-1)
     return np.where(away.min(axis=-1) < _LIKE, nearest, -1).astype(np.int32)

@@ -21,6 +21,7 @@ Bools = NDArray[np.bool_]
 _WIDTH = 4  # components of the widest group: inner loops of a fixed length
 _ROUNDING = 1.0 + 1e-9
 _SAME = 1e-9  # radians
+_SLACK = 1e-9  # squared radians: more than the rounding of a sum
 
 
 class Lattice(NamedTuple):
@@ -34,8 +35,7 @@ class Lattice(NamedTuple):
     start: Floats  # (d,) the posture at depth 0
     price: Floats  # (n+1, V+E) of each node; infinite where it is not free; row 0 is not used
     closed: Bools  # (n, steps) of `targets` that must not be taken at a depth
-    like: Ints  # (n+1, E) the posture most like each of `own`, or -1
-    start_like: int
+    like: Ints  # (n+1, E) the posture most like each of `own`, or -1; in row 0 the one most like the start
     kept: int  # the node of every depth that is the last plan's: its steps are banned only for themselves
     step: float  # radians
     step_weight: float
@@ -92,7 +92,7 @@ def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
     listed = depth > 0 and node < size
     twin = node
     if not listed:
-        twin = lattice.like[depth, node - size] if depth > 0 else lattice.start_like
+        twin = lattice.like[depth, node - size] if depth > 0 else lattice.like[0, 0]
     if twin < 0:
         return
     for k in range(lattice.first[twin], lattice.first[twin + 1]):
@@ -105,11 +105,14 @@ def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
 
 
 @exact_kernel
-def _settle(lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, costs: Floats, parents: Ints) -> int:
+def _settle(
+    lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, costs: Floats, parents: Ints, most: float
+) -> int:
     """From the costs of the nodes at `depth` those of the next; returns how many of those have a way.
 
     Rows of `before` and `after` (V+E, 4) are the nodes' configurations; `costs` and `parents` are the next depth's in
-    row 1, row 0 is known. Cheap nodes go first, so that most dearer ways are dismissed by their price alone.
+    row 1, row 0 is known. Cheap nodes go first, so that most dearer ways are dismissed by their price alone; nodes that
+    cost more than `most` are left out.
     """
     size, total = lattice.postures.shape[0], lattice.price.shape[1]
     shift = np.zeros(_WIDTH)
@@ -121,7 +124,7 @@ def _settle(lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Float
     longest, weight, kept = lattice.step * lattice.step * _ROUNDING, lattice.step_weight, lattice.kept
     for node in np.argsort(known, kind="mergesort"):
         cost = known[node]
-        if cost == np.inf:
+        if cost == np.inf or cost > most:
             break
         if gated:
             _set_gates(lattice, depth, node, gates)
@@ -154,13 +157,51 @@ class Work(NamedTuple):
 
     costs: Floats  # (n+1, V+E) of the cheapest way to each node
     parents: Ints  # (n+1, V+E) the node before it on that way
+    most: Floats  # (1,) dearer ways were left out
 
 
 def new_work(lattice: Lattice) -> Work:
     """Nothing but the start: any node of depth 0 may stand for it."""
-    work = Work(np.full(lattice.price.shape, np.inf), np.full(lattice.price.shape, -1, np.int32))
+    work = Work(np.full(lattice.price.shape, np.inf), np.full(lattice.price.shape, -1, np.int32), np.zeros(1))
     work.costs[0, 0] = 0.0
     return work
+
+
+@exact_kernel
+def _own_way(lattice: Lattice, ban: Ban) -> float:
+    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more."""
+    size, count, width = lattice.postures.shape[0], lattice.own.shape[1], lattice.start.shape[0]
+    known, found = np.full(count, np.inf), np.full(count, np.inf)
+    known[0] = 0.0
+    for depth in range(lattice.price.shape[0] - 1):
+        found[:] = np.inf
+        for e in range(count):
+            if known[e] == np.inf:
+                continue
+            a = lattice.own[depth, e] if depth > 0 else lattice.start
+            for f in range(count):
+                b, moved, changed = lattice.own[depth + 1, f], 0.0, 0.0
+                for i in range(width):
+                    step = b[i] - a[i]
+                    moved += step * step
+                    changed += (step - lattice.goals[depth + 1, i] + lattice.goals[depth, i]) ** 2
+                total = known[e] + lattice.price[depth + 1, size + f] + lattice.step_weight * changed
+                if total >= found[f] or moved > lattice.step * lattice.step:
+                    continue
+                keeps = size + f == lattice.kept and (depth == 0 or size + e == lattice.kept)
+                if not _banned(ban, depth, a, b, _SAME if keeps else ban.radius):
+                    found[f] = total
+        known, found = found, known
+    return float(known.min())
+
+
+@exact_kernel
+def _least_left(lattice: Lattice) -> Floats:
+    """The least that the depths after each one cost, (n+1,): steps cost nothing or more."""
+    left = np.zeros(lattice.price.shape[0])
+    for depth in range(left.shape[0] - 2, -1, -1):
+        left[depth] = left[depth + 1] + lattice.price[depth + 1].min()
+    return left
 
 
 @exact_kernel
@@ -168,9 +209,14 @@ def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
     """The cheapest way from the start to the last depth, or to the deepest that can be reached.
 
     `work` is right up to depth `begin`, 0 at first: later it is the least depth at which steps were banned or closed.
+    Nodes from which even the least prices of the depths to come would cost more than a way that is known are left out.
     """
     size, total, width = lattice.postures.shape[0], lattice.price.shape[1], lattice.start.shape[0]
     costs, parents = work.costs, work.parents
+    most = _own_way(lattice, ban) + _SLACK
+    if most > work.most[0]:
+        begin = 0  # what was left out may be needed
+    work.most[0] = most
     before, after = np.zeros((total, _WIDTH)), np.zeros((total, _WIDTH))
     before[:size, :width] = lattice.postures
     after[:size, :width] = lattice.postures
@@ -180,9 +226,19 @@ def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
         before[0, :width] = lattice.start
     reached, nodes = begin, 0
     costs[begin + 1 :] = np.inf
+    left = _least_left(lattice)
     for depth in range(begin, costs.shape[0] - 1):
         _fill(lattice, depth + 1, after)
-        found = _settle(lattice, ban, depth, before, after, costs[depth : depth + 2], parents[depth : depth + 2])
+        found = _settle(
+            lattice,
+            ban,
+            depth,
+            before,
+            after,
+            costs[depth : depth + 2],
+            parents[depth : depth + 2],
+            work.most[0] - left[depth],
+        )
         if found == 0:
             break
         reached, nodes = depth + 1, nodes + found
