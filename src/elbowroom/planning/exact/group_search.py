@@ -24,8 +24,8 @@ Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
 OWN = 4  # postures of a key time alone: goal, what the last plan had, the start, on the way from start to goal
-_GOAL, _KEPT, _HOLD, _BACK = range(OWN)
-_STRIDE = 2  # every other shown moment is looked at around a key time
+_GOAL, KEPT, _HOLD, _BACK = range(OWN)
+_STRIDE = 3  # every third shown moment is looked at around a key time
 _BAN_RADIUS = 0.1  # radians: steps so near to one that touches are banned with it
 _LIKE = 0.15  # radians: postures so near to each other are taken to touch in the same steps
 _BACK_STEP = 0.8  # of the longest step
@@ -55,16 +55,21 @@ class GroupWay(NamedTuple):
 
 
 def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, extra: Floats | None = None) -> GroupWay:
-    """The cheapest way whose motion is free as shown; `extra` (n+1, V+OWN) is added to the nodes' prices."""
-    limb, start_clear = task.postures.limb, _start_clearance(task, moments)
-    margin, skin = _bounds(start_clear, settings)
+    """The cheapest way whose motion is free as shown; `extra` (n+1, V+OWN) is added to the nodes' prices.
+
+    Margins are smaller where the start has less clearance, so that who stands close by can go.
+    """
+    limb, least = task.postures.limb, max(0.5 * _start_clearance(task, moments), 0.0)
+    shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * moments.times / settings.soon, 1.0)
+    margins = np.minimum(settings.margin * shares[moments.lead :: moments.samples], least)
+    skins = np.minimum(settings.skin * shares, least)
     own = _own_postures(task)
     capsules = _own_segments(task, own)
     clear, checks = swept_clearances(
         task.postures.segments, capsules, limb.radii, task.tables[moments.lead :], moments.samples, _STRIDE,
         task.postures.reach,
     )  # fmt: skip
-    price = _prices(task, own, capsules, clear, margin, settings)
+    price = _prices(task, own, capsules, clear, margins, settings)
     free = np.isfinite(price[:, : len(task.postures.configurations)])
     if extra is not None:
         price = price + extra
@@ -73,7 +78,7 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
     likes = np.full((len(own), OWN), -1, np.int32)
     lattice = Lattice(
         known.configurations, known.first, known.targets, own, task.goals, task.start, price, closed, likes,
-        len(known.configurations) + _KEPT, known.step, settings.step_weight,
+        len(known.configurations) + KEPT, known.step, settings.step_weight,
     )  # fmt: skip
     horizon, nodes = len(own) - 1, 0
     ban = Ban(np.empty(0, np.int32), np.empty((0, 2 * len(task.start))), _BAN_RADIUS)
@@ -87,7 +92,7 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
         shown = shown_motion(moments, task.upper, task.velocity, way.path)
         found = motion_clearances(pose(limb, shown), limb.radii, task.tables, task.postures.reach)
         checks += len(found)
-        touching = np.flatnonzero(found < skin)
+        touching = np.flatnonzero(found < skins)
         if not len(touching):
             return GroupWay(horizon, way.path, shown, free, checks, nodes)
         depths = np.unique(np.maximum(touching - moments.lead - 1, 0) // moments.samples)
@@ -99,7 +104,7 @@ def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, ext
             at = moments.lead + int(depth) * moments.samples
             tables = task.tables[at : at + moments.samples + 1]
             sources, targets = _ends(lattice, int(depth))
-            checks += closed_steps(known, tables, skin, sources, targets, closed[depth])
+            checks += closed_steps(known, tables, skins[at], sources, targets, closed[depth])
             looked_at[depth] = True
         way = cheapest_way(lattice, ban, work, int(depths[0]))
     return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
@@ -133,19 +138,13 @@ def _start_clearance(task: GroupTask, moments: Moments) -> float:
     return float(motion_clearances(posture, limb.radii, task.tables[at], task.postures.reach).min())
 
 
-def _bounds(start_clear: float, settings: ExactSettings) -> tuple[float, float]:
-    """Margin and skin: less than wanted where the start has less, so that who stands close by can go."""
-    least = max(0.5 * start_clear, 0.0)
-    return min(settings.margin, least), min(settings.skin, least)
-
-
 def _own_postures(task: GroupTask) -> Floats:
     count, (size,) = len(task.goals), task.start.shape
     own = np.empty((count, OWN, size))
     way = task.goals - task.start
     length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
     part = np.minimum(_BACK_STEP * task.postures.step * np.arange(count) / length, 1.0)
-    own[:, _GOAL], own[:, _KEPT], own[:, _HOLD] = task.goals, task.kept, task.start
+    own[:, _GOAL], own[:, KEPT], own[:, _HOLD] = task.goals, task.kept, task.start
     own[:, _BACK] = task.start + part[:, None] * way
     return own
 
@@ -157,7 +156,7 @@ def _own_segments(task: GroupTask, own: Floats) -> Floats32:
 
 
 def _prices(
-    task: GroupTask, own: Floats, capsules: Floats32, clear: Floats32, margin: float, settings: ExactSettings
+    task: GroupTask, own: Floats, capsules: Floats32, clear: Floats32, margins: Floats, settings: ExactSettings
 ) -> Floats:
     """Squared distance from the goal, and the lack of comfort; infinite where a posture is not free."""
     known = np.broadcast_to(task.postures.configurations, (len(own), *task.postures.configurations.shape))
@@ -165,8 +164,8 @@ def _prices(
     lack = np.maximum(settings.comfort - clear.astype(np.float64), 0.0)
     price = np.einsum("tvi,tvi->tv", away, away) + settings.near_weight * lack * lack
     first = len(task.postures.configurations)
-    price[:, first + _KEPT] -= settings.keeping
-    price[clear < margin] = np.inf
+    price[:, first + KEPT] -= settings.keeping
+    price[clear < margins[:, None]] = np.inf
     limb = task.postures.limb
     folded = ~clear_of_trunk(
         np.ascontiguousarray(capsules[:, :, :, _BACK].transpose(1, 2, 0)), limb.trunk, limb.allowed

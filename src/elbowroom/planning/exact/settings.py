@@ -13,11 +13,13 @@ class ExactSettings:
     waist_speed: float = 2.7  # rad/s, over both components together: a quick bend or turn
     arm_speed: float = 5.0  # rad/s, over the four components together: a reach at ease is half as fast
     margin: float = 0.01  # clearance of a posture around its key time
-    skin: float = 0.004  # clearance of the motion that is shown
+    skin: float = 0.006  # clearance of the motion that is shown
+    soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
+    soon_share: float = 0.5  # of margin and skin, at this moment
     comfort: float = 0.05  # postures with less clearance cost more
-    samples: int = 8  # shown poses checked in each key interval; an even number
+    samples: int = 12  # shown poses checked in each key interval; a multiple of 12
     rounds: int = 16  # motions that may turn out to touch before a group gives up
-    waist_rounds: int = 4  # waist motions that are tried for the arms' sake
+    waist_rounds: int = 5  # waist motions that are tried for the arms' sake
     step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself
     near_weight: float = 20.0  # of lacking comfort, for each square metre
     keeping: float = 0.02  # squared radians that another way must be better than the one being followed

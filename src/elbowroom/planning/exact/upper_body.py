@@ -2,6 +2,7 @@
 
 The arms hang on the waist. Where the waist's way leaves an arm none, the waist yields: postures under which that arm
 has no free posture at all are ruled out there, and the posture that failed becomes dearer; then all is planned anew.
+Before that the waist's way of the last plan is tried, under which the arms had theirs.
 """
 
 from collections.abc import Mapping
@@ -16,7 +17,7 @@ from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.exact.group_search import OWN, GroupTask, GroupWay, search_group
+from elbowroom.planning.exact.group_search import KEPT, OWN, GroupTask, GroupWay, search_group
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, moments_of
@@ -91,10 +92,13 @@ class UpperBody:
         waist_task = task(DofGroup.WAIST, tables_in_frames(frames.boxes, frames.positions, frames.rotations))
         extra = np.zeros((len(goals), len(waist_task.postures.configurations) + OWN))
         deepest = 0
-        for _ in range(self.settings.waist_rounds):
-            waist = ledger.search(DofGroup.WAIST, waist_task, extra)
+        for attempt in range(self.settings.waist_rounds):
+            keeping = attempt == 1 and kept is not None
+            waist = ledger.search(DofGroup.WAIST, waist_task, _only_kept(extra) if keeping else extra)
             if waist.reached < path.horizon:
                 deepest = max(deepest, waist.reached)
+                if keeping:
+                    continue
                 break
             tables = self._chest_tables(frames, waist.shown)
             ways = [waist]
@@ -107,7 +111,8 @@ class UpperBody:
                 keys = np.concatenate([way.keys for way in ways], axis=1)
                 return UpperPlan(LocalPlan(PlanStatus.FOUND, keys, goals, ledger.evidence()), path.horizon)
             deepest = max(deepest, way.reached)
-            self._make_waist_yield(extra, waist_task, waist, postures[group], way.reached + 1, moments, frames)
+            if not keeping:
+                self._make_waist_yield(extra, waist_task, waist, postures[group], way.reached + 1, moments, frames)
         return UpperPlan(LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence()), deepest)
 
     def _make_waist_yield(
@@ -156,6 +161,13 @@ class UpperBody:
             speed = self.settings.waist_speed if group is DofGroup.WAIST else self.settings.arm_speed
             self._postures[group, interval] = postures_of(self._limbs[group], self._points[group], speed * interval)
         return self._postures[group, interval]
+
+
+def _only_kept(extra: Floats) -> Floats:
+    """Prices that hold the waist to the last plan's way while there is one."""
+    prices = extra + _DEARER
+    prices[:, len(prices[0]) - OWN + KEPT] = 0.0
+    return prices
 
 
 class _Ledger:
