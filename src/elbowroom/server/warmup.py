@@ -13,6 +13,7 @@ from typing import Any
 
 from numba.core import event
 
+from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.kernel_cache import kept_kernels, kernels
 from elbowroom.server.library import Library
 from elbowroom.server.messages import Input, Overlays
@@ -22,6 +23,7 @@ from elbowroom.server.walk import Walk
 Report = Callable[[str, int], None]
 
 _FEW = 6  # kernels that may be missing (not every one is needed by a session) before a process of its own pays
+_TELLING = ("a", "c")  # scenes in which the walk meets what it does not in the open: ways round, blocked steps
 _WALK = [
     (45, Input(seq=1, forward=1.0)),  # past the first key frames, so that plans follow on plans
     (10, Input(seq=2, forward=1.0, direction=1.0, run=True)),
@@ -49,25 +51,31 @@ class _Listener(event.Listener):
 
 
 def warm_up(library: Library, report: Report | None = None) -> None:
-    """Walk, turn and stand a moment in the library's first scene with its first avatar, then walk the canned walk.
+    """Walk, turn and stand a moment in the library's first scene with its first avatar: every planner, the canned walk.
 
     `report(kernel, number)` hears of each kernel that must be compiled; with all of them cached it hears nothing.
     Raises `InputError` if the avatar cannot stand in that scene: better now than when a page is open.
     """
     with event.install_listener("numba:compile", _Listener(report)) if report else nullcontext():
-        walk = Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), library.walk)
-        stage, now = Stage(walk, 0.0), 0.0
-        stage.overlays = Overlays(capsules=True, plan=True)
-        for frames, held in _WALK:
-            stage.obey(held)
-            for _ in range(frames):
-                now += STEP
-                stage.advance(now)
-                stage.frame(now)
-            stage.status(now)
-            stage.plan()
-        walk.adjust(replace(walk.settings, assist=not walk.settings.assist))
-        stage.advance(now + STEP)
+        for planner in PLANNERS:
+            _walk_a_moment(library, planner)
+
+
+def _walk_a_moment(library: Library, planner: str) -> None:
+    settings = replace(library.walk, planner=planner)
+    walk = Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), settings)
+    stage, now = Stage(walk, 0.0), 0.0
+    stage.overlays = Overlays(capsules=True, plan=True)
+    for frames, held in _WALK:
+        stage.obey(held)
+        for _ in range(frames):
+            now += STEP
+            stage.advance(now)
+            stage.frame(now)
+        stage.status(now)
+        stage.plan()
+    walk.adjust(replace(walk.settings, assist=not walk.settings.assist))
+    stage.advance(now + STEP)
 
 
 def compile_apart(report: Report) -> None:
@@ -86,8 +94,9 @@ def compile_apart(report: Report) -> None:
 
 def main() -> None:
     """Compile, and print each kernel's name as its turn comes."""
-    with closing(Library.open()) as library:
-        warm_up(library, lambda kernel, number: print(kernel, flush=True))  # noqa: ARG005
+    for scene in _TELLING:
+        with closing(Library.open(scene)) as library:
+            warm_up(library, lambda kernel, number: print(kernel, flush=True))  # noqa: ARG005
 
 
 if __name__ == "__main__":
