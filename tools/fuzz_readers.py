@@ -1,0 +1,118 @@
+"""Throws damaged files at the readers: each must answer with a result or one line, soon, and with bounded memory.
+
+Call: python tools/fuzz_readers.py [READER ...] [--inputs 10000] [--seed 1] [--keep FOLDER]
+
+A reader of one's own is registered in `READERS`: how it reads bytes, a few good files, and pieces of its grammar.
+The same seed throws the same files. Exit code 1 if any input broke a promise; `--keep` saves those inputs.
+"""
+
+import argparse
+import resource
+import signal
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from fuzzing import Reader, answer, damaged
+
+LONGEST = 2.0  # seconds that one input may take
+_GIVEN_UP = 20.0  # seconds after which it is stopped
+MEMORY = 2**30  # bytes that one input may need beyond what the process has when it starts
+
+
+def glb_reader() -> Reader:
+    """GLB and VRM humanoids."""
+    from avatar_builder import MIXAMO, Recipe, build
+    from elbowroom.body.loading import load_humanoid_bytes
+
+    recipes = (Recipe(vrm="1", points=2, spin=True), Recipe(vrm="0", points=2), Recipe(names=MIXAMO, points=2))
+    words = (b"[[[[", b'{"a":', b'"nodes":', b"]", b"}", b'"children":[0]', b'"uri":"../x"', b'"count":1e9', b"null")
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words)
+
+
+READERS: dict[str, Callable[[], Reader]] = {
+    "glb": glb_reader,
+}
+
+
+def run(name: str, inputs: int, seed: int, keep: Path | None) -> bool:
+    """Fuzz one reader and print a line of what it answered; True if it kept every promise."""
+    reader = READERS[name]()
+    for good in reader.seeds:
+        answer(reader, good)  # compiled and warm; its time does not count
+    _limit_memory()
+    answers: Counter[str] = Counter()
+    slowest = 0.0
+    for number in range(inputs):
+        data = damaged(reader, np.random.default_rng([seed, number]))
+        start = time.perf_counter()
+        result = _watched(reader, data)
+        took = time.perf_counter() - start
+        slowest = max(slowest, took)
+        if took > LONGEST:
+            result = f"took {took:.1f} s"
+        answers[result if result in {"read", "refused"} else "broken"] += 1
+        if result not in {"read", "refused"}:
+            print(f"{name}: input {number} of seed {seed}: {result}", flush=True)
+            if keep is not None:
+                keep.mkdir(parents=True, exist_ok=True)
+                (keep / f"{name}-{seed}-{number}").write_bytes(data)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(
+        f"{name}: {inputs} inputs, {answers['read']} read, {answers['refused']} refused, {answers['broken']} broken; "
+        f"slowest {slowest:.2f} s, process peak {peak:.0f} MB",
+        flush=True,
+    )
+    return answers["broken"] == 0
+
+
+def _watched(reader: Reader, data: bytes) -> str:
+    signal.signal(signal.SIGALRM, _stop)
+    signal.setitimer(signal.ITIMER_REAL, _GIVEN_UP)
+    try:
+        return answer(reader, data)
+    except Exception as error:
+        return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
+def _stop(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise TimeoutError(f"stopped after {_GIVEN_UP:.0f} s")
+
+
+def _limit_memory() -> None:
+    """From here on this process gets no more than `MEMORY`: a reader that wants more fails with a MemoryError."""
+    status = Path("/proc/self/status")
+    if not status.exists():
+        print("the memory is not limited: this system has no /proc/self/status")
+        return
+    used = int(next(line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmSize"))) * 1024
+    resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("readers", nargs="*", metavar="READER", help=f"of {', '.join(READERS)}; all if none is named")
+    parser.add_argument("--inputs", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", type=Path, help="folder for the inputs that broke a promise")
+    options = parser.parse_args()
+    names = options.readers or list(READERS)
+    unknown = sorted(set(names) - READERS.keys())
+    if unknown:
+        parser.error(f"no reader {', '.join(unknown)}; there are {', '.join(READERS)}")
+    kept = [run(name, options.inputs, options.seed, options.keep) for name in names]
+    sys.exit(0 if all(kept) else 1)
+
+
+if __name__ == "__main__":
+    main()
