@@ -9,7 +9,9 @@ distant obstacles into a frame near the body (`tables_in_frames`).
 The distance: in the axes of a box, f(t) = |q(t) - clamp(q(t))|^2 along the axis q(t) = p + t d is convex, and its
 derivative is piecewise linear with six break points, where a coordinate of q meets a face. So the signs of the
 derivative at the break points bracket the minimum between two neighbours, and one linear interpolation gives it
-exactly, without a branch. Lanes of the vector loop are configurations, padded to whole vectors; boxes are outside.
+exactly, without a branch. Break points beyond the ends of the axis need no care: the derivative never falls, so their
+slopes never narrow the bracket that the ends give; and where a coordinate meets its own face it adds nothing to the
+slope. Lanes of the vector loop are configurations, padded to whole vectors; boxes are outside.
 """
 
 import math
@@ -27,7 +29,6 @@ _LANE_ROWS = 7  # ax, ay, az, bx, by, bz, radius
 _ZERO: Any = np.float32(0.0)  # single precision on purpose: a bare 0.0 would widen the whole loop
 _ONE: Any = np.float32(1.0)
 _TINY: Any = np.float32(1e-12)
-_HUGE: Any = np.float32(1e30)
 _INFINITE: Any = np.float32(np.inf)
 
 Floats32 = NDArray[np.float32]
@@ -71,44 +72,50 @@ def _prepared(segments: ArrayLike, radii: ArrayLike, table: ArrayLike) -> tuple[
 
 
 @inlined
-def _slope(t: float, p: Vector, d: Vector, h: Vector) -> float:
-    """Half the derivative of the squared distance at t."""
-    x, y, z = p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]
-    beyond_x, beyond_y, beyond_z = (
-        x - max(min(x, h[0]), -h[0]),
-        y - max(min(y, h[1]), -h[1]),
-        z - max(min(z, h[2]), -h[2]),
+def _beyond(x: Any, h: Any) -> Any:
+    """How far a coordinate lies beyond the faces at -h and h; 0 between them."""
+    return x - max(min(x, h), -h)
+
+
+@inlined
+def _narrowed(low: Any, low_slope: Any, high: Any, high_slope: Any, t: Any, slope: Any) -> Any:
+    """The bracket of the minimum, narrowed by the slope at t."""
+    falls = slope <= _ZERO
+    return (
+        max(low, t) if falls else low,
+        max(low_slope, slope) if falls else low_slope,
+        high if falls else min(high, t),
+        high_slope if falls else min(high_slope, slope),
     )
-    return beyond_x * d[0] + beyond_y * d[1] + beyond_z * d[2]
+
+
+@inlined
+def _slope_of_two(t: Any, p: Any, d: Any, h: Any, other_p: Any, other_d: Any, other_h: Any) -> Any:
+    """Half the derivative of the squared distance at t where the third coordinate meets a face."""
+    return _beyond(p + t * d, h) * d + _beyond(other_p + t * other_d, other_h) * other_d
 
 
 @inlined
 def _squared_distance(p: Vector, d: Vector, h: Vector) -> Any:
     """Squared distance of the axis p + t d, t in [0, 1], from the box |x| <= h in its own axes."""
-    inverse_x = d[0] / (d[0] * d[0] + _TINY)
-    inverse_y = d[1] / (d[1] * d[1] + _TINY)
-    inverse_z = d[2] / (d[2] * d[2] + _TINY)
-    first, last = _slope(_ZERO, p, d, h), _slope(_ONE, p, d, h)
-    low, low_slope, high, high_slope = _ZERO, min(first, _ZERO), _ONE, max(last, _ZERO)
-    for face in (
-        (h[0] - p[0]) * inverse_x,
-        (-h[0] - p[0]) * inverse_x,
-        (h[1] - p[1]) * inverse_y,
-        (-h[1] - p[1]) * inverse_y,
-        (h[2] - p[2]) * inverse_z,
-        (-h[2] - p[2]) * inverse_z,
-    ):
-        t = min(max(face, _ZERO), _ONE)
-        slope = _slope(t, p, d, h)
-        falls = slope <= _ZERO
-        low = max(low, t if falls else _ZERO)
-        low_slope = max(low_slope, slope if falls else -_HUGE)
-        high = min(high, _ONE if falls else t)
-        high_slope = min(high_slope, _HUGE if falls else slope)
+    first = _beyond(p[0], h[0]) * d[0] + _beyond(p[1], h[1]) * d[1] + _beyond(p[2], h[2]) * d[2]
+    last = _beyond(p[0] + d[0], h[0]) * d[0] + _beyond(p[1] + d[1], h[1]) * d[1] + _beyond(p[2] + d[2], h[2]) * d[2]
+    low, low_slope, high, high_slope = _ZERO, first, _ONE, last
+    inverse = d[0] / (d[0] * d[0] + _TINY)
+    for t in ((h[0] - p[0]) * inverse, (-h[0] - p[0]) * inverse):
+        slope = _slope_of_two(t, p[1], d[1], h[1], p[2], d[2], h[2])
+        low, low_slope, high, high_slope = _narrowed(low, low_slope, high, high_slope, t, slope)
+    inverse = d[1] / (d[1] * d[1] + _TINY)
+    for t in ((h[1] - p[1]) * inverse, (-h[1] - p[1]) * inverse):
+        slope = _slope_of_two(t, p[0], d[0], h[0], p[2], d[2], h[2])
+        low, low_slope, high, high_slope = _narrowed(low, low_slope, high, high_slope, t, slope)
+    inverse = d[2] / (d[2] * d[2] + _TINY)
+    for t in ((h[2] - p[2]) * inverse, (-h[2] - p[2]) * inverse):
+        slope = _slope_of_two(t, p[0], d[0], h[0], p[1], d[1], h[1])
+        low, low_slope, high, high_slope = _narrowed(low, low_slope, high, high_slope, t, slope)
     t = low - low_slope * (high - low) / max(high_slope - low_slope, _TINY)
     t = _ZERO if first >= _ZERO else (_ONE if last <= _ZERO else t)
-    x, y, z = p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]
-    x, y, z = x - max(min(x, h[0]), -h[0]), y - max(min(y, h[1]), -h[1]), z - max(min(z, h[2]), -h[2])
+    x, y, z = _beyond(p[0] + t * d[0], h[0]), _beyond(p[1] + t * d[1], h[1]), _beyond(p[2] + t * d[2], h[2])
     return x * x + y * y + z * z
 
 
