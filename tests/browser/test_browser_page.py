@@ -33,7 +33,7 @@ DROP = """
 def test_the_page_comes_up_quietly(open_page: Open) -> None:
     live = open_page("scene=b&theme=dark")
     state = live.wait("s.scene === 'b' && s.connected")
-    assert state["settings"]["planner"] == "figure6"
+    assert state["settings"]["planner"] == "exact"
     assert live.page.get_attribute("html", "data-theme") == "dark"
     assert "Elbowroom" in live.page.title()
     live.wait(f"s.framesReceived > {state['framesReceived'] + 30}")

@@ -24,7 +24,7 @@ def test_json_tells_all_and_the_exit_code_the_outcome(tmp_path: Path) -> None:
     assert report["touching_frames"] == report["judged_touching"] == 0
     assert set(report["plan_ms"]) == {"p50", "p99", "max"}
     assert report["settings"]["level"]["margin"] == 0.06
-    assert report["settings"]["planner"] == "figure6"
+    assert report["settings"]["planner"] == "exact"
     assert report["trials"][0]["fingerprint"] == course(1, 0).fingerprint
     assert outcome.exit_code == (0 if report["crossed"] else 1)
     assert outcome.stderr == ""

@@ -40,7 +40,7 @@ def test_a_standing_path_stands() -> None:
 
 @pytest.mark.parametrize(("scene", "queue", "seed"), [("a", 6, 11), ("a", 5, 16), ("b", 6, 3), ("b", 5, 16)])
 def test_nobody_is_trapped_between_two_obstacles(scene: str, queue: int, seed: int) -> None:
-    settings = CrossingSettings(queue_size=queue, seed=seed)
+    settings = CrossingSettings("figure6", queue_size=queue, seed=seed)
     controller = controller_for(Humanoid.default(), Scene.load(scene), settings)
     result = run_crossing(controller, settings)
     assert result.passed

@@ -51,7 +51,7 @@ def test_a_session_begins_with_all_that_a_page_needs(client: Client) -> None:
     settings = client.wait_for(Settings)
     scene, avatar, frame = client.wait_for(SceneMessage), client.wait_for(AvatarMessage), client.frame()
     assert {choice.name for choice in hello.catalog.scenes} >= {"a", "b", "c", "d", "empty"}
-    assert (settings.scene, settings.planner, scene.name) == ("empty", "figure6", "empty")
+    assert (settings.scene, settings.planner, scene.name) == ("empty", "exact", "empty")
     assert settings.avatar == avatar.id
     assert len(frame.rotations) == len(avatar.bones)
     assert frame.avatar_revision == avatar.revision
@@ -191,7 +191,7 @@ def test_an_unknown_choice_is_refused_and_the_old_one_stays(client: Client) -> N
         client.send(message)
         assert "no" in client.complaint()
         settings = client.wait_for(Settings)
-        assert (settings.scene, settings.planner) == ("empty", "figure6")
+        assert (settings.scene, settings.planner) == ("empty", "exact")
 
 
 def test_what_is_known_is_done_although_another_choice_is_not(client: Client) -> None:

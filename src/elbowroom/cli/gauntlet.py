@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.output import json_text, print_json, print_row, progress_bar
+from elbowroom.cli.output import PLANNER_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
+from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.experiment.gauntlet.course import Course
@@ -28,7 +29,7 @@ def gauntlet(
     level: Annotated[int, typer.Option(help="Difficulty, 1 to 5.")] = 1,
     courses: Annotated[int, typer.Option(help="How many courses; course K has the seed S + K.")] = 20,
     seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
-    planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
+    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,

@@ -10,6 +10,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from elbowroom.planning.names import PLANNER_NAMES
+
+PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(PLANNER_NAMES)}."
+
 
 def print_json(result: Mapping[str, Any]) -> None:
     """One JSON object on stdout; what is no JSON number becomes null."""

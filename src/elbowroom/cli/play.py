@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.output import PLANNER_HELP
+from elbowroom.planning.names import DEFAULT_PLANNER
+
 if TYPE_CHECKING:
     import socket
 
@@ -28,7 +31,7 @@ def play(
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
     scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
-    planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
+    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""

@@ -9,6 +9,7 @@ import typer
 from elbowroom.cli.output import json_text, print_json, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
+from elbowroom.planning.names import FIGURE6
 
 if TYPE_CHECKING:
     from elbowroom.experiment.table1.tasks import Table1Settings
@@ -22,7 +23,7 @@ CSV, JSON, REPORT = "table1.csv", "table1.json", "report.html"
 
 def table1(
     *,
-    planner: Annotated[str, typer.Option(help="Planners to compare, with commas between: figure6.")] = "figure6",
+    planner: Annotated[str, typer.Option(help="Planners to compare, with commas between: exact, figure6.")] = FIGURE6,
     scenes: Annotated[str, typer.Option(help="Stock scenes by name, or scene files.")] = "a,b,c,d",
     queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|.")] = "3,4,5,6,7",
     seeds: Annotated[int, typer.Option(help="Trials for each cell, with the seeds 1 to N; the paper has 3.")] = 20,

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.output import Bar, print_json, print_row, progress_bar
+from elbowroom.cli.output import PLANNER_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.control.frame import Frame
@@ -22,7 +23,7 @@ _FRAMES_PER_UPDATE = 30
 def walk(
     *,
     scene: Annotated[str, typer.Option(help="A stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
-    planner: Annotated[str, typer.Option(help="How upper-body motion is searched: figure6.")] = "figure6",
+    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     seed: Annotated[int, typer.Option(help="Varies the planner's chance, the start and the user's patience.")] = 0,
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,

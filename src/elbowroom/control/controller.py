@@ -17,6 +17,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.motion import Lead, Motion, MotionPlanner, MotionQuery
+from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.planner import make_planner
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanKind, RootPlanner
@@ -45,7 +46,7 @@ class Controller:
         humanoid: Humanoid,
         scene: Scene,
         *,
-        planner: str = "figure6",
+        planner: str = DEFAULT_PLANNER,
         queue_size: int = 5,
         interval: float = ControlSettings.interval,
         seed: int = 0,

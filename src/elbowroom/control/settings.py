@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from elbowroom.errors import InputError
+from elbowroom.planning.names import DEFAULT_PLANNER
 
 QUEUE_SIZES = range(2, 33)
 
@@ -12,7 +13,7 @@ QUEUE_SIZES = range(2, 33)
 class ControlSettings:
     """The parameters of the control loop; the paper varies the queue size from 3 to 7."""
 
-    planner: str = "figure6"  # how upper-body motion is searched
+    planner: str = DEFAULT_PLANNER  # how upper-body motion is searched
     queue_size: int = 5  # |Q|, key frames planned ahead
     interval: float = 0.15  # T_interval, seconds between key frames
     seed: int = 0  # of all chance in planning

@@ -15,6 +15,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
+from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -29,7 +30,7 @@ _SIDEWAYS = 0.02  # metres, the start is drawn within this to either side
 class CrossingSettings:
     """What a crossing trial varies."""
 
-    planner: str = "figure6"
+    planner: str = DEFAULT_PLANNER
     queue_size: int = 5
     seed: int = 0  # of the planner's chance, the start and the user's patience
     limit: float = 30.0  # seconds that the user has

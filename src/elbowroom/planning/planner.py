@@ -10,6 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.local_planner import LocalPlanner
+from elbowroom.planning.names import EXACT, FIGURE6
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.scene import Scene
@@ -25,8 +26,8 @@ class Planner(Protocol):
 PlannerFactory = Callable[[Humanoid, Scene], Planner]
 
 PLANNERS: dict[str, PlannerFactory] = {
-    "figure6": LocalPlanner,  # the paper's own search
-    "exact": ExactPlanner,  # dynamic programming, checked as shown
+    EXACT: ExactPlanner,
+    FIGURE6: LocalPlanner,
 }
 
 

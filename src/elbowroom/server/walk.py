@@ -7,6 +7,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
@@ -21,7 +22,7 @@ _BACK_AT_START = 1.0  # metres: so near to the start the next crossing counts ag
 class WalkSettings:
     """What the menus choose about planning."""
 
-    planner: str = "figure6"
+    planner: str = DEFAULT_PLANNER
     queue_size: int = 5
     assist: bool = True
     walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it

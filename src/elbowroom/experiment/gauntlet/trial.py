@@ -13,6 +13,7 @@ from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course
 from elbowroom.experiment.gauntlet.user import CourseUser
 from elbowroom.planning.command import Command
+from elbowroom.planning.names import DEFAULT_PLANNER
 
 Listener = Callable[[Command, float, Frame], None]
 
@@ -21,7 +22,7 @@ Listener = Callable[[Command, float, Frame], None]
 class TrialSettings:
     """How courses are walked."""
 
-    planner: str = "figure6"
+    planner: str = DEFAULT_PLANNER
     queue_size: int = 5
 
 

@@ -20,6 +20,7 @@ from elbowroom.experiment.crossing import (
 )
 from elbowroom.experiment.scripted_user import FORWARD
 from elbowroom.experiment.trial_log import digest
+from elbowroom.planning.names import FIGURE6
 from elbowroom.world.scene import Scene
 
 MAX_SEEDS = 10_000
@@ -30,7 +31,7 @@ CANNED = "canned"
 class Table1Settings:
     """Which trials the experiment consists of. Seeds are 1 to `seeds`: seed 0 would start just as the scene says."""
 
-    planners: tuple[str, ...] = ("figure6",)
+    planners: tuple[str, ...] = (FIGURE6,)
     scenes: tuple[str, ...] = ("a", "b", "c", "d")  # names of stock scenes, or scene files
     queues: tuple[int, ...] = (3, 4, 5, 6, 7)
     seeds: int = 20
