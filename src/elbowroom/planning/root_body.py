@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
+from elbowroom.planning.root_hull import Ground, ground_below, stride_hull
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.walkable import Stance, stance_segments
@@ -16,23 +17,23 @@ Floats32 = NDArray[np.float32]
 
 _WALK, _RUN = 1.1, 2.2  # m/s
 _SPARE = 0.2  # metres: more than any clearance that is asked for
+_SPARE_HEIGHT = 0.05  # metres above the pelvis as it walks
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
 class Neighbours(NamedTuple):
-    """Boxes and the upright rectangles on the ground that hold them."""
+    """Boxes and the ground that they stand on."""
 
     table: Floats32  # (B, 15) as in `Boxes.table32`
-    least: Floats  # (B, 2) least x and z
-    most: Floats  # (B, 2) greatest x and z
+    ground: Ground
 
     def around(self, places: Floats, reach: float) -> "Neighbours":
         """Those that may come within `reach` metres of one of `places` (N, 2)."""
         low, high = places.min(axis=0) - reach, places.max(axis=0) + reach
-        near = np.all((self.least <= high) & (self.most >= low), axis=1)
+        near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
         if near.all():
             return self
-        return Neighbours(np.ascontiguousarray(self.table[near]), self.least[near], self.most[near])
+        return Neighbours(np.ascontiguousarray(self.table[near]), Ground(*(part[near] for part in self.ground)))
 
 
 class LowerBody:
@@ -42,10 +43,10 @@ class LowerBody:
         self.model: BodyModel = body_model(humanoid)
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach = _measure(self.model)
-        corners = boxes.corners
-        low = corners[:, :, 1].min(axis=1) < height + 0.05
-        ground = corners[low][:, :, [0, 2]]
-        self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground.min(axis=1), ground.max(axis=1))
+        corners, height = boxes.corners, height + _SPARE_HEIGHT
+        low = corners[:, :, 1].min(axis=1) < height
+        self.hull = stride_hull(self.model)
+        self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground_below(corners[low], height))
 
     def clearance(self, boxes: Neighbours, states: Floats) -> Floats32:
         """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7); infinite where far."""

@@ -18,6 +18,7 @@ from elbowroom.planning.root_path import interpolate_root
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 _PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
 _STILL = 1e-9  # lengths and speeds that are divided by are at least this
@@ -177,10 +178,12 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
 
 
 @exact_kernel
-def stopping_states(states: Floats, interval: float, bounds: MotionBounds, spacing: float) -> tuple[Floats, Indices]:
-    """States (M, 7) of braking to a stand from each key state but the first, and the key state of each (M,).
+def stopping_states(
+    states: Floats, interval: float, bounds: MotionBounds, spacing: float, wanted: Bools
+) -> tuple[Floats, Indices]:
+    """States (M, 7) of braking to a stand from key states but the first, and the key state of each (M,).
 
-    They are at most `spacing` seconds apart, in order of the key states.
+    They are at most `spacing` seconds apart, in order of the key states; `wanted` (n,) says which of these have a stop.
     """
     count = int(np.ceil(interval / spacing))
     longest = 0.0
@@ -193,6 +196,8 @@ def stopping_states(states: Floats, interval: float, bounds: MotionBounds, spaci
     tail = np.empty((steps + 1, ROOT_STATE))
     used = 0
     for k in range(1, states.shape[0]):
+        if not wanted[k - 1]:
+            continue
         tail[0] = states[k]
         brake(tail, 0, interval, bounds)
         for i in range(steps):
@@ -206,11 +211,19 @@ def stopping_states(states: Floats, interval: float, bounds: MotionBounds, spaci
 
 
 @exact_kernel
-def dense_states(states: Floats, interval: float, spacing: float) -> Floats:
-    """The shown states (M, 7) between the key states, at most `spacing` seconds apart, the first key state left out."""
+def dense_states(states: Floats, interval: float, spacing: float, wanted: Bools) -> tuple[Floats, Indices]:
+    """The shown states (M, 7) on the way to key states but the first, and the key state of each (M,).
+
+    They are at most `spacing` seconds apart; `wanted` (n,) says which key intervals are asked for.
+    """
     count = int(np.ceil(interval / spacing))
     out = np.empty(((states.shape[0] - 1) * count, ROOT_STATE))
+    owner, used = np.empty(out.shape[0], np.int64), 0
     for k in range(states.shape[0] - 1):
+        if not wanted[k]:
+            continue
         for j in range(count):
-            out[k * count + j] = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
-    return out
+            out[used] = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
+            owner[used] = k + 1
+            used += 1
+    return out[:used], owner[:used]

@@ -20,6 +20,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_hull import strip_is_free, to_look_at
 from elbowroom.planning.root_line import TravelLine, asked_direction, new_line, wanted_speed, wanted_velocities
 from elbowroom.planning.root_motion import (
     MotionBounds,
@@ -38,6 +39,7 @@ from elbowroom.world.walkable import WalkableMap, walkable_window
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
 
 
 class RootPlanKind(Enum):
@@ -154,8 +156,17 @@ class _Query:
         reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
         self.boxes = self.body.boxes.around(np.array([[start.x, start.z]]), reach)
         self.checks = 0
-        at_start = self._clearance(start.as_array()[None])
-        self.skin = min(self.settings.skin, 0.5 * float(at_start[0])) if at_start[0] > 0.0 else 0.0
+        self.skin = self._skin_at(np.array([start, start]))
+
+    def _skin_at(self, standing: Floats) -> float:
+        """The clearance to ask for: less where the start, twice in `standing` (2, 7), has little."""
+        full, bounds = self.settings.skin, self.bounds
+        if not len(self.boxes.table) or not to_look_at(
+            standing, self.interval, bounds.braking, bounds.turn_acceleration, 2.0 * full, self.body.hull,
+            self.boxes.ground,
+        )[0].any():  # fmt: skip
+            return full
+        return min(full, max(0.5 * float(self._clearance(standing[:1])[0]), 0.0))
 
     def _clearance(self, states: Floats) -> Floats32:
         if not len(states) or not len(self.boxes.table):
@@ -170,12 +181,27 @@ class _Query:
 
     def _kept(self, states: Floats) -> int:
         """The number of leading key intervals that are free, with a free stop from the end of each."""
-        shown = dense_states(states, self.interval, self.settings.spacing)
-        touched = self._clearance(shown) < self.skin
-        kept = int(np.argmax(touched)) * self.horizon // len(shown) if touched.any() else self.horizon
-        tails, owner = stopping_states(states[: kept + 1], self.interval, self.bounds, self.settings.spacing)
-        blocked = owner[self._clearance(tails) < self.skin]
-        return int(blocked[0]) - 1 if len(blocked) else kept
+        if not len(self.boxes.table):
+            return self.horizon
+        moving, stopping = to_look_at(
+            states, self.interval, self.bounds.braking, self.bounds.turn_acceleration, self.skin, self.body.hull,
+            self.boxes.ground,
+        )  # fmt: skip
+        kept = self.horizon
+        if moving.any():
+            shown, owner = dense_states(states, self.interval, self.settings.spacing, moving)
+            kept = self._before_contact(shown, owner, kept + 1)
+        if stopping[:kept].any():
+            tails, owner = stopping_states(
+                states[: kept + 1], self.interval, self.bounds, self.settings.spacing, stopping
+            )
+            kept = self._before_contact(tails, owner, kept + 1)
+        return kept
+
+    def _before_contact(self, shown: Floats, owner: Indices, never: int) -> int:
+        """One less than the `owner` (M,) of the first of the states (M, 7) that touches; `never` less one if none."""
+        touching = owner[self._clearance(shown) < self.skin]
+        return int(touching[0] if len(touching) else never) - 1
 
     def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, bool]:
         """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
@@ -203,7 +229,7 @@ class _Query:
                 braking=hard * self.bounds.braking, turn_acceleration=hard * self.bounds.turn_acceleration
             )
             brake(states, 0, self.interval, bounds)
-            shown = dense_states(states, self.interval, self.settings.spacing)
+            shown, _ = dense_states(states, self.interval, self.settings.spacing, np.ones(self.horizon, np.bool_))
             if not np.any(self._clearance(shown) < 0.0):
                 return states
         states = np.repeat(self._blank()[:1], self.horizon + 1, axis=0)
@@ -266,6 +292,12 @@ class _Query:
     def _free_length(self, route: Floats) -> float:
         """Metres along the route before the standing figure would touch; infinite if it never does."""
         if not len(self.boxes.table):
+            return math.inf
+        legs = np.diff(route, axis=0)
+        ways, lengths = np.arctan2(legs[:, 0], legs[:, 1]), np.hypot(legs[:, 0], legs[:, 1])
+        half = self.body.stance.radius + self.settings.margin + 1e-3
+        rows = zip(route[:-1, 0], route[:-1, 1], ways, lengths, strict=True)
+        if all(strip_is_free(x, z, way, length, half, self.boxes.ground) for x, z, way, length in rows):
             return math.inf
         points, along = route_points(route, 0.04)
         clear = self.body.standing_clearance(self.boxes, points)
