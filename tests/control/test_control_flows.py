@@ -19,7 +19,7 @@ from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanKind
+from elbowroom.planning.root_plan import RootPlanKind
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)

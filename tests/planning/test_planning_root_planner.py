@@ -14,7 +14,8 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlan, RootPlanKind, RootPlanner
+from elbowroom.planning.root_plan import RootPlan, RootPlanKind
+from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene
 

@@ -20,7 +20,8 @@ from elbowroom.planning.motion import Lead, Motion, MotionPlanner, MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.planner import make_planner
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanKind, RootPlanner
+from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

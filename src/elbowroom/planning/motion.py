@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan
-from elbowroom.planning.root_planner import RootPlan, RootPlanner
+from elbowroom.planning.root_plan import RootPlan
+from elbowroom.planning.root_planner import RootPlanner
 
 Floats = NDArray[np.float64]
 

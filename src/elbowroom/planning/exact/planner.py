@@ -19,7 +19,8 @@ from elbowroom.planning.motion import Motion, MotionQuery, no_lead
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_motion import brake
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlan, RootPlanKind, RootPlanner
+from elbowroom.planning.root_plan import RootPlan, RootPlanKind
+from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -1,0 +1,45 @@
+"""What the root planner is told once, and what it hands back."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from elbowroom.planning.root_motion import RootMotionSettings
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_route import RouteSettings
+
+
+class RootPlanKind(Enum):
+    """How a root path answers its command."""
+
+    STRAIGHT = "straight"  # as commanded
+    DETOUR = "detour"  # round an obstacle, at full speed
+    SHORTENED = "shortened"  # slower than commanded, or ending early
+    STOPPED = "stopped"  # no way on
+
+
+@dataclass(frozen=True)
+class RootPlannerSettings:
+    """How far the root planner looks and how close it goes. Metres, seconds."""
+
+    motion: RootMotionSettings = field(default_factory=RootMotionSettings)
+    route: RouteSettings = field(default_factory=RouteSettings)
+    sight: float = 3.2  # how far ahead the way is looked at
+    widest_detour: float = 1.6  # how far from the line of travel a way round may lead
+    worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
+    # Searches for a way round, in turn: the clearance that it must have, and the cells of the map.
+    searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
+    margin: float = 0.01  # clearance of the straight way
+    skin: float = 0.01  # clearance that posed legs keep along a path
+    spacing: float = 0.0125  # seconds between checked states
+    slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
+
+
+@dataclass(frozen=True, eq=False)
+class RootPlan:
+    """A root path and how it came about."""
+
+    path: RootPath
+    kind: RootPlanKind
+    goal: tuple[float, float]  # x, z of the short-term goal: where the looked-at route ends
+    checks: int  # postures and places whose clearance was computed
+    nanoseconds: int
