@@ -1,10 +1,6 @@
-"""The clearance kernels against a naive twin, against coal, and against losing their vector code."""
-
-import re
-from typing import Any
+"""The clearance kernels against a naive twin, and against coal."""
 
 import coal
-import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import _lower_to_box, clearance, clearance_of, pairwise_clearance
+from elbowroom.world.clearance import clearance, clearance_of, pairwise_clearance
 
 Floats = NDArray[np.float64]
 
@@ -178,23 +174,3 @@ def test_any_layout_of_the_arrays_gives_the_same() -> None:
     expected = clearance(segments, radii, boxes.table)
     strided = np.moveaxis(np.ascontiguousarray(np.moveaxis(segments, -1, 0)), 0, -1)
     np.testing.assert_array_equal(clearance(strided, radii, boxes.table32), expected)
-
-
-def _assembly(function: Any) -> str:
-    """Machine code of a kernel, compiled afresh: what comes from the disk cache cannot be inspected."""
-    if not hasattr(function, "py_func"):
-        pytest.skip("compilation is switched off (NUMBA_DISABLE_JIT)")
-    options = {key: value for key, value in function.targetoptions.items() if key != "nopython"}
-    fresh = numba.njit(**options)(function.py_func)
-    fresh(np.zeros((7, 16), np.float32), np.zeros(15, np.float32), np.zeros(16, np.float32))
-    return "\n".join(fresh.inspect_asm().values())
-
-
-def test_the_hot_loop_is_vector_code() -> None:
-    code = _assembly(_lower_to_box)
-    if not re.search(r"\bv?addss\b|\bv\w+ps\b", code):
-        pytest.skip("vector registers are counted on x86 processors only")
-    wide = len(re.findall(r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%[yz]mm", code))
-    if wide == 0 and not re.search(r"%[yz]mm", code) and not re.search(r"\bv\w+ss\b", code):
-        pytest.skip("this processor has no AVX2")
-    assert wide >= 100, "the clearance loop lost its vector code: expect a tenth of the speed"

@@ -1,0 +1,60 @@
+"""`elbowroom bench collision`: capsule-box checks a second, beside other libraries."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli.output import print_json, print_row, progress_bar
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.bench.collision import CollisionReport, Speed
+
+EXAMPLES = "Examples:  elbowroom bench collision  |  elbowroom bench collision --postures 100000 --rounds 15 --json"
+
+
+def collision(
+    *,
+    postures: Annotated[int, typer.Option(help="Postures of an arm of three capsules.")] = 10_000,
+    boxes: Annotated[int, typer.Option(help="Boxes round it.")] = 6,
+    rounds: Annotated[int, typer.Option(help="Times that each library runs; the median counts.")] = 7,
+    seed: Annotated[int, typer.Option(help="Of the random postures and boxes.")] = 7,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Measure how many capsules are checked against boxes in a second, on one core, and whether others agree."""
+    from elbowroom.experiment.bench.collision import CollisionSettings, run
+
+    settings = CollisionSettings(postures=postures, boxes=boxes, rounds=rounds, seed=seed)
+    with progress_bar("Checking", rounds, quiet) as bar:
+        report = run(settings, bar.move)
+    if json:
+        print_json(as_json(report, settings.seed))
+    else:
+        show(report)
+
+
+def as_json(report: "CollisionReport", seed: int) -> dict[str, Any]:
+    """All that is shown, and the setting."""
+    from dataclasses import asdict
+
+    from elbowroom.experiment.machine import machine_kind
+
+    return {"machine": machine_kind(), "seed": seed} | asdict(report)
+
+
+def show(report: "CollisionReport") -> None:
+    """The figures as a table."""
+    from elbowroom.experiment.machine import machine_kind
+
+    bits = f"{report.vector_bits}-bit vectors" if report.vector_bits else "scalar or unknown machine code"
+    rows = {report.own.name: f"{_millions(report.own)}, {bits}"}
+    rows |= {
+        rival.name: f"{_millions(rival)}, ours {rival.ratio or 0.0:.0f} times; {rival.disagreements} other answers"
+        for rival in report.rivals
+    }
+    rows |= dict.fromkeys(report.missing, "not installed")
+    print_row(f"Capsule-box checks a second on one core ({machine_kind()})", rows)
+
+
+def _millions(speed: "Speed") -> str:
+    return f"{speed.checks_per_second / 1e6:.3g} million"

@@ -1,0 +1,1 @@
+"""Benchmarks: what the kernels and the planners cost, beside what others need for the same."""

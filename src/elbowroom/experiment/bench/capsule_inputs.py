@@ -1,0 +1,65 @@
+"""The inputs of the collision benchmark: an arm in many postures among a few boxes, the same for every library."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DofGroup, clamp, limits
+from elbowroom.body.kinematics import arm_capsules, body_model
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.geometry import quaternion
+from elbowroom.world.boxes import Boxes
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_Z = np.array([0.0, 0.0, 1.0])
+
+
+class CapsuleInputs(NamedTuple):
+    """C capsules in N postures against B boxes, single precision as the kernels take it."""
+
+    segments: Floats32  # (C, 6, N) metres
+    radii: Floats32  # (C,)
+    boxes: Boxes
+
+    @property
+    def checks(self) -> int:
+        """Pairs of a capsule and a box."""
+        return len(self.radii) * len(self.boxes) * int(self.segments.shape[2])
+
+    def first(self, count: int) -> "CapsuleInputs":
+        """The same with fewer postures."""
+        return self._replace(segments=np.ascontiguousarray(self.segments[:, :, :count]))
+
+    @property
+    def lengths(self) -> Floats:
+        """Of the axes (C,)."""
+        ends = self.segments[:, :, 0].astype(np.float64)
+        lengths: Floats = np.linalg.norm(ends[:, 3:] - ends[:, :3], axis=1)
+        return lengths
+
+    def placements(self) -> tuple[Floats, Floats]:
+        """Middles (N, C, 3) of the capsules, and rotations (N, C, 4) that turn +Z along their axes."""
+        ends = np.moveaxis(self.segments.astype(np.float64), 2, 0)
+        axes = ends[..., 3:] - ends[..., :3]
+        flat = axes.reshape(-1, 3)
+        turns = quaternion.between(np.tile(_Z, (len(flat), 1)), flat)
+        return 0.5 * (ends[..., :3] + ends[..., 3:]), turns.reshape(*axes.shape[:2], 4)
+
+
+def capsule_inputs(postures: int, boxes: int, seed: int) -> CapsuleInputs:
+    """A man's left arm in random postures within its limits, and random boxes within its reach."""
+    rng = np.random.default_rng(seed)
+    model = body_model(proportional_humanoid())
+    low, high = limits(DofGroup.LEFT_ARM).T
+    arms = clamp(DofGroup.LEFT_ARM, rng.uniform(low, high, (postures, len(low))))
+    segments = arm_capsules(model, DofGroup.LEFT_ARM, arms)
+    shoulder = segments[0, :3].mean(axis=1)
+    towards = rng.normal(size=(boxes, 3))
+    towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+    centers = shoulder + towards * rng.uniform(0.5, 0.85, (boxes, 1))
+    turns = quaternion.normalize(rng.normal(size=(boxes, 4)))
+    radii = model.capsules_of(DofGroup.LEFT_ARM).radii
+    return CapsuleInputs(segments, radii, Boxes(centers, turns, rng.uniform(0.05, 0.22, (boxes, 3))))

@@ -1,0 +1,105 @@
+"""How many capsule-box checks a second, on one core, beside the libraries that a user could take instead."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.experiment.bench.capsule_inputs import CapsuleInputs, capsule_inputs
+from elbowroom.experiment.bench.rivals import Rival, rivals
+from elbowroom.experiment.bench.vector_code import vector_bits
+from elbowroom.world.clearance import clearance, clearance_into
+
+Bools = NDArray[np.bool_]
+
+_CLOSE = 1e-6  # metres: nearer to touching than this, single precision may say either
+_MOST = 1_000_000  # postures
+
+
+@dataclass(frozen=True)
+class CollisionSettings:
+    """The size of the benchmark."""
+
+    postures: int = 10_000
+    boxes: int = 6
+    rival_postures: int = 1_000  # the slower libraries see the first of them
+    rounds: int = 7  # each library once a round; the median counts
+    seed: int = 7
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.postures <= _MOST:
+            raise InputError(f"postures {self.postures}: allowed are 1 to {_MOST}")
+        if not 1 <= self.boxes <= 1000:
+            raise InputError(f"boxes {self.boxes}: allowed are 1 to 1000")
+        if not 1 <= self.rounds <= 1000:
+            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
+
+
+@dataclass(frozen=True)
+class Speed:
+    """What one library did."""
+
+    name: str
+    call: str
+    checks_per_second: float
+    disagreements: int | None = None  # postures with another answer than ours, and not next to touching
+    ratio: float | None = None  # our checks per second to theirs, the median of the rounds
+
+
+@dataclass(frozen=True)
+class CollisionReport:
+    """The benchmark's figures."""
+
+    vector_bits: int  # that the compiled kernel uses
+    own: Speed
+    rivals: tuple[Speed, ...]
+    missing: tuple[str, ...]  # rivals that are not installed
+    touching_share: float
+
+
+def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: None) -> CollisionReport:
+    """Time all in turns, round by round, so that a slow moment of the machine meets them alike."""
+    inputs = capsule_inputs(settings.postures, settings.boxes, settings.seed)
+    few = inputs.first(min(settings.rival_postures, settings.postures))
+    others, missing = rivals(few)
+    clear = clearance(few.segments, few.radii, few.boxes.table)
+    answers = [other.touching() for other in others]
+    own_rates: list[float] = []
+    rates: list[list[float]] = [[] for _ in others]
+    for number in range(settings.rounds):
+        own_rates.append(_own_rate(inputs))
+        for i, other in enumerate(others):
+            began = perf_counter()
+            other.touching()
+            rates[i].append(other.checks / (perf_counter() - began))
+        tick(number + 1)
+    return CollisionReport(
+        vector_bits=vector_bits(),
+        own=Speed("Elbowroom", "clearance_into", float(np.median(own_rates))),
+        rivals=tuple(
+            _speed(other, own_rates, theirs, touching, clear)
+            for other, theirs, touching in zip(others, rates, answers, strict=True)
+        ),
+        missing=tuple(missing),
+        touching_share=float(np.mean(clear < 0.0)),
+    )
+
+
+def _own_rate(inputs: CapsuleInputs) -> float:
+    """Our checks a second: the best of five calls, as one call takes less than a slice of the scheduler's."""
+    table, out = inputs.boxes.table32, np.empty(inputs.segments.shape[2], np.float32)
+    best = np.inf
+    for _ in range(5):
+        began = perf_counter()
+        clearance_into(inputs.segments, inputs.radii, table, out)
+        best = min(best, perf_counter() - began)
+    return inputs.checks / best
+
+
+def _speed(other: Rival, own: list[float], theirs: list[float], touching: Bools, clear: NDArray[np.float32]) -> Speed:
+    ratio = float(np.median(np.array(own) / np.array(theirs)))
+    differs = (touching != (clear < 0.0)) & (np.abs(clear) > _CLOSE)
+    return Speed(other.name, other.call, float(np.median(theirs)), int(differs.sum()), ratio)

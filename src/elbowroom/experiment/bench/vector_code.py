@@ -1,0 +1,31 @@
+"""Whether the compiled clearance loop is vector code, and how wide: read from the machine code itself."""
+
+import re
+from functools import cache
+from typing import Any, cast
+
+import numba
+import numpy as np
+
+from elbowroom.world import clearance
+
+_ARITHMETIC = r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%"
+_BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
+
+
+@cache
+def clearance_loop_code() -> str:
+    """The assembly of the hot loop, compiled anew: what comes from the disk cache cannot be read."""
+    kernel = cast(Any, clearance)._lower_to_box
+    options = {key: value for key, value in kernel.targetoptions.items() if key != "nopython"}
+    fresh = numba.njit(**options)(kernel.py_func)
+    fresh(np.zeros((7, 16), np.float32), np.zeros(15, np.float32), np.zeros(16, np.float32))
+    return "\n".join(fresh.inspect_asm().values())
+
+
+def vector_bits() -> int:
+    """The width of the vectors that most of the loop's arithmetic is done in; 0 where it is scalar or unknown."""
+    code = clearance_loop_code()
+    counts = {bits: len(re.findall(_ARITHMETIC + register, code)) for register, bits in _BITS.items()}
+    most = max(counts, key=lambda bits: counts[bits])
+    return most if counts[most] >= 100 else 0
