@@ -1,0 +1,69 @@
+"""Why there is no way: the fewest obstacles that together leave no posture of a slice.
+
+Each candidate posture of the upper body, a triple (w, l, r), is closed by what touches it: its waist by some boxes, its
+left arm under that waist by some, its right arm by some, and by nothing in the scene where the arms touch each other. A
+set of boxes blocks a slice if it closes every candidate. Boxes are taken away one after the other while the rest still
+blocks: what is left is enough, and none of it can be missed.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+
+class SliceContacts(NamedTuple):
+    """Which box closes which posture of a slice; B boxes, the likeliest to be missed first."""
+
+    candidates: Bools  # (W, L, R) triples that count: free of the body itself, and in reach
+    waist: Bools  # (B, W)
+    left: Bools  # (B, W, L)
+    right: Bools  # (B, W, R)
+
+
+@exact_kernel
+def _all_closed(contacts: SliceContacts, kept: Bools) -> bool:
+    """Whether the kept boxes (B,) close every candidate."""
+    _, waists, lefts = contacts.left.shape
+    rights = contacts.right.shape[2]
+    left, right = np.empty(lefts, np.bool_), np.empty(rights, np.bool_)
+    for w in range(waists):
+        closed = False
+        left[:], right[:] = False, False
+        for b in range(kept.shape[0]):
+            if kept[b]:
+                closed |= contacts.waist[b, w]
+                left |= contacts.left[b, w]
+                right |= contacts.right[b, w]
+        if closed:
+            continue
+        for n in range(lefts):
+            if not left[n]:
+                for r in range(rights):
+                    if not right[r] and contacts.candidates[w, n, r]:
+                        return False
+    return True
+
+
+@exact_kernel
+def _needed(contacts: SliceContacts) -> Bools:
+    kept = np.ones(contacts.waist.shape[0], np.bool_)
+    for b in range(kept.shape[0]):
+        kept[b] = False
+        kept[b] = not _all_closed(contacts, kept)
+    return kept
+
+
+def blocking_boxes(contacts: SliceContacts) -> Indices | None:
+    """Indices of boxes that close every candidate, each of them needed; None where a candidate stays open.
+
+    There are none to name where nothing is a candidate to begin with.
+    """
+    if not _all_closed(contacts, np.ones(len(contacts.waist), np.bool_)):
+        return None
+    return np.flatnonzero(_needed(contacts))

@@ -1,0 +1,103 @@
+"""What a way through one posture of one group costs at least, whatever the other groups do."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import kernel
+
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+
+class Problem(NamedTuple):
+    """The product of three groups' postures over n+1 slices; prices and steps in squared radians, infinite: closed.
+
+    Depth 0 is the start: only what is there has a finite price.
+    """
+
+    waist: Floats32  # (n+1, W) prices
+    left: Floats32  # (n+1, W, L) prices under each waist
+    right: Floats32  # (n+1, W, R)
+    waist_steps: Floats32  # (n, W, W) from row to column
+    left_steps: Floats32  # (n, L, L)
+    right_steps: Floats32  # (n, R, R)
+    apart: Bools  # (n+1, L, R) whether the arms keep clear of each other
+
+
+class Bounds(NamedTuple):
+    """Lower bounds on the cost of whole ways, for waist, left and right arm: infinite where there is no such way."""
+
+    through: tuple[Floats32, Floats32, Floats32]  # (n+1, V) of a way from start to end through the posture
+    ahead: tuple[Floats32, Floats32, Floats32]  # (n+1, V) of reaching the posture, for the group alone
+
+
+def bounds_of(problem: Problem) -> Bounds:
+    """Each group by itself, the others at their best.
+
+    What an arm costs under a waist at least is charged to the waist, and the arms pay what they cost beyond: the sum
+    stays the same and the bounds become tighter.
+    """
+    least = [prices.min(axis=2) for prices in (problem.left, problem.right)]
+    waist = problem.waist + least[0] + least[1]
+    allowed = np.isfinite(waist)
+    prices = [waist]
+    for own, best in zip((problem.left, problem.right), least, strict=True):
+        beyond = _beyond(own, np.where(allowed, best, np.float32(np.inf)))
+        prices.append(beyond)
+    steps = problem.waist_steps, problem.left_steps, problem.right_steps
+    ahead = [_ahead(price, step) for price, step in zip(prices, steps, strict=True)]
+    behind = [_behind(price, step) for price, step in zip(prices, steps, strict=True)]
+    alone = [there + back for there, back in zip(ahead, behind, strict=True)]
+    whole = [one[0].min() for one in alone]
+    others = [np.float32(sum(whole[:g] + whole[g + 1 :])) for g in range(3)]
+    through = [one + other for one, other in zip(alone, others, strict=True)]
+    return Bounds((through[0], through[1], through[2]), (ahead[0], ahead[1], ahead[2]))
+
+
+@kernel
+def _beyond(prices: Floats32, least: Floats32) -> Floats32:
+    """The least (n+1, V) over the waists of what a posture costs beyond the best under that waist (n+1, W)."""
+    depths, waists, size = prices.shape
+    out = np.full((depths, size), np.float32(np.inf), np.float32)
+    for t in range(depths):
+        for w in range(waists):
+            if least[t, w] < np.inf:
+                row, target, best = prices[t, w], out[t], least[t, w]
+                for v in range(np.uint64(size)):
+                    target[v] = min(target[v], row[v] - best)
+    return out
+
+
+@kernel
+def _ahead(prices: Floats32, steps: Floats32) -> Floats32:
+    """The least cost (n+1, V) of reaching each posture, its own price included."""
+    out = np.full(prices.shape, np.float32(np.inf), np.float32)
+    out[0] = prices[0]
+    for t in range(steps.shape[0]):
+        target = out[t + 1]
+        for v in range(prices.shape[1]):
+            cost, row = out[t, v], steps[t, v]
+            if cost < np.inf:
+                for u in range(np.uint64(prices.shape[1])):
+                    target[u] = min(target[u], cost + row[u])
+        for u in range(np.uint64(prices.shape[1])):
+            target[u] += prices[t + 1, u]
+    return out
+
+
+@kernel
+def _behind(prices: Floats32, steps: Floats32) -> Floats32:
+    """The least cost (n+1, V) of the way on to the last depth, without the posture's own price."""
+    out = np.zeros(prices.shape, np.float32)
+    onward = np.empty(prices.shape[1], np.float32)
+    for t in range(steps.shape[0] - 1, -1, -1):
+        for u in range(prices.shape[1]):
+            onward[u] = out[t + 1, u] + prices[t + 1, u]
+        for v in range(prices.shape[1]):
+            row, best = steps[t, v], np.float32(np.inf)
+            for u in range(prices.shape[1]):
+                best = min(best, row[u] + onward[u])
+            out[t, v] = best
+    return out

@@ -1,0 +1,109 @@
+"""Which parts of a body must not run into each other, and by how much they may: arms, trunk, head and legs.
+
+A pair of capsules may overlap by 2 cm, as capsules wrap the mesh generously and contact of their rims is no contact of
+bodies; or that much more than it does when the avatar stands and walks naturally, as some builds leave it no choice.
+So the natural walk is free for every avatar. Not looked at is what a joint holds together: the parts of one arm, the
+parts of the trunk, and an upper arm against the trunk below the neck, where its shoulder is rooted.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
+from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.geometry import quaternion
+from elbowroom.planning.axis_gaps import clear_pairs
+from elbowroom.planning.frames import compose
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.root_path import RootPath
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
+
+SKIN = 0.02  # metres
+EXEMPT = -1e3  # metres: a pair that is not looked at
+_SPEEDS = (0.0, 0.6, 1.1, 2.2)  # m/s of the natural walk
+_PHASES = 16
+
+
+class SelfPairs(NamedTuple):
+    """One avatar's own body: K parts that are not of an arm, and the arms' parts, as indices of its capsules."""
+
+    rest: Indices  # (K,) pelvis and legs, trunk, neck, head
+    carried: NDArray[np.bool_]  # (K,) rides on the chest frame: stands still seen from an arm
+    legs: NDArray[np.bool_]  # (K,) moves with the gait
+    arms: tuple[Indices, Indices]  # (C,) left, right
+    allowed: tuple[Floats32, Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
+    between: Floats32  # (C, C) of left and right arm
+
+
+def self_pairs(model: BodyModel) -> SelfPairs:
+    """Measure the natural walk of a body."""
+    rest = np.concatenate([model.roots.indices, model.trunk.indices])
+    joints = np.concatenate([model.roots.joints, model.trunk.joints])
+    legs = np.concatenate([model.roots.joints != 0, np.zeros(len(model.trunk.joints), np.bool_)])
+    arms = model.left_arm.indices, model.right_arm.indices
+    natural = _natural_walk(model)
+    head = np.isin(joints, model.gaze)
+
+    def allowed(one: Indices, other: Indices) -> Floats32:
+        touching = model.body.radii[one][:, None] + model.body.radii[other]
+        distances = np.array([[clear_pairs(natural[a], natural[b]).min() for b in other] for a in one])
+        least: Floats32 = (np.minimum(distances, touching) - SKIN).astype(np.float32)
+        return least
+
+    limits = tuple(allowed(arm, rest) for arm in arms)
+    for limit in limits:
+        limit[0, ~head] = EXEMPT
+    carried = joints == model.spine[-1]
+    return SelfPairs(rest, carried, legs, arms, (limits[0], limits[1]), allowed(*arms))
+
+
+def _natural_walk(model: BodyModel) -> Floats32:
+    """All capsules (C, 6, N) over strides at several speeds."""
+    states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
+    states[:, 3] = np.repeat(_SPEEDS, _PHASES)
+    states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
+    return posture_capsules(model, _postures(goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))), states)
+
+
+def _postures(uppers: Floats) -> Floats:
+    """Configurations (N, DOF) at the origin for upper bodies (N, DOF - 3)."""
+    out = np.zeros((len(uppers), DOF))
+    out[:, DOF - uppers.shape[1] :] = uppers
+    return out
+
+
+def body_from_chest(model: BodyModel, pairs: SelfPairs, waists: Floats, roots: Floats) -> Floats32:
+    """The parts that are not of an arm (K, 6, N) in the chest frame, for waists (N, d) and root states (N, 7)."""
+    here = roots.copy()
+    here[:, :3] = 0.0
+    uppers = np.zeros((len(waists), sum(group.size for group in LOCAL_GROUPS)))
+    uppers[:, : DofGroup.WAIST.size] = waists
+    capsules = posture_capsules(model, _postures(uppers), here)[pairs.rest].astype(np.float64)
+    places, turns = compose(*pelvis_frames(model, here), *chest_frames(model, waists))
+    ends = capsules.reshape(len(capsules), 2, 3, -1).transpose(0, 1, 3, 2)
+    seen = quaternion.rotate(quaternion.conjugate(turns), ends - places)
+    return np.ascontiguousarray(seen.transpose(0, 1, 3, 2).reshape(capsules.shape), np.float32)
+
+
+def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: Floats) -> Floats32:
+    """How much nearer each pair of parts could come, the least of all, metres: shape (N,).
+
+    For root states (N, 7) and upper bodies (N, DOF - 3): waist, left arm, right arm. Negative: in contact.
+    """
+    here = roots.copy()
+    here[:, :3] = 0.0
+    capsules = posture_capsules(model, _postures(uppers), here)
+    least = np.full(len(uppers), np.inf, np.float32)
+    for arm, limit in zip(pairs.arms, pairs.allowed, strict=True):
+        for c, k in np.argwhere(limit > EXEMPT):
+            np.minimum(least, clear_pairs(capsules[arm[c]], capsules[pairs.rest[k]]) - limit[c, k], out=least)
+    for c, k in np.ndindex(pairs.between.shape):
+        gaps = clear_pairs(capsules[pairs.arms[0][c]], capsules[pairs.arms[1][k]]) - pairs.between[c, k]
+        np.minimum(least, gaps, out=least)
+    return least

@@ -1,0 +1,140 @@
+"""A body against itself: tables against coal and against one pair after the other, the natural walk free for anyone."""
+
+from pathlib import Path
+
+import coal
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, clamp, limits
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import arm_capsules, body_model, posture_capsules
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.geometry import quaternion
+from elbowroom.planning.axis_gaps import arm_clearances, body_clearances, clear_pairs
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.self_contact import axis_distance
+from elbowroom.planning.self_pairs import EXEMPT, SKIN, body_from_chest, self_clearances, self_pairs
+from shared_data import SHARED, needs_shared
+
+Floats = NDArray[np.float64]
+
+
+def random_uppers(rng: np.random.Generator, count: int) -> Floats:
+    parts = []
+    for group in LOCAL_GROUPS:
+        low, high = limits(group).T
+        parts.append(clamp(group, rng.uniform(0.6 * low, 0.6 * high, (count, group.size))))
+    return np.concatenate(parts, axis=1)
+
+
+def random_roots(rng: np.random.Generator, count: int) -> Floats:
+    roots = rng.uniform(-1.0, 1.0, (count, 7))
+    roots[:, 3:6] *= [1.2, 0.2, 0.5]
+    return roots
+
+
+def test_axis_distances_equal_the_double_precision_twin() -> None:
+    rng = np.random.default_rng(0)
+    first, second = rng.uniform(-0.5, 0.5, (2, 6, 4000)).astype(np.float32)
+    second[3:, :500] = second[:3, :500] + (first[3:, :500] - first[:3, :500])  # parallel
+    first[3:, 500:600] = first[:3, 500:600]  # points
+    expected = [axis_distance(a.astype(float), b.astype(float)) for a, b in zip(first.T, second.T, strict=True)]
+    assert np.allclose(clear_pairs(first, second), expected, atol=2e-5)
+
+
+def coal_distance(ends: Floats, radius: float, other_ends: Floats, other_radius: float) -> float:
+    def placed(segment: Floats, size: float) -> tuple[object, object]:
+        along = segment[3:] - segment[:3]
+        length = float(np.linalg.norm(along))
+        turn = quaternion.to_matrix(quaternion.between([0.0, 0.0, 1.0], along if length > 1e-9 else [0.0, 0.0, 1.0]))
+        shape = coal.Capsule(size, length) if length > 1e-9 else coal.Sphere(size)
+        return shape, coal.Transform3s(turn, 0.5 * (segment[:3] + segment[3:]))
+
+    one, other = placed(ends, radius), placed(other_ends, other_radius)
+    return float(coal.distance(*one, *other, coal.DistanceRequest(), coal.DistanceResult()))
+
+
+def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
+    """Arm under waist and arm beside arm, each from its own table, against coal's distances of the posed body."""
+    humanoid, rng = proportional_humanoid(1.72), np.random.default_rng(1)
+    model, count = body_model(humanoid), 25
+    pairs = self_pairs(model)
+    uppers, roots = random_uppers(rng, count), random_roots(rng, count)
+    q = np.zeros((count, DOF))
+    q[:, DOF - uppers.shape[1] :] = uppers
+    q[:, :3] = roots[:, :3]
+    world, radii = posture_capsules(model, q, roots).astype(np.float64), humanoid.capsules.radii
+    first = DofGroup.WAIST.value.start
+    waists, *arms = (uppers[:, group.value.start - first : group.value.stop - first] for group in LOCAL_GROUPS)
+    bodies = np.ascontiguousarray(body_from_chest(model, pairs, waists, roots).transpose(2, 0, 1))
+    segments = [arm_capsules(model, group, arm) for group, arm in zip(LOCAL_GROUPS[1:], arms, strict=True)]
+    every = np.ones(len(pairs.rest), np.bool_)
+    table = arm_clearances(*segments, pairs.between)
+    for n in range(count):
+        least = []
+        for side, allowed in enumerate(pairs.allowed):
+            gaps = [
+                coal_distance(world[a, :, n], radii[a], world[k, :, n], radii[k])
+                + (radii[a] + radii[k] - allowed[i, j])
+                for i, a in enumerate(pairs.arms[side])
+                for j, k in enumerate(pairs.rest)
+                if allowed[i, j] > EXEMPT
+            ]
+            least.append(min(gaps))
+            found = body_clearances(segments[side], bodies, pairs.allowed[side], every)[n, n]
+            assert np.isclose(found, least[-1], atol=1e-4) or min(found, least[-1]) < -0.1
+        crossing = min(
+            coal_distance(world[a, :, n], radii[a], world[b, :, n], radii[b])
+            + radii[a]
+            + radii[b]
+            - pairs.between[i, j]
+            for i, a in enumerate(pairs.arms[0])
+            for j, b in enumerate(pairs.arms[1])
+        )
+        assert np.isclose(table[n, n], crossing, atol=1e-4) or min(table[n, n], crossing) < -0.1
+        whole = self_clearances(model, pairs, roots[n : n + 1], uppers[n : n + 1])[0]
+        assert np.isclose(whole, min(*least, crossing), atol=1e-4) or min(whole, *least, crossing) < -0.1
+
+
+def natural_clearance(humanoid: Humanoid) -> float:
+    rng = np.random.default_rng(2)
+    states = np.zeros((200, 7))
+    states[:, 3], states[:, 6] = rng.uniform(0.0, 2.2, 200), rng.uniform(0.0, 1.0, 200)
+    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))
+    model = body_model(humanoid)
+    return float(self_clearances(model, self_pairs(model), states, uppers).min())
+
+
+@pytest.mark.parametrize("height", [1.1, 1.72, 2.0])
+def test_the_natural_walk_is_free_of_itself(height: float) -> None:
+    assert natural_clearance(proportional_humanoid(height)) > 0.5 * SKIN
+
+
+def _avatars() -> list[Path]:
+    return sorted((SHARED / "avatars").glob("vrm*/*.vrm"))[:6] if SHARED else []
+
+
+@needs_shared
+@pytest.mark.parametrize("file", _avatars(), ids=lambda file: file.stem)
+def test_the_natural_walk_of_real_avatars_is_free_of_itself(file: Path) -> None:
+    assert natural_clearance(Humanoid.load(file)) > 0.5 * SKIN
+
+
+def test_arms_through_body_and_through_each_other_are_found() -> None:
+    humanoid = proportional_humanoid(1.72)
+    model = body_model(humanoid)
+    pairs = self_pairs(model)
+    uppers = np.zeros((3, sum(group.size for group in LOCAL_GROUPS)))
+    start = DofGroup.LEFT_ARM.value.start - DofGroup.WAIST.value.start
+    arm = DofGroup.LEFT_ARM.size
+    hanging = goal_configurations(natural_walk(), RootPath(0.0, 1.0, np.zeros((2, 7))))[0]
+    uppers[:] = hanging
+    uppers[0, start : start + arm] = np.deg2rad([20.0, -30.0, 70.0, 120.0])  # forearm through the belly
+    uppers[1, start : start + 2 * arm] = np.deg2rad([80.0, -35.0, 0.0, 10.0] * 2)  # arms crossed straight ahead
+    found = self_clearances(model, pairs, np.zeros((3, 7)), uppers)
+    assert found[0] < 0.0
+    assert found[1] < 0.0
+    assert found[2] > 0.0
