@@ -72,7 +72,7 @@ def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
     bodies = np.ascontiguousarray(body_from_chest(model, pairs, waists, roots).transpose(2, 0, 1))
     segments = [arm_capsules(model, group, arm) for group, arm in zip(LOCAL_GROUPS[1:], arms, strict=True)]
     every = np.ones(len(pairs.rest), np.bool_)
-    table = arm_clearances(*segments, pairs.between)
+    table = arm_clearances(segments[0], segments[1], pairs.between)
     for n in range(count):
         least = []
         for side, allowed in enumerate(pairs.allowed):

@@ -57,7 +57,7 @@ def _same(first: Bits, second: Bits) -> bool:
     differing = np.uint64(0)
     for i in range(first.shape[0]):
         differing |= first[i] ^ second[i]
-    return differing == 0
+    return bool(differing == 0)
 
 
 @exact_kernel

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import kernel
-from elbowroom.planning.exact.slices import near_rows
 from elbowroom.world.clearance import clearance_into
 
 Floats = NDArray[np.float64]
@@ -43,6 +42,22 @@ def move_rows(rows: Floats32, count: int, place: Floats, turn: Floats, out: Floa
 
 
 @kernel
+def _near(rows: Floats32, reach: float, out: Floats32) -> int:
+    """Copy the boxes of `rows` (B, 15) that come within `reach` of the frame's origin to `out`; their number."""
+    count = 0
+    for b in range(rows.shape[0]):
+        row, total = rows[b], 0.0
+        for i in range(3):
+            place = row[3 + 3 * i] * row[0] + row[4 + 3 * i] * row[1] + row[5 + 3 * i] * row[2]
+            beyond = max(abs(place) - row[12 + i], 0.0)
+            total += beyond * beyond
+        if total < reach * reach:
+            out[count] = row
+            count += 1
+    return count
+
+
+@kernel
 def clearances_under(
     segments: Floats32, radii: Floats32, tables: Floats32, place: Floats, turn: Floats, reach: float
 ) -> tuple[Floats32, int]:
@@ -55,7 +70,7 @@ def clearances_under(
     found, checks = np.empty(segments.shape[2], np.float32), 0
     for at in range(tables.shape[0]):
         move_rows(tables[at], tables.shape[1], place, turn, moved)
-        count = near_rows(moved, reach, near)
+        count = _near(moved, reach, near)
         if count == 0:
             continue
         clearance_into(segments, radii, near[:count], found)
