@@ -4,8 +4,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from elbowroom.body.capsules import Capsules
+from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class BoneSource:
+    """Where a bone was found."""
+
+    bone: str
+    node: int  # of the file
+    name: str  # of the node
+    how: str  # "VRM 1.0", a table of names ("Mixamo", ...), "spelling", "topology", "override", "added"
 
 
 @dataclass(frozen=True)
@@ -17,6 +28,7 @@ class AvatarMeta:
     licence: str = ""
     format: str = ""  # "VRM 1.0", "VRM 0.x", "glTF 2.0"
     notes: tuple[str, ...] = ()  # what was left out or guessed in reading it, one line each
+    bones: tuple[BoneSource, ...] = ()  # parents first
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +44,14 @@ class Humanoid:
     glb: bytes | None = None  # the file as one self-contained GLB, for a viewer; None without a file
 
     @classmethod
-    def load(cls, path: str | Path) -> "Humanoid":
+    def load(cls, path: str | Path, settings: LoadSettings | None = None) -> "Humanoid":
         """Read a VRM 0.x, VRM 1.0 or glTF/GLB humanoid.
 
         Raises `InputError` if the file cannot be read or holds no humanoid.
         """
         from elbowroom.body.loading import load_humanoid
 
-        return load_humanoid(Path(path))
+        return load_humanoid(Path(path), settings)
 
     @classmethod
     def default(cls) -> "Humanoid":

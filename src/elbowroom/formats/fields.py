@@ -1,14 +1,16 @@
 """A cursor over untrusted JSON: every wrong value becomes one line that says where it stands and what is allowed."""
 
+import json
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 
+_MAX_JSON_BYTES = 64 * 1024 * 1024
 _LARGEST = 1e6  # of any number that places something; far beyond every avatar, and its products stay finite
 _SHOWN = 40  # characters of a wrong value that a message repeats
 
@@ -109,3 +111,23 @@ def _is_number(value: object) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return math.isfinite(value) and abs(value) <= _LARGEST
+
+
+def parse_json(text: bytes, name: str) -> dict[str, Any]:
+    """A JSON object from untrusted bytes; `name` stands for the file in messages. Raises `InputError`."""
+    if len(text) > _MAX_JSON_BYTES:
+        raise InputError(f"{name}: the JSON part has {len(text) >> 20} MB: at most {_MAX_JSON_BYTES >> 20} MB are read")
+    try:
+        value = json.loads(text.decode("utf-8-sig").rstrip("\x00 \t\r\n"), parse_constant=_not_a_number)
+    except RecursionError:
+        raise InputError(f"{name}: the JSON part is nested too deeply") from None
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:120]
+        raise InputError(f"{name}: the JSON part cannot be read: {reason}") from None
+    if not isinstance(value, dict):
+        raise InputError(f"{name}: the JSON part is not an object")
+    return value
+
+
+def _not_a_number(word: str) -> NoReturn:
+    raise ValueError(f"{word} is not a JSON number")

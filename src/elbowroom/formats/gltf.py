@@ -1,17 +1,14 @@
 """The container: a GLB or .gltf file as checked JSON and its buffers. Nothing outside its own folder is ever read."""
 
-import json
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
 
 from elbowroom.errors import InputError
-from elbowroom.formats.fields import Field
+from elbowroom.formats.fields import Field, parse_json
 from elbowroom.formats.resources import read_uri
 
 MAX_BYTES = 256 * 1024 * 1024
-_MAX_JSON_BYTES = 64 * 1024 * 1024
 _MAX_BUFFERS = 1000
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
 
@@ -49,7 +46,7 @@ def parse_gltf(data: bytes, name: str, folder: Path | None = None) -> Gltf:
     if not is_glb and not data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
         raise InputError(f"{name} starts with {data[:4]!r}: it is neither a GLB or VRM ('glTF') nor a .gltf ('{{')")
     text, binary = _glb_chunks(data, name) if is_glb else (data, None)
-    root = Field(_parse_json(text, name), name)
+    root = Field(parse_json(text, name), name)
     version = root.at("asset").at("version")
     if not version.text().startswith("2."):
         raise version.wrong("'2.0'")
@@ -79,25 +76,6 @@ def _glb_chunks(data: bytes, name: str) -> tuple[bytes, memoryview | None]:
     if _JSON not in chunks:
         raise InputError(f"{name} has no JSON chunk: it is not a glTF asset")
     return bytes(chunks[_JSON]), chunks.get(_BIN)
-
-
-def _parse_json(text: bytes, name: str) -> dict[str, Any]:
-    if len(text) > _MAX_JSON_BYTES:
-        raise InputError(f"{name}: the JSON part has {len(text) >> 20} MB: at most {_MAX_JSON_BYTES >> 20} MB are read")
-    try:
-        value = json.loads(text.decode("utf-8-sig").rstrip("\x00 \t\r\n"), parse_constant=_not_a_number)
-    except RecursionError:
-        raise InputError(f"{name}: the JSON part is nested too deeply") from None
-    except ValueError as error:
-        reason = " ".join(str(error).split())[:120]
-        raise InputError(f"{name}: the JSON part cannot be read: {reason}") from None
-    if not isinstance(value, dict):
-        raise InputError(f"{name}: the JSON part is not an object")
-    return value
-
-
-def _not_a_number(word: str) -> NoReturn:
-    raise ValueError(f"{word} is not a JSON number")
 
 
 def _buffer(field: Field, binary: memoryview | None, folder: Path | None) -> bytes | memoryview | None:

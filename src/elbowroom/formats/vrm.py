@@ -5,11 +5,14 @@ Sources: VRM 0.x schema (github.com/vrm-c/vrm-specification, specification/0.0) 
 Metacarpal, Proximal and Distal.
 """
 
+import math
 from dataclasses import dataclass
 
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
+
+VRM_0, VRM_1 = "VRM 0.x", "VRM 1.0"
 
 _OLD_THUMB = {
     f"{side}Thumb{old}": f"{side}Thumb{new}"
@@ -28,6 +31,11 @@ class Vrm:
     title: str = ""
     authors: tuple[str, ...] = ()
     licence: str = ""
+
+    @property
+    def facing(self) -> float:
+        """The heading in radians that the figure faces in its file: VRM 0.x looks along -Z, 1.0 along +Z."""
+        return math.pi if self.version == VRM_0 else 0.0
 
 
 def read_vrm(gltf: Gltf, nodes: int) -> Vrm | None:
@@ -50,7 +58,7 @@ def _read_1(extensions: Field, nodes: int) -> Vrm:
     springs = extensions.at("VRMC_springBone").at("springs").items()
     moved = {joint.at("node").integer(0, nodes - 1) for spring in springs for joint in spring.at("joints").items()}
     return Vrm(
-        version="VRM 1.0",
+        version=VRM_1,
         bones=_nodes_of(references, human_bones, nodes),
         spring_nodes=frozenset(moved),
         title=meta.at("name").text(),
@@ -68,7 +76,7 @@ def _read_0(vrm: Field, nodes: int) -> Vrm:
     moved = {bone.integer(-1, nodes - 1) for group in groups for bone in group.at("bones").items()} - {-1}
     author = meta.at("author").text()
     return Vrm(
-        version="VRM 0.x",
+        version=VRM_0,
         bones=_nodes_of(references, human_bones, nodes),
         spring_nodes=frozenset(moved),
         title=meta.at("title").text(),

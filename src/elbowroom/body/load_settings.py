@@ -1,0 +1,20 @@
+"""How an avatar file is to be read, where the user wants it otherwise than by itself."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from elbowroom.errors import InputError
+
+SHORTEST, TALLEST = 0.3, 3.0  # metres
+
+
+@dataclass(frozen=True)
+class LoadSettings:
+    """Options of `Humanoid.load`; raises `InputError` for a height that no humanoid has."""
+
+    bones: Path | None = None  # JSON that names nodes of bones; None: `FILE.bones.json` where it lies beside the file
+    height: float | None = None  # metres from the ground to the crown; None: as the file has it
+
+    def __post_init__(self) -> None:
+        if self.height is not None and not SHORTEST <= self.height <= TALLEST:
+            raise InputError(f"height: {self.height:g} m is not between {SHORTEST} and {TALLEST} m")
