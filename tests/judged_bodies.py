@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, limits
+from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, limits
 from elbowroom.body.root import RootState
 from elbowroom.control.recording import ASSIST, MAGIC, STEP
 from elbowroom.world.boxes import Boxes
@@ -17,15 +17,15 @@ from elbowroom.world.scene import Gate, Scene
 
 Floats = NDArray[np.float64]
 
-T_POSE = np.zeros(13)
-T_POSE[[6, 10]] = 0.5 * np.pi
+T_POSE = np.zeros(DOF)
+T_POSE[[7, 11]] = 0.5 * np.pi
 
 
 def random_postures(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
-    """Configurations (N, 13) within their limits, root states (N, 7) near the origin."""
+    """Configurations (N, 14) within their limits, root states (N, 7) near the origin."""
     low, high = np.concatenate([limits(group) for group in LOCAL_GROUPS]).T
     roots = rng.uniform([-1.0, -1.0, -4.0, -0.8, -0.4, -1.0, -3.0], [1.0, 1.0, 4.0, 1.6, 0.4, 1.0, 3.0], (count, 7))
-    return np.concatenate([roots[:, :3], rng.uniform(low, high, (count, 10))], axis=1), roots
+    return np.concatenate([roots[:, :3], rng.uniform(low, high, (count, LOCAL))], axis=1), roots
 
 
 def scene_with(boxes: Boxes) -> Scene:

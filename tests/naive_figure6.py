@@ -58,7 +58,7 @@ def sample_neighbor(
     here: Configuration, radius: float, limits: Sequence[Sequence[float]], elevation: float, chance: Xorshift
 ) -> Configuration:
     while True:
-        step = [chance.uniform() for _ in here]
+        step = [chance.uniform() if low < high else 0.0 for low, high in limits]
         if squared_distance(tuple(step), (0.0,) * len(step)) < 1.0:
             break
     new = [

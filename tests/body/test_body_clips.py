@@ -6,7 +6,7 @@ from scipy.sparse.csgraph import connected_components
 
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.clip_data import parse_clips
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, clamp
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.stock_clips import arm_swing, arm_swing_goal, stock_clips
@@ -62,8 +62,8 @@ def test_gestures_do_not_pass_through_the_own_body() -> None:
     model, names, radii = body_model(humanoid), humanoid.capsules.names, humanoid.capsules.radii
     trunk = [i for i, group in enumerate(humanoid.capsules.groups) if group in (DofGroup.ROOT, DofGroup.WAIST)]
     for clip in stock_clips(DofGroup.LEFT_ARM):
-        q = np.zeros((9, 13))
-        q[:, 5:9] = clip.sample(np.linspace(clip.times[0], clip.times[-1], 9))
+        q = np.zeros((9, DOF))
+        q[:, 6:10] = clip.sample(np.linspace(clip.times[0], clip.times[-1], 9))
         segments = posture_capsules(model, q, np.zeros((9, 7))).astype(np.float64)
         for n in range(9):
             for part, allowed in (("leftHand", 0.0), ("leftForearm", 0.0), ("leftUpperArm", -0.05)):
@@ -115,7 +115,7 @@ def test_a_waist_does_not_swing() -> None:
         arm_swing_goal(DofGroup.WAIST, [0.0], [1.0])
 
 
-GOOD = {"name": "nod", "source": "authored", "loop": False, "keys": [[0, 0, 0], [1, 10, 5]]}
+GOOD = {"name": "nod", "source": "authored", "loop": False, "keys": [[0, 0, 0, 0], [1, 10, 5, 0.5]]}
 
 
 def written(**changes: object) -> str:
@@ -124,7 +124,7 @@ def written(**changes: object) -> str:
 
 def test_a_clip_is_read_in_radians() -> None:
     (clip,) = parse_clips(written(), "x.json")
-    np.testing.assert_allclose(clip.configurations[1], np.deg2rad([10.0, 5.0]))
+    np.testing.assert_allclose(clip.configurations[1], [np.deg2rad(10.0), np.deg2rad(5.0), 0.5])
     played = MotionClip(clip.name, clip.groups[0], clip.times, clip.configurations, clip.loop)
     assert played.duration == 1.0
 
@@ -139,12 +139,13 @@ def test_a_clip_is_read_in_radians() -> None:
         ('{"part": "arm", "clips": [3]}', "clips[0]"),
         (written(name=3), "name"),
         (written(loop=1), "loop"),
-        (written(keys=[[0, 0, 0]]), "keys"),
-        (written(keys=[[0, 0, 0], [1, 2]]), "keys[1]"),
-        (written(keys=[[0, 0, 0], [1, 2, True]]), "keys[1]"),
-        (written(keys=[[0, 0, 0], [1, 2, float("nan")]]), "keys[1]"),
-        (written(keys=[[0, 0, 0], [0, 2, 3]]), "times"),
-        (written(keys=[[0, 0, 0], [1, 120, 0]]), "limits"),
+        (written(keys=[[0, 0, 0, 0]]), "keys"),
+        (written(keys=[[0, 0, 0, 0], [1, 2]]), "keys[1]"),
+        (written(keys=[[0, 0, 0, 0], [1, 2, 0, True]]), "keys[1]"),
+        (written(keys=[[0, 0, 0, 0], [1, 2, 0, float("nan")]]), "keys[1]"),
+        (written(keys=[[0, 0, 0, 0], [0, 2, 3, 0]]), "times"),
+        (written(keys=[[0, 0, 0, 0], [1, 120, 0, 0]]), "limits"),
+        (written(keys=[[0, 0, 0, 0], [1, 20, 0, -0.1]]), "limits"),
         (written(loop=True), "loop"),
     ],
 )

@@ -4,7 +4,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body import kinematics
 from elbowroom.body.bones import PARENTS
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, limits
+from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
@@ -50,14 +50,14 @@ def model(humanoid: Humanoid) -> BodyModel:
 def random_postures(n: int, seed: int) -> tuple[Floats, Floats]:
     rng = np.random.default_rng(seed)
     low, high = np.concatenate([limits(group) for group in LOCAL_GROUPS]).T
-    q = np.concatenate([rng.normal(size=(n, 3)), rng.uniform(low, high, (n, 10))], axis=1)
+    q = np.concatenate([rng.normal(size=(n, 3)), rng.uniform(low, high, (n, LOCAL))], axis=1)
     roots = rng.uniform([-3, -3, -7, -1, -0.7, -1.5, -5], [3, 3, 7, 2, 0.7, 1.5, 5], (n, 7))
     return q, roots
 
 
 def naive_capsules(humanoid: Humanoid, model: BodyModel, q: Floats, root: Floats) -> Floats:
     local = kinematics.local_rotations(model, q, root)
-    frames = joint_frames(humanoid.skeleton, local, kinematics.hips_position(model, root), root)
+    frames = joint_frames(humanoid.skeleton, local, kinematics.hips_position(model, q, root), root)
     return capsule_ends(humanoid.capsules, *frames)
 
 
@@ -76,9 +76,9 @@ def test_waist_and_arms_follow_the_conventions(humanoid: Humanoid, model: BodyMo
         local = kinematics.local_rotations(model, q, root)
         np.testing.assert_allclose(np.linalg.norm(local, axis=1), 1.0, atol=1e-12)
         still = np.zeros(7)
-        _, rotations = joint_frames(skeleton, local, kinematics.hips_position(model, root), still)
-        assert same_rotation(rotations[chest], chest_rotation(q[3:5])) < 1e-9
-        for side, arm in (("left", q[5:9]), ("right", q[9:13])):
+        _, rotations = joint_frames(skeleton, local, kinematics.hips_position(model, q, root), still)
+        assert same_rotation(rotations[chest], chest_rotation(q[3:6])) < 1e-9
+        for side, arm in (("left", q[6:10]), ("right", q[10:14])):
             upper, lower = arm_rotations(arm, side == "left")
             assert same_rotation(local[skeleton.index(f"{side}UpperArm")], upper) < 1e-9
             assert same_rotation(local[skeleton.index(f"{side}LowerArm")], lower) < 1e-9
@@ -89,7 +89,7 @@ def test_groups_compose_to_the_whole_body(humanoid: Humanoid, model: BodyModel) 
     q, roots = random_postures(30, 3)
     whole = kinematics.posture_capsules(model, q, roots)
     pelvis, heading = kinematics.pelvis_frames(model, roots)
-    chest, turn = kinematics.chest_frames(model, q[:, 3:5])
+    chest, turn = kinematics.chest_frames(model, q[:, 3:6])
     chest_place = pelvis + quaternion.rotate(heading, chest)
     chest_turn = quaternion.multiply(heading, turn)
 
@@ -99,8 +99,8 @@ def test_groups_compose_to_the_whole_body(humanoid: Humanoid, model: BodyModel) 
         return np.moveaxis(world, 0, -1).reshape(segments.shape)
 
     of = humanoid.capsules.of
-    np.testing.assert_array_equal(kinematics.leg_capsules(model, roots), whole[of(DofGroup.ROOT)])
-    trunk = moved(kinematics.trunk_capsules(model, q[:, 3:5]), pelvis, heading)
+    np.testing.assert_array_equal(kinematics.leg_capsules(model, roots, q[:, 5]), whole[of(DofGroup.ROOT)])
+    trunk = moved(kinematics.trunk_capsules(model, q[:, 3:6]), pelvis, heading)
     np.testing.assert_allclose(trunk, whole[of(DofGroup.WAIST)], atol=1e-5)
     for group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
         arm = moved(kinematics.arm_capsules(model, group, q[:, group.value]), chest_place, chest_turn)
@@ -111,7 +111,7 @@ def test_mirrored_configuration_gives_the_mirrored_body() -> None:
     humanoid = proportional_humanoid()
     model, names = body_model(humanoid), humanoid.capsules.names
     q, roots = random_postures(30, 4)
-    mirrored_q = np.concatenate([q[:, :4], -q[:, 4:5], q[:, 9:13], q[:, 5:9]], axis=1)
+    mirrored_q = np.concatenate([q[:, :4], -q[:, 4:5], q[:, 5:6], q[:, 10:14], q[:, 6:10]], axis=1)
     mirrored_roots = roots * [-1, 1, -1, 1, -1, -1, 1] + [0, 0, 0, 0, 0, 0, 0.5]
     a = kinematics.posture_capsules(model, q, roots).reshape(len(names), 2, 3, -1)
     b = kinematics.posture_capsules(model, mirrored_q, mirrored_roots).reshape(len(names), 2, 3, -1)
@@ -132,7 +132,7 @@ def test_two_builds_make_the_same_gesture() -> None:
         for skeleton in builds:
             model = body_model(Humanoid("x", skeleton, proportional_capsules(skeleton)))
             local = kinematics.local_rotations(model, q, np.zeros(7))
-            places, _ = joint_frames(skeleton, local, kinematics.hips_position(model, np.zeros(7)), np.zeros(7))
+            places, _ = joint_frames(skeleton, local, kinematics.hips_position(model, q, np.zeros(7)), np.zeros(7))
             pairs = [("leftUpperArm", "leftLowerArm"), ("rightLowerArm", "rightHand"), ("chest", "upperChest")]
             spans = np.array([places[skeleton.index(b)] - places[skeleton.index(a)] for a, b in pairs])
             directions.append(spans / np.linalg.norm(spans, axis=1, keepdims=True))
@@ -162,7 +162,7 @@ def test_one_posture_and_many_are_equal_bit_for_bit() -> None:
 def test_the_root_part_of_q_is_ignored() -> None:
     model = body_model(proportional_humanoid())
     q, roots = random_postures(4, 8)
-    other = q + np.array([5.0, 5.0, 5.0] + [0.0] * 10)
+    other = q + np.array([5.0, 5.0, 5.0] + [0.0] * LOCAL)
     a, b = (kinematics.posture_capsules(model, x, roots) for x in (q, other))
     np.testing.assert_array_equal(a, b)
 
@@ -170,7 +170,7 @@ def test_the_root_part_of_q_is_ignored() -> None:
 def test_all_zero_is_the_standing_figure() -> None:
     humanoid = proportional_humanoid()
     names = humanoid.capsules.names
-    ends = kinematics.posture_capsules(body_model(humanoid), np.zeros(13), np.zeros(7))[:, :, 0]
+    ends = kinematics.posture_capsules(body_model(humanoid), np.zeros(DOF), np.zeros(7))[:, :, 0]
     for side, x in (("left", 1.0), ("right", -1.0)):
         upper = ends[names.index(f"{side}UpperArm")]
         np.testing.assert_allclose((upper[3:] - upper[:3])[[0, 2]], 0.0, atol=1e-6)
@@ -181,8 +181,8 @@ def test_all_zero_is_the_standing_figure() -> None:
 
 def test_t_pose_is_a_right_angle_of_abduction() -> None:
     humanoid = proportional_humanoid()
-    q = np.zeros(13)
-    q[[6, 10]] = np.pi / 2
+    q = np.zeros(DOF)
+    q[[7, 11]] = np.pi / 2
     model = body_model(humanoid)
     local = kinematics.local_rotations(model, q, np.zeros(7))
     arms = [humanoid.skeleton.index(side + "UpperArm") for side in ("left", "right")]
@@ -193,12 +193,12 @@ def test_the_gaze_stays_roughly_forward() -> None:
     humanoid = proportional_humanoid()
     model, head = body_model(humanoid), humanoid.skeleton.index("head")
     for bend, twist in [(1.2, 0.0), (-0.4, 0.0), (0.0, 0.7), (0.9, -0.6)]:
-        q = np.zeros(13)
+        q = np.zeros(DOF)
         q[3:5] = bend, twist
         local = kinematics.local_rotations(model, q, np.zeros(7))
         _, rotations = joint_frames(humanoid.skeleton, local, model.offsets[0], np.zeros(7))
         turned = np.linalg.norm(quaternion.to_rotation_vector(rotations[head]))
-        assert turned <= 0.5 * np.linalg.norm(quaternion.to_rotation_vector(chest_rotation(q[3:5])))
+        assert turned <= 0.5 * np.linalg.norm(quaternion.to_rotation_vector(chest_rotation(q[3:6])))
 
 
 def test_a_waist_is_no_arm() -> None:

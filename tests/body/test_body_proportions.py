@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.bones import REQUIRED
-from elbowroom.body.dof import LOCAL_GROUPS, MAX_ELEVATION, DofGroup, clamp, limits, within_limits
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, MAX_ELEVATION, DofGroup, clamp, limits, within_limits
 from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton, stature
 from naive_pose import required_only
 
@@ -68,10 +68,10 @@ def test_clamping_is_idempotent_and_within_limits() -> None:
 
 
 def test_limits_see_a_too_high_arm() -> None:
-    q = np.zeros(13)
+    q = np.zeros(DOF)
     assert within_limits(q)
-    q[5:7] = np.deg2rad([140.0, 140.0])
+    q[6:8] = np.deg2rad([140.0, 140.0])
     assert not within_limits(q)
-    q[5:7] = np.deg2rad([100.0, 100.0])
+    q[6:8] = np.deg2rad([100.0, 100.0])
     assert within_limits(q)
-    assert not within_limits(np.full((2, 13), 3.0))
+    assert not within_limits(np.full((2, DOF), 3.0))

@@ -131,7 +131,7 @@ def test_without_assistance_the_canned_walk_touches_and_goes_on() -> None:
     assert any(frame.touching for frame in frames)
     assert not any(frame.stuck for frame in frames)
     assert all(frame.touching == (frame.clearance < 0.0) for frame in frames)
-    np.testing.assert_array_equal(frames[-1].q[3:5], 0.0)
+    np.testing.assert_array_equal(frames[-1].q[3:6], 0.0)
 
 
 def test_turning_assistance_on_shows_a_free_pose_at_once() -> None:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from elbowroom.body.dof import LOCAL
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.planning.root_path import RootPath
 
@@ -26,12 +27,12 @@ def straight_path(start_time: float, start: np.ndarray, speed: float) -> RootPat
 
 
 def random_uppers(rng: np.random.Generator, first: np.ndarray) -> np.ndarray:
-    return np.concatenate([first[None], first + np.cumsum(rng.normal(size=(SIZE, 10)) * 0.3, axis=0)])
+    return np.concatenate([first[None], first + np.cumsum(rng.normal(size=(SIZE, LOCAL)) * 0.3, axis=0)])
 
 
 def filled_queue(rng: np.random.Generator) -> KeyFrameQueue:
     queue = KeyFrameQueue(SIZE, INTERVAL)
-    start = Playback(np.zeros(7), rng.normal(size=10), np.zeros(10))
+    start = Playback(np.zeros(7), rng.normal(size=LOCAL), np.zeros(LOCAL))
     queue.refill(straight_path(0.0, start.root, 1.2), random_uppers(rng, start.upper), start)
     return queue
 

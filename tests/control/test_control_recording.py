@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from elbowroom.body.dof import LOWERING
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control import recording as recordings
 from elbowroom.control.controller import Controller
@@ -180,4 +181,26 @@ def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> Non
 
 
 def test_the_step_record_is_fixed() -> None:
-    assert STEP.itemsize == 202
+    assert STEP.itemsize == 210
+
+
+def test_a_recording_without_a_lowering_is_read_and_replays(run: tuple[Path, object], tmp_path: Path) -> None:
+    """Format 1, as it was written before the waist had a third freedom: the 13 numbers of `q` lack the lowering."""
+    recording = Recording(run[0])
+    steps = recording.steps()
+    fields = [(name, "<f8", 13) if name == "q" else (name, STEP[name]) for name in STEP.names or ()]
+    old = np.zeros(len(steps), np.dtype(fields))
+    for name, *_ in fields:
+        old[name] = np.delete(steps[name], LOWERING, axis=1) if name == "q" else steps[name]
+    header, data = recording.header.to_json(), zlib.compress(old.tobytes())
+    path = tmp_path / "old.elbow"
+    path.write_bytes(
+        b"ELBOWROOM RECORDING 1\n"
+        + struct.pack("<I", len(header)) + header + struct.pack("<I", zlib.crc32(header))
+        + struct.pack("<4sIII", b"CHNK", len(old), len(data), zlib.crc32(data)) + data
+    )  # fmt: skip
+    assert old.dtype.itemsize == 202
+    assert Recording(path).steps().tobytes() == steps.tobytes()
+    assert replay(Recording(path), HUMANOID).identical
+    record(path, 3)  # it is a recording, so it may be replaced
+    assert Recording(path).path.read_bytes().startswith(MAGIC)

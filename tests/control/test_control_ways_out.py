@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.rehearsal import partial_motions, standing_path
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
@@ -12,12 +13,12 @@ from elbowroom.world.scene import Scene
 
 def test_partial_motions_keep_whole_groups() -> None:
     rng = np.random.default_rng(0)
-    upper = rng.normal(size=10)
-    motion = upper + rng.uniform(0.1, 1.0, (4, 10))
+    upper = rng.normal(size=LOCAL)
+    motion = upper + rng.uniform(0.1, 1.0, (4, LOCAL))
     parts = partial_motions(motion, upper)
     assert len(parts) == 7
     np.testing.assert_array_equal(parts[0], motion)
-    groups = (slice(0, 2), slice(2, 6), slice(6, 10))
+    groups = [columns_of(group) for group in LOCAL_GROUPS]
     moved = {tuple(bool(np.any(part[:, group] != upper[group])) for group in groups) for part in parts}
     assert len(moved) == 7
     assert (False, False, False) not in moved
@@ -26,7 +27,7 @@ def test_partial_motions_keep_whole_groups() -> None:
 
 
 def test_no_motion_is_no_way_out() -> None:
-    upper = np.ones(10)
+    upper = np.ones(LOCAL)
     assert partial_motions(np.tile(upper, (4, 1)), upper) == []
 
 

@@ -3,6 +3,7 @@
 import coal
 import numpy as np
 
+from elbowroom.body.dof import LOCAL
 from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
 from elbowroom.experiment.gauntlet.placing import Placed
 from gauntlet_courses import stock
@@ -48,10 +49,10 @@ def test_rows_keep_what_capsules_are() -> None:
 
 def test_a_hand_in_the_chest_and_hands_in_each_other_are_seen() -> None:
     check = stock()[1].check
-    hanging = np.zeros(10)
-    hanging[[3, 7]] = 0.15
+    hanging = np.zeros(LOCAL)
+    hanging[[4, 8]] = 0.15
     hugged, folded = hanging.copy(), hanging.copy()
-    hugged[2:6] = [0.5, -0.7, 1.2, 2.4]
-    folded[[2, 6]], folded[[4, 8]], folded[[5, 9]], folded[[3, 7]] = 0.5, 1.0, 1.57, -0.2
+    hugged[3:7] = [0.5, -0.7, 1.2, 2.4]
+    folded[[3, 7]], folded[[5, 9]], folded[[6, 10]], folded[[4, 8]] = 0.5, 1.0, 1.57, -0.2
     standing = np.zeros((3, 7))
     assert check.clear(standing, np.stack([hanging, hugged, folded])).tolist() == [True, False, False]

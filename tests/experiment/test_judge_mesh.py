@@ -141,7 +141,7 @@ def test_the_forearm_follows_the_elbow() -> None:
     own = np.flatnonzero((SKIN.joints[:, 0] == forearm) & (SKIN.weights[:, 0] > 0.999))
     assert len(own) > 50
     bent = T_POSE.copy()
-    bent[8] = 1.0
+    bent[9] = 1.0
     straight = poses(STOCK, T_POSE[None], np.zeros((1, 7)))
     before = SKIN.vertices(straight, own)[0]
     after = SKIN.vertices(poses(STOCK, bent[None], np.zeros((1, 7))), own)[0]

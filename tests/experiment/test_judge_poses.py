@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import DOF
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, hips_position, local_rotations, posture_capsules
 from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
@@ -53,7 +54,7 @@ def test_equal_to_what_the_page_is_sent(name: str) -> None:
     theirs = np.array([local_rotations(model, *row) for row in zip(q, roots, strict=True)])
     same = np.abs(np.sum(rotations * theirs, axis=-1))
     np.testing.assert_allclose(same, 1.0, atol=1e-12)
-    np.testing.assert_allclose(hips, [hips_position(model, root) for root in roots], atol=1e-12)
+    np.testing.assert_allclose(hips, [hips_position(model, *row) for row in zip(q, roots, strict=True)], atol=1e-12)
 
 
 def test_between_frames_as_on_the_page() -> None:
@@ -73,7 +74,7 @@ def test_between_frames_as_on_the_page() -> None:
 
 
 def test_240_poses_a_second_and_every_frame_among_them() -> None:
-    motion = ShownMotion.at_rate(np.zeros((61, 13)), np.zeros((61, 7)))
+    motion = ShownMotion.at_rate(np.zeros((61, DOF)), np.zeros((61, 7)))
     moments = motion.moments(240.0)
     assert len(moments.times) == 241
     np.testing.assert_allclose(np.diff(moments.times), 1 / 240)
@@ -82,7 +83,7 @@ def test_240_poses_a_second_and_every_frame_among_them() -> None:
 
 def test_uneven_frames_are_cut_finely_enough() -> None:
     times = np.array([0.0, 0.05, 0.05, 0.0501, 0.3])
-    motion = ShownMotion(times, np.zeros((5, 13)), np.zeros((5, 7)), np.arange(5) == 0, np.ones(5, bool))
+    motion = ShownMotion(times, np.zeros((5, DOF)), np.zeros((5, 7)), np.arange(5) == 0, np.ones(5, bool))
     moments = motion.moments(100.0)
     assert np.diff(moments.times).max() <= 1 / 100 + 1e-9
     assert np.isin(times, moments.times).all()
@@ -90,7 +91,7 @@ def test_uneven_frames_are_cut_finely_enough() -> None:
 
 def test_nothing_is_shown_between_a_frame_and_a_jump() -> None:
     jumps = np.array([True, False, True, False])
-    motion = ShownMotion(np.arange(4) / 60, np.zeros((4, 13)), np.zeros((4, 7)), jumps, np.ones(4, bool))
+    motion = ShownMotion(np.arange(4) / 60, np.zeros((4, DOF)), np.zeros((4, 7)), jumps, np.ones(4, bool))
     moments = motion.moments(240.0)
     assert not np.any((moments.first == 1) & (moments.share > 0.0))
     assert np.count_nonzero(moments.first == 0) == np.count_nonzero(moments.first == 2) == 4
@@ -98,6 +99,6 @@ def test_nothing_is_shown_between_a_frame_and_a_jump() -> None:
 
 
 def test_too_many_poses_are_refused() -> None:
-    motion = ShownMotion.at_rate(np.zeros((3, 13)), np.zeros((3, 7)), rate=1 / 3600)
+    motion = ShownMotion.at_rate(np.zeros((3, DOF)), np.zeros((3, 7)), rate=1 / 3600)
     with pytest.raises(InputError, match="rate"):
         motion.moments(10_000.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
@@ -20,7 +20,6 @@ from elbowroom.planning.exact.slices import closed_steps, motion_clearances, swe
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import pose
-from elbowroom.planning.local_planner import columns_of
 from elbowroom.planning.motion import no_lead
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -67,7 +66,7 @@ def hanging() -> Floats:
 def shown_clearance(humanoid: Humanoid, scene: Scene, path: RootPath, uppers: Floats) -> float:
     """The least clearance of the upper body over all that the queue plays, 240 poses a second, posed in the world."""
     model, queue = body_model(humanoid), KeyFrameQueue(path.horizon, path.interval)
-    queue.refill(path, uppers, Playback(path.states[0], uppers[0], np.zeros(10)))
+    queue.refill(path, uppers, Playback(path.states[0], uppers[0], np.zeros(LOCAL)))
     roots, postures = [], []
     while not queue.empty:
         playback = queue.sample()

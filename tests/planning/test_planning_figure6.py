@@ -39,7 +39,11 @@ class Trial:
         radius = float(rng.uniform(0.15, 0.7))
         capacity = size + int(rng.choice([0, 3, 30]))
         points = rng.normal(0.2, spread, (size, self.group.size))
-        self.graph = ActivityGraph(self.group, points, radius, capacity)
+        self.bounds = limits(self.group)
+        if seed % 2 == 0:
+            held = int(rng.integers(self.group.size))
+            points[:, held] = self.bounds[held] = 0.1
+        self.graph = ActivityGraph(self.group, points, radius, capacity, self.bounds)
         self.before = self.graph.size
         self.goals = rng.normal(0.2, spread, (horizon + 1, self.group.size))
         self.margins = rng.uniform(0.0, 0.1, horizon + 1)
@@ -74,7 +78,7 @@ class Trial:
         twin = naive.NaiveGraph(vertices, arrays.radius, arrays.capacity, chain)
         chance = naive.Xorshift(int(np.random.default_rng(self.seed).integers(1, 2**63, dtype=np.uint64)))
         elevation = np.inf if self.group is DofGroup.WAIST else MAX_ELEVATION
-        bounds = limits(self.group).tolist()
+        bounds = self.bounds.tolist()
         added = set(range(self.before, arrays.capacity))
 
         def collides(q: naive.Configuration, vertex: int, depth: int) -> bool:
@@ -183,7 +187,7 @@ def test_equal_seeds_give_equal_searches_and_reset_forgets(model: BodyModel) -> 
 
 
 def test_a_search_of_no_depth_is_its_source(model: BodyModel) -> None:
-    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 2)), 0.3)
-    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((1, 0, 15)), np.zeros(2))
-    result = figure6.search(roadmap, np.zeros((1, 2)), np.random.default_rng(0), np.zeros(1))
+    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 3)), 0.3)
+    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((1, 0, 15)), np.zeros(3))
+    result = figure6.search(roadmap, np.zeros((1, 3)), np.random.default_rng(0), np.zeros(1))
     assert (result.status, result.checks, result.nodes) == (PlanStatus.FOUND, 0, 1)

@@ -37,12 +37,12 @@ def test_a_periodic_goal_follows_phase_and_speed_of_the_path() -> None:
 def test_arms_hang_still_when_the_body_stands() -> None:
     goals = goal_configurations(natural_walk(), walk(0.0, rate=0.0))
     np.testing.assert_array_equal(goals, np.tile(goals[0], (31, 1)))
-    np.testing.assert_allclose(goals[0, 2:6], goals[0, 6:])
+    np.testing.assert_allclose(goals[0, 3:7], goals[0, 7:])
 
 
 def test_arms_swing_against_each_other_at_full_speed() -> None:
     goals = goal_configurations(natural_walk(), walk(1.3))
-    left, right = goals[:, 2], goals[:, 6]
+    left, right = goals[:, 3], goals[:, 7]
     assert np.corrcoef(left, right)[0, 1] < -0.8
 
 

@@ -38,9 +38,11 @@ def test_edges_join_exactly_the_vertices_within_r(seed: int, radius: float) -> N
 
 
 def test_duplicates_are_one_vertex_and_limits_hold() -> None:
-    graph = ActivityGraph(DofGroup.WAIST, [[0.0, 0.0], [0.1, 0.0], [0.0, 0.0], [9.0, 0.0], [8.0, 0.0]], 0.3)
+    graph = ActivityGraph(
+        DofGroup.WAIST, [[0.0] * 3, [0.1, 0.0, 0.0], [0.0] * 3, [9.0, 0.0, 0.0], [8.0, 0.0, 0.0]], 0.3
+    )
     assert graph.size == 3
-    np.testing.assert_allclose(graph.vertices[2], [np.deg2rad(80.0), 0.0])
+    np.testing.assert_allclose(graph.vertices[2], [np.deg2rad(80.0), 0.0, 0.0])
     assert graph.insert(graph.vertices[1]) == 1
     assert graph.size == 3
 
@@ -90,12 +92,12 @@ def test_from_anywhere_a_way_leads_into_the_graph(seed: int) -> None:
 
 
 def test_a_vertex_near_a_visitor_is_linked_to_it_one_way() -> None:
-    graph = ActivityGraph(DofGroup.WAIST, [[0.0, 0.0]], 0.3)
-    visitor = graph.enter([0.2, 0.0])
-    new = graph.insert([0.3, 0.1])
+    graph = ActivityGraph(DofGroup.WAIST, [[0.0, 0.0, 0.0]], 0.3)
+    visitor = graph.enter([0.2, 0.0, 0.0])
+    new = graph.insert([0.3, 0.1, 0.0])
     assert graph.neighbors(visitor).tolist() == [0, new]
     assert graph.neighbors(new).tolist() == []
-    assert graph.enter([0.21, 0.0]) == visitor
+    assert graph.enter([0.21, 0.0, 0.0]) == visitor
 
 
 @pytest.mark.parametrize("group", LOCAL_GROUPS)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
@@ -77,7 +77,7 @@ def test_what_is_found_is_free_at_every_key_time_and_bounded_in_speed(humanoid: 
     for scene, path, plan in plans(humanoid, settings):
         statuses.add(plan.status)
         if plan.status is not PlanStatus.FOUND:
-            assert plan.configurations.shape == (0, 10)
+            assert plan.configurations.shape == (0, 11)
             assert plan.evidence[-1].status is plan.status
             assert all(group.status is PlanStatus.FOUND for group in plan.evidence[:-1])
             continue
@@ -101,9 +101,9 @@ def test_an_arm_evades_a_box_that_the_walk_would_touch(humanoid: Humanoid) -> No
     touching = world_clearances(humanoid, scene, path, plan.goals, [DofGroup.LEFT_ARM])
     assert touching.min() < 0.0
     assert plan.status is PlanStatus.FOUND
-    assert not plan.configurations[:, :2].any()
-    assert np.abs(plan.configurations[:, 2:6] - plan.goals[:, 2:6]).max() > 0.3
-    assert np.abs(plan.configurations[1:, 6:] - plan.goals[1:, 6:]).max() < 0.2
+    assert not plan.configurations[:, :3].any()
+    assert np.abs(plan.configurations[:, 3:7] - plan.goals[:, 3:7]).max() > 0.3
+    assert np.abs(plan.configurations[1:, 7:] - plan.goals[1:, 7:]).max() < 0.2
 
 
 def test_in_free_space_the_natural_walk_is_tracked(humanoid: Humanoid) -> None:
@@ -113,7 +113,7 @@ def test_in_free_space_the_natural_walk_is_tracked(humanoid: Humanoid) -> None:
         start = goal_configurations(natural_walk(), path)[0]
         plan = planner.plan(path, start, np.random.default_rng(0))
         assert plan.status is PlanStatus.FOUND
-        assert np.linalg.norm(plan.configurations[:, 2:6] - plan.goals[:, 2:6], axis=1).max() < 0.15
+        assert np.linalg.norm(plan.configurations[:, 3:7] - plan.goals[:, 3:7], axis=1).max() < 0.15
         assert plan.nodes == 3 * 21
         assert plan.enhanced == 0
         assert plan.checks < 3 * 20 * 80
@@ -122,11 +122,11 @@ def test_in_free_space_the_natural_walk_is_tracked(humanoid: Humanoid) -> None:
 def test_a_posture_far_from_the_graph_finds_back(humanoid: Humanoid) -> None:
     planner = LocalPlanner(humanoid, Scene.load("empty"))
     start = hanging()
-    start[2:6] = [2.5, 1.0, -1.0, 0.3]
+    start[3:7] = [2.5, 1.0, -1.0, 0.3]
     plan = planner.plan(walk(horizon=25), start, np.random.default_rng(0))
     assert plan.status is PlanStatus.FOUND
     np.testing.assert_array_equal(plan.configurations[0], start)
-    assert np.linalg.norm(plan.configurations[-1, 2:6] - plan.goals[-1, 2:6]) < 0.15
+    assert np.linalg.norm(plan.configurations[-1, 3:7] - plan.goals[-1, 3:7]) < 0.15
 
 
 def test_a_wall_is_a_failure_of_the_waist(humanoid: Humanoid) -> None:
@@ -135,7 +135,7 @@ def test_a_wall_is_a_failure_of_the_waist(humanoid: Humanoid) -> None:
     plan = LocalPlanner(humanoid, scene).plan(walk(z=0.4), hanging(), np.random.default_rng(0))
     assert plan.status is PlanStatus.EXHAUSTED
     assert [group.group for group in plan.evidence] == [DofGroup.WAIST]
-    assert plan.goals.shape == (6, 10)
+    assert plan.goals.shape == (6, LOCAL)
 
 
 def test_the_budget_is_kept_by_every_group(humanoid: Humanoid) -> None:

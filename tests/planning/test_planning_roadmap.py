@@ -31,7 +31,7 @@ def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, gro
     rng = np.random.default_rng(5)
     boxes = Boxes(rng.normal([0, 1, 0], 0.6, (6, 3)), random_rotations(rng, 6), rng.uniform(0.02, 0.3, (6, 3)))
     roots = rng.normal(0.0, 0.3, (5, 7))
-    waist = rng.uniform([-0.3, -0.7], [1.0, 0.7], (5, 2))
+    waist = rng.uniform([-0.3, -0.7, 0.0], [1.0, 0.7, 0.7], (5, 3))
     graph = ActivityGraph(group, rng.normal(0.2, 0.5, (25, group.size)), 0.5)
     frames = pelvis_frames(model, roots)
     if group is not DofGroup.WAIST:
@@ -51,8 +51,8 @@ def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, gro
 
 
 def test_without_boxes_all_is_free(model: BodyModel) -> None:
-    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 2)), 0.5)
-    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((3, 0, 15)), np.zeros(2))
+    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 3)), 0.5)
+    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((3, 0, 15)), np.zeros(3))
     assert roadmap.horizon == 2
     assert np.all(roadmap.clearance(2) == np.inf)
 
@@ -70,12 +70,12 @@ def test_posed_vertices_follow_the_graph_as_it_grows_and_forgets(model: BodyMode
 
 def test_other_vertices_after_a_reset_are_posed_anew(model: BodyModel) -> None:
     limb = limb_of(model, DofGroup.WAIST)
-    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 2)), 0.5)
+    graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 3)), 0.5)
     posed = PosedGraph(limb, graph)
-    graph.insert([0.1, 0.2])
+    graph.insert([0.1, 0.2, 0.3])
     assert posed.segments.shape[2] == 2
     graph.reset()
-    graph.insert([0.4, -0.2])
+    graph.insert([0.4, -0.2, 0.1])
     np.testing.assert_array_equal(posed.segments, pose(limb, graph.vertices))
 
 
@@ -131,4 +131,4 @@ def test_an_arm_through_the_chest_is_found(model: BodyModel, group: DofGroup) ->
 
 def test_the_waist_has_no_trunk_to_touch(model: BodyModel) -> None:
     limb = limb_of(model, DofGroup.WAIST)
-    assert clear_of_trunk(pose(limb, np.zeros((3, 2))), limb.trunk, limb.allowed).all()
+    assert clear_of_trunk(pose(limb, np.zeros((3, 3))), limb.trunk, limb.allowed).all()

@@ -36,7 +36,7 @@ def joints_in_root_frame(humanoid: Humanoid, q: np.ndarray, root: np.ndarray) ->
     """Naive forward kinematics of the normalised skeleton."""
     skeleton, model = humanoid.skeleton, body_model(humanoid)
     turns = local_rotations(model, q, root)
-    places, world = [hips_position(model, root)], [turns[0]]
+    places, world = [hips_position(model, q, root)], [turns[0]]
     for joint in range(1, len(skeleton.names)):
         parent = int(skeleton.parents[joint])
         offset = skeleton.positions[joint] - skeleton.positions[parent]
@@ -96,5 +96,5 @@ def test_a_humanoid_without_a_file_is_posed_by_its_skeleton() -> None:
     q, root = random_posture(np.random.default_rng(2))
     posed = poser.node_pose(q, root)
     np.testing.assert_allclose(posed.rotations, local_rotations(poser.model, q, root), atol=1e-6)
-    np.testing.assert_allclose(posed.hips, hips_position(poser.model, root))
+    np.testing.assert_allclose(posed.hips, hips_position(poser.model, q, root))
     assert placement(None) == Placement((0.0, 0.0, 0.0), 0.0, 1.0)

@@ -1,9 +1,9 @@
 """Clips as JSON: how they are written and how they are checked.
 
 A file holds `{"part": "waist" | "arm", "clips": [clip, ...]}`. A clip is
-`{"name": str, "source": str, "loop": bool, "keys": [[time, angle, ...], ...]}`: times increase from 0, angles are
-degrees in the order of the group's degrees of freedom (`body/dof.py`). Arm clips are written once, for both sides:
-equal values make mirrored gestures. A loop's last key repeats its first angles.
+`{"name": str, "source": str, "loop": bool, "keys": [[time, value, ...], ...]}`: times increase from 0, values stand in
+the order of the group's degrees of freedom (`body/dof.py`), angles in degrees, the lowering in half leg lengths. Arm
+clips are written once, for both sides: equal values make mirrored gestures. A loop's last key repeats its first values.
 """
 
 import json
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup, clamp
+from elbowroom.body.dof import LOWERING, DofGroup, clamp
 from elbowroom.errors import InputError
 
 _PARTS = {"waist": (DofGroup.WAIST,), "arm": (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)}
@@ -54,8 +54,8 @@ def _clip(data: object, groups: tuple[DofGroup, ...], place: str) -> ClipData:
             raise InputError(f"{place}.{field} must be a {kind.__name__}, found {data.get(field)!r:.60}")
     keys = _keys(data["keys"], groups[0], f"{place}.keys")
     if data["loop"] and not np.array_equal(keys[0, 1:], keys[-1, 1:]):
-        raise InputError(f"{place}.keys: the last key of a loop must repeat the first one's angles")
-    return ClipData(data["name"], data["source"], data["loop"], groups, keys[:, 0], np.deg2rad(keys[:, 1:]))
+        raise InputError(f"{place}.keys: the last key of a loop must repeat the first one's values")
+    return ClipData(data["name"], data["source"], data["loop"], groups, keys[:, 0], keys[:, 1:] * _units(groups[0]))
 
 
 def _keys(rows: list[object], group: DofGroup, place: str) -> NDArray[np.float64]:
@@ -65,12 +65,18 @@ def _keys(rows: list[object], group: DofGroup, place: str) -> NDArray[np.float64
     for i, row in enumerate(rows):
         numbers = isinstance(row, list) and len(row) == width
         if not numbers or not all(type(v) in (int, float) and np.isfinite(v) for v in row):  # type: ignore[attr-defined]
-            raise InputError(f"{place}[{i}] must be {width} numbers: a time and {group.size} angles, found {row!r:.60}")
+            raise InputError(f"{place}[{i}] must be {width} numbers: a time and {group.size} values, found {row!r:.60}")
     keys = np.array(rows, np.float64)
     if keys[0, 0] != 0.0 or not np.all(np.diff(keys[:, 0]) > 0.0):
         raise InputError(f"{place}: times must start at 0 and increase")
-    angles = np.deg2rad(keys[:, 1:])
-    outside = np.flatnonzero(np.any(np.abs(clamp(group, angles) - angles) > 1e-9, axis=1))
+    values = keys[:, 1:] * _units(group)
+    outside = np.flatnonzero(np.any(np.abs(clamp(group, values) - values) > 1e-9, axis=1))
     if len(outside):
         raise InputError(f"{place}[{outside[0]}]: {keys[outside[0], 1:].tolist()} is beyond the limits of the joint")
     return keys
+
+
+def _units(group: DofGroup) -> NDArray[np.float64]:
+    """What a file's values (d,) are multiplied by: degrees become radians, the lowering stays."""
+    columns = np.arange(group.value.start, group.value.stop)
+    return np.where(columns == LOWERING, 1.0, np.deg2rad(1.0))

@@ -3,6 +3,7 @@
 The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included.
 The swing foot returns on a cubic that meets the stance foot's velocity at both ends. Everything is a function of the
 root state alone; with the speed every excursion goes to zero, so that a body at rest stands with its feet together.
+Only the hips are free to come lower than the walk has them: `hips_sinks`.
 """
 
 import math
@@ -30,6 +31,7 @@ _DUTY, _REACH = 0.62, 1.02  # stance fraction of the cycle; longest stance path 
 _HEEL_STRIKE, _TOE_OFF = math.radians(18.0), math.radians(42.0)  # foot pitch
 _LIFT = 0.05  # metres, of the swinging foot on a standard leg
 _MID_DROP = 0.4  # pelvis drop in mid-stance as a part of that in double support
+_SETBACK = 0.5  # how far lowered hips go back, against how far they go down; less, and the shins lean too far
 _STRETCH, _STRIDE_STRETCH = 0.999, 0.994  # how straight the longest leg of the cycle gets, standing and walking
 
 
@@ -38,6 +40,7 @@ class GaitShape(NamedTuple):
 
     legs: Floats  # (2, 10) left and right leg, metres
     scale: float  # leg length / that of an average adult
+    half_leg: float  # half the length of thigh and shin together, metres: the unit of the lowering
 
 
 def gait_shape(skeleton: Skeleton) -> GaitShape:
@@ -50,7 +53,8 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
         ball = at[f"{side}Toes"][2] - ankle[2] if skeleton.has(f"{side}Toes") else 0.15 * (thigh + shin)
         rows.append([*hip, *ankle, max(float(ball), 0.01), 0.08 * (thigh + shin), thigh, shin])
     legs = np.array(rows)
-    return GaitShape(legs, float((legs[:, _THIGH] + legs[:, _SHIN]).mean()) / STANDARD_LEG)
+    leg = float((legs[:, _THIGH] + legs[:, _SHIN]).mean())
+    return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
 
 
 @inlined
@@ -221,3 +225,18 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
         double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (root[6] - 0.5 * (duty - 0.5)))
         drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
     return feet, drops
+
+
+@kernel
+def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
+    """How far the hips are below and behind their place in T-pose, metres (N, 2).
+
+    `drops` (N,) are those of `foot_poses`, `lowerings` (N,) the part of a configuration. Hips go back as they go down,
+    as in every squat: the body's weight stays over the feet, and the shins within the reach of the ankles.
+    """
+    sinks = np.empty((len(drops), 2))
+    for n in range(len(drops)):
+        lowered = half_leg * lowerings[n]
+        sinks[n, 0] = drops[n] + lowered
+        sinks[n, 1] = _SETBACK * lowered
+    return sinks

@@ -1,8 +1,9 @@
 """Forward kinematics: where a configuration and a root state put the joints and the collision body.
 
-A posture is `q` (13,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
-along the heading; the pelvis frame has the same axes and the hips joint as origin; the chest frame is that of the last
-spine joint. Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
+A posture is `q` (14,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
+along the heading; the pelvis frame has the same axes, and its origin is the hips joint as the stride has it, before the
+waist lowers it; the chest frame is that of the last spine joint. Capsule arrays have shape (C, 6, N): end points ax,
+ay, az, bx, by, bz.
 """
 
 from typing import NamedTuple
@@ -13,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body import posing
 from elbowroom.body.bones import SPINE
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import DOF, DofGroup
-from elbowroom.body.gait import GaitShape, foot_poses, gait_shape
+from elbowroom.body.dof import DOF, LOWERING, DofGroup
+from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.legs import leg_rest, leg_rotations
@@ -133,63 +134,69 @@ def _rows(values: ArrayLike, size: int) -> Floats:
     return array.reshape(-1, size) if array.ndim != 2 else array
 
 
+def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
+    """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
+    feet, drops = foot_poses(model.gait.legs, model.gait.scale, states)
+    sinks = hips_sinks(model.gait.half_leg, drops, lowerings)
+    return leg_rotations(model.leg_rest, feet, sinks), sinks
+
+
 def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
-    """Normalised local rotations (J, 4) of every joint for `q` (13,) and a root state (7,).
+    """Normalised local rotations (J, 4) of every joint for `q` (14,) and a root state (7,).
 
     The hips' rotation is the identity: the root's heading turns the whole body.
     """
-    m = model
-    feet, drops = foot_poses(m.gait.legs, m.gait.scale, _rows(root, ROOT_STATE))
-    legs = leg_rotations(m.leg_rest, feet, drops)[0]
-    posture = np.ascontiguousarray(q, np.float64)
+    m, posture = model, np.ascontiguousarray(q, np.float64)
+    legs = _lower_body(m, _rows(root, ROOT_STATE), posture[LOWERING : LOWERING + 1])[0][0]
     return posing.pose_local(m.base, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs, posture, legs)
 
 
-def hips_position(model: BodyModel, root: ArrayLike) -> Floats:
-    """The hips joint (3,) in the root frame for a root state (7,): its place in T-pose, lowered by the gait."""
-    _, drops = foot_poses(model.gait.legs, model.gait.scale, _rows(root, ROOT_STATE))
-    position: Floats = model.offsets[0] - np.array([0.0, drops[0], 0.0])
+def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
+    """The hips joint (3,) in the root frame for `q` (14,) and a root state (7,).
+
+    It is where T-pose has it, less what the gait and the waist's lowering take.
+    """
+    lowering = np.ascontiguousarray(q, np.float64)[LOWERING : LOWERING + 1]
+    _, sinks = _lower_body(model, _rows(root, ROOT_STATE), lowering)
+    position: Floats = model.offsets[0] - np.array([0.0, sinks[0, 0], sinks[0, 1]])
     return position
 
 
 def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segments:
-    """All capsules (C, 6, N) in the world for postures (N, 13) and root states (N, 7).
+    """All capsules (C, 6, N) in the world for postures (N, 14) and root states (N, 7).
 
     The first three components of `q` are ignored: the root states say where the body stands.
     """
-    m, states = model, _rows(roots, ROOT_STATE)
-    feet, drops = foot_poses(m.gait.legs, m.gait.scale, states)
-    legs = leg_rotations(m.leg_rest, feet, drops)
-    c = m.body
+    m, c, states, postures = model, model.body, _rows(roots, ROOT_STATE), _rows(q, DOF)
+    legs, sinks = _lower_body(m, states, postures[:, LOWERING])
     return posing.pose_body(
         m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs,
-        c.joints, c.ends, _rows(q, DOF), states, legs, drops,
+        c.joints, c.ends, postures, states, legs, sinks,
     )  # fmt: skip
 
 
-def leg_capsules(model: BodyModel, roots: ArrayLike) -> Segments:
-    """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7)."""
+def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:
+    """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7) and lowerings, one or (N,)."""
     m, c, states = model, model.roots, _rows(roots, ROOT_STATE)
-    feet, drops = foot_poses(m.gait.legs, m.gait.scale, states)
-    legs = leg_rotations(m.leg_rest, feet, drops)
-    return posing.pose_legs(m.base, m.parents, m.offsets, c.order, m.legs, c.joints, c.ends, states, legs, drops)
+    legs, sinks = _lower_body(m, states, np.broadcast_to(np.asarray(lowerings, np.float64), len(states)).copy())
+    return posing.pose_legs(m.base, m.parents, m.offsets, c.order, m.legs, c.joints, c.ends, states, legs, sinks)
 
 
 def _trunk(model: BodyModel, waist: ArrayLike) -> tuple[Segments, Floats, Floats]:
     m, c = model, model.trunk
     return posing.pose_trunk(
         m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights,
-        c.joints, c.ends, _rows(waist, DofGroup.WAIST.size),
+        c.joints, c.ends, m.gait.half_leg, _rows(waist, DofGroup.WAIST.size),
     )  # fmt: skip
 
 
 def trunk_capsules(model: BodyModel, waist: ArrayLike) -> Segments:
-    """The capsules of the group WAIST (C, 6, N) in the pelvis frame for waist configurations (N, 2)."""
+    """The capsules of the group WAIST (C, 6, N) in the pelvis frame for waist configurations (N, 3)."""
     return _trunk(model, waist)[0]
 
 
 def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
-    """Positions (N, 3) and rotations (N, 4) of the last spine joint in the pelvis frame for waists (N, 2)."""
+    """Positions (N, 3) and rotations (N, 4) of the last spine joint in the pelvis frame for waists (N, 3)."""
     _, positions, rotations = _trunk(model, waist)
     return positions, rotations
 
@@ -209,4 +216,4 @@ def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the pelvis frame in the world for root states (N, 7)."""
     states = _rows(roots, ROOT_STATE)
     _, drops = foot_poses(model.gait.legs, model.gait.scale, states)
-    return posing.place_pelvis(model.offsets[0], states, drops)
+    return posing.place_pelvis(model.offsets[0], states, np.stack([drops, np.zeros(len(drops))], axis=1))

@@ -8,6 +8,7 @@ from elbowroom.jit import inlined, kernel
 
 Floats = NDArray[np.float64]
 
+_SPLAY = 1.2  # radians for each leg length that the hips go back: the knees of a crouch open, or thighs would touch
 _SOFT = 0.004  # of the leg: from here on a straightening knee slows down
 
 LEG_ROTATIONS = 4  # thigh, shin, foot, toes
@@ -69,11 +70,12 @@ def _relative(a: Floats, b: Floats, out: Floats) -> None:
 
 
 @kernel
-def leg_rotations(rest: Floats, feet: Floats, drops: Floats) -> Floats:
+def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
     """Normalised local rotations (N, 2, 4, 4) of thigh, shin, foot and toes; left leg first.
 
-    `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) and `drops` (N,) from `gait.foot_poses`. The knee bends forward, in
-    the plane through hip and ankle that turns by half the foot's yaw. A target out of reach is approached straight.
+    `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) from `gait.foot_poses`; `sinks` (N, 2) from `gait.hips_sinks`. The
+    knee bends forward, in the plane through hip and ankle that turns by half the foot's yaw, and outward as the hips
+    go back in a crouch. A target out of reach is approached straight.
     """
     out = np.empty((len(feet), 2, LEG_ROTATIONS, 4))
     at_rest, posed = np.empty((3, 3)), np.empty((3, 3))
@@ -83,13 +85,15 @@ def leg_rotations(rest: Floats, feet: Floats, drops: Floats) -> Floats:
             r, f = rest[side], feet[n, side]
             upper = np.sqrt(r[3] * r[3] + r[4] * r[4] + r[5] * r[5])
             lower = np.sqrt(r[6] * r[6] + r[7] * r[7] + r[8] * r[8])
-            dx, dy, dz = f[0] - r[0], f[1] - r[1] + drops[n], f[2] - r[2]
+            dx, dy, dz = f[0] - r[0], f[1] - r[1] + sinks[n, 0], f[2] - r[2] + sinks[n, 1]
             distance = np.sqrt(dx * dx + dy * dy + dz * dz)
             dx, dy, dz = dx / distance, dy / distance, dz / distance
             reach = _soft_reach(max(distance, abs(upper - lower) + 0.05 * upper), upper + lower)
             cosine = (upper * upper + reach * reach - lower * lower) / (2.0 * upper * reach)
             sine = np.sqrt(max(1.0 - cosine * cosine, 0.0))
-            nx, ny, nz = np.cos(0.5 * f[3]), 0.0, -np.sin(0.5 * f[3])
+            outward = _SPLAY * sinks[n, 1] / (upper + lower)
+            plane = 0.5 * f[3] + (outward if side == 0 else -outward)
+            nx, ny, nz = np.cos(plane), 0.0, -np.sin(plane)
             _bone_basis(dx, dy, dz, nx, ny, nz, posed)
             ax, ay, az = posed[0, 2], posed[1, 2], posed[2, 2]
             nx, ny, nz = posed[0, 1], posed[1, 1], posed[2, 1]

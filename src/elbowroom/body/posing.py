@@ -6,6 +6,7 @@ Quaternions are rows `xyzw` of (J, 4) arrays; every kernel poses one posture aft
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.gait import hips_sinks
 from elbowroom.jit import inlined, kernel
 
 Floats = NDArray[np.float64]
@@ -119,11 +120,32 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
 
 
 @inlined
-def _place_hips(root: Floats, hips: Floats, drop: float, rotations: Floats, places: Floats, joint: int) -> None:
-    """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, lowered by `drop`."""
+def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, places: Floats, joint: int) -> None:
+    """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, `sink` (2,) below and behind."""
     c, s = np.cos(root[2]), np.sin(root[2])
-    x, z = root[0] + hips[0] * c + hips[2] * s, root[1] - hips[0] * s + hips[2] * c
-    _place(joint, rotations, places, x, hips[1] - drop, z, root[2])
+    ahead = hips[2] - sink[1]
+    x, z = root[0] + hips[0] * c + ahead * s, root[1] - hips[0] * s + ahead * c
+    _place(joint, rotations, places, x, hips[1] - sink[0], z, root[2])
+
+
+@inlined
+def _set_body(
+    spine: Indices,
+    spine_weights: Floats,
+    gaze: Indices,
+    gaze_weights: Floats,
+    arms: Indices,
+    legs: Indices,
+    q: Floats,
+    leg_rotations: Floats,
+    local: Floats,
+    scratch: Floats,
+) -> None:
+    """Every joint that moves, for a posture `q` (14,) and legs (2, 4, 4)."""
+    _set_trunk(spine, spine_weights, gaze, gaze_weights, q[3], q[4], local)
+    _set_arm(arms[0], 1.0, q[6:10], local, scratch)
+    _set_arm(arms[1], -1.0, q[10:14], local, scratch)
+    _set_legs(legs, leg_rotations, local)
 
 
 @kernel
@@ -138,13 +160,10 @@ def pose_local(
     q: Floats,
     leg_rotations: Floats,
 ) -> Floats:
-    """Local rotations (J, 4) of one posture `q` (13,), legs (2, 4, 4)."""
+    """Local rotations (J, 4) of one posture `q` (14,), legs (2, 4, 4)."""
     local = base.copy()
     scratch = np.empty((2, 4))
-    _set_trunk(spine, spine_weights, gaze, gaze_weights, q[3], q[4], local)
-    _set_arm(arms[0], 1.0, q[5:9], local, scratch)
-    _set_arm(arms[1], -1.0, q[9:13], local, scratch)
-    _set_legs(legs, leg_rotations, local)
+    _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q, leg_rotations, local, scratch)
     return local
 
 
@@ -165,18 +184,15 @@ def pose_body(
     q: Floats,
     roots: Floats,
     leg_rotations: Floats,
-    drops: Floats,
+    sinks: Floats,
 ) -> Segments:
-    """Capsules (C, 6, N) in the world for postures (N, 13), roots (N, 7), legs (N, 2, 4, 4) and pelvis drops (N,)."""
+    """Capsules (C, 6, N) in the world for postures (N, 14), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2)."""
     out = np.empty((len(joints), 6, len(q)), np.float32)
     local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     for n in range(len(q)):
-        _set_trunk(spine, spine_weights, gaze, gaze_weights, q[n, 3], q[n, 4], local)
-        _set_arm(arms[0], 1.0, q[n, 5:9], local, scratch)
-        _set_arm(arms[1], -1.0, q[n, 9:13], local, scratch)
-        _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], drops[n], rotations, places, 0)
+        _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q[n], leg_rotations[n], local, scratch)
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, 0)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -193,7 +209,7 @@ def pose_legs(
     ends: Floats,
     roots: Floats,
     leg_rotations: Floats,
-    drops: Floats,
+    sinks: Floats,
 ) -> Segments:
     """Capsules (C, 6, N) of pelvis and legs in the world."""
     out = np.empty((len(joints), 6, len(roots)), np.float32)
@@ -201,7 +217,7 @@ def pose_legs(
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     for n in range(len(roots)):
         _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], drops[n], rotations, places, 0)
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, 0)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -219,16 +235,21 @@ def pose_trunk(
     gaze_weights: Floats,
     joints: Indices,
     ends: Floats,
+    half_leg: float,
     waist: Floats,
 ) -> tuple[Segments, Floats, Floats]:
-    """Trunk capsules (C, 6, N), place (N, 3) and rotation (N, 4) of the last spine joint, all in the pelvis frame."""
+    """Trunk capsules (C, 6, N), place (N, 3) and rotation (N, 4) of the last spine joint, all in the pelvis frame.
+
+    That frame is where the hips would be without lowering: waists (N, 3) of bend, twist and lowering move them in it.
+    """
+    sinks = hips_sinks(half_leg, np.zeros(len(waist)), waist[:, 2])
     out = np.empty((len(joints), 6, len(waist)), np.float32)
     chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
     local, row = base.copy(), np.empty((1, 6))
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     chest = spine[-1]
-    _place(0, rotations, places, 0.0, 0.0, 0.0, 0.0)
     for n in range(len(waist)):
+        _place(0, rotations, places, 0.0, -sinks[n, 0], -sinks[n, 1], 0.0)
         _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], local)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
@@ -263,9 +284,9 @@ def pose_arm(
 
 
 @kernel
-def place_pelvis(hips: Floats, roots: Floats, drops: Floats) -> tuple[Floats, Floats]:
+def place_pelvis(hips: Floats, roots: Floats, sinks: Floats) -> tuple[Floats, Floats]:
     """Pelvis frames in the world: places (N, 3) and rotations (N, 4)."""
     places, rotations = np.empty((len(roots), 3)), np.empty((len(roots), 4))
     for n in range(len(roots)):
-        _place_hips(roots[n], hips, drops[n], rotations, places, n)
+        _place_hips(roots[n], hips, sinks[n], rotations, places, n)
     return places, rotations

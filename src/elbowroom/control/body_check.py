@@ -14,7 +14,7 @@ _BETWEEN = np.array([0.25, 0.5, 0.75])  # at 60 frames a second: 240 poses
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
-    """The configuration `q` (13,) of a root state (7,) and an upper body (10,)."""
+    """The configuration `q` (14,) of a root state (7,) and an upper body (11,)."""
     return np.concatenate([root[:3], upper])
 
 
@@ -27,7 +27,7 @@ class BodyCheck:
         self._table = scene.boxes.table
 
     def clearance(self, root: Floats, upper: Floats) -> float:
-        """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (10,).
+        """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (11,).
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """

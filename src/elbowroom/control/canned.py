@@ -15,6 +15,6 @@ def canned_walk(path: RootPath) -> LocalPlan:
 
 
 def standing_posture(root: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The relaxed upper body (10,) of somebody who stands at root state (7,)."""
+    """The relaxed upper body (11,) of somebody who stands at root state (7,)."""
     posture: NDArray[np.float64] = canned_walk(RootPath(0.0, 1.0, np.stack([root, root]))).goals[0]
     return posture

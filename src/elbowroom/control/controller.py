@@ -305,7 +305,7 @@ class Controller:
         return stopped and not self._shown.root[3:6].any()
 
     def _goal(self) -> Floats:
-        """The goal functions' posture now, from the last plan (10,)."""
+        """The goal functions' posture now, from the last plan (11,)."""
         if self._plan_report is None:
             return self._shown.upper
         path, goals = self._plan_report.root.path, self._plan_report.local.goals

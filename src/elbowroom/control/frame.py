@@ -41,7 +41,7 @@ class Frame:
     """A pose that may be shown: with assistance on it touches nothing."""
 
     time: float  # seconds since the start, by the sum of all dt
-    q: Floats  # (13,) the configuration, see `body.dof`
+    q: Floats  # (14,) the configuration, see `body.dof`
     root: Floats  # (7,) the root state, see `body.root`
     phase: Phase
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
@@ -49,5 +49,5 @@ class Frame:
     touching: bool  # part of the body is inside an obstacle: only with assistance off
     fill: int  # unplayed key frames in the queue
     key_frames: KeyFrames  # the unplayed key frames
-    goal: Floats  # (10,) what the goal functions would show now: waist, left arm, right arm
+    goal: Floats  # (11,) what the goal functions would show now: waist, left arm, right arm
     plan: PlanReport | None  # the last planning call

@@ -5,13 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.root_path import RootPath, interpolate_root
 
 Floats = NDArray[np.float64]
 
-LOCAL = 10  # components of the local groups: waist, left arm, right arm
 _SAME_TIME = 1e-9  # seconds
 
 
@@ -20,15 +20,15 @@ class KeyFrames(NamedTuple):
 
     times: Floats  # (m,) seconds
     roots: Floats  # (m, 7) root states
-    uppers: Floats  # (m, 10) waist, left arm, right arm
+    uppers: Floats  # (m, 11) waist, left arm, right arm
 
 
 class Playback(NamedTuple):
     """What the queue says for one moment."""
 
     root: Floats  # (7,)
-    upper: Floats  # (10,)
-    upper_velocity: Floats  # (10,) per second
+    upper: Floats  # (11,)
+    upper_velocity: Floats  # (11,) per second
 
 
 class KeyFrameQueue:
@@ -79,7 +79,7 @@ class KeyFrameQueue:
         return KeyFrames(self._times[keys], self._roots[keys], self._uppers[knots])
 
     def refill(self, path: RootPath, uppers: Floats, now: Playback) -> None:
-        """Replace what has not been played by key frames along `path`, `uppers` (n+1, 10) at its key times.
+        """Replace what has not been played by key frames along `path`, `uppers` (n+1, 11) at its key times.
 
         `path` starts at the next unplayed key frame or at the play head; `now` is what is shown at the play head.
         """

@@ -1,9 +1,10 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 1`, a header and chunks. Header: its length (uint32), UTF-8 JSON of a
+A `.elbow` file is the line `ELBOWROOM RECORDING 2`, a header and chunks. Header: its length (uint32), UTF-8 JSON of a
 `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that data
 (uint32 each), the data: `STEP` records. All numbers are little-endian. A file is only ever appended to, so one that
-was cut off is good up to its last whole chunk.
+was cut off is good up to its last whole chunk. Files of the format 1, from before there was a lowering of the pelvis,
+are read as if nobody had lowered it.
 """
 
 import json
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom import __version__
+from elbowroom.body.dof import DOF, LOWERING
 from elbowroom.body.root import RootState
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
@@ -28,7 +30,8 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 
-MAGIC = b"ELBOWROOM RECORDING 1\n"
+MAGIC = b"ELBOWROOM RECORDING 2\n"
+_MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
@@ -43,12 +46,13 @@ STEP = np.dtype(
         ("turn", "<f8"),
         ("direction", "<f8"),  # not a number where the command has none
         ("dt", "<f8"),
-        ("q", "<f8", 13),
+        ("q", "<f8", DOF),
         ("root", "<f8", 7),
         ("phase", "u1"),  # place in `Phase`
         ("flags", "u1"),
     ]
 )
+_STEP_1 = np.dtype([(name, "<f8", DOF - 1) if name == "q" else (name, STEP[name]) for name in STEP.names or ()])
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 _PHASES = tuple(Phase)
 
@@ -165,7 +169,7 @@ class Recorder:
 def is_recording(path: Path) -> bool:
     """Whether the file begins as a recording does; an empty file may become one."""
     with path.open("rb") as file:
-        return file.read(len(MAGIC)) in (MAGIC, b"")
+        return file.read(len(MAGIC)) in (MAGIC, _MAGIC_1, b"")
 
 
 class Recording:
@@ -185,7 +189,9 @@ class Recording:
             raise InputError(f"{self.path}: cannot be read ({error.strerror})") from None
 
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
-        if file.read(len(MAGIC)) != MAGIC:
+        magic = file.read(len(MAGIC))
+        self._stored = {MAGIC: STEP, _MAGIC_1: _STEP_1}.get(magic)
+        if self._stored is None:
             raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
         size = file.read(_COUNT.size)
         length = _COUNT.unpack(size)[0] if len(size) == _COUNT.size else 0
@@ -202,25 +208,34 @@ class Recording:
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what follows it."""
         self.note = None
+        stored = self._stored or STEP
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
             while head := file.read(_CHUNK_HEAD.size):
-                steps = _read_chunk(head, file)
+                steps = _read_chunk(head, file, stored)
                 if steps is None:
                     self.note = "the file was cut off or is damaged: read up to its last whole chunk"
                     return
-                yield steps
+                yield steps if stored is STEP else _with_lowering(steps)
 
     def steps(self) -> Steps:
         """All steps in one array."""
         return np.concatenate([np.empty(0, STEP), *self.chunks()])
 
 
-def _read_chunk(head: bytes, file: BinaryIO) -> Steps | None:
+def _with_lowering(old: Steps) -> Steps:
+    """Steps of the format 1 as `STEP` records."""
+    steps = np.empty(len(old), STEP)
+    for name in old.dtype.names or ():
+        steps[name] = np.insert(old[name], LOWERING, 0.0, axis=1) if name == "q" else old[name]
+    return steps
+
+
+def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> Steps | None:
     if len(head) < _CHUNK_HEAD.size:
         return None
     mark, count, length, crc = _CHUNK_HEAD.unpack(head)
-    expected = count * STEP.itemsize
+    expected = count * stored.itemsize
     if mark != _CHUNK_MARK or not 0 < count <= MAX_CHUNK_STEPS or length > expected + 1024:
         return None
     data = file.read(length)
@@ -231,7 +246,7 @@ def _read_chunk(head: bytes, file: BinaryIO) -> Steps | None:
         raw = inflater.decompress(data, expected + 1)
     except zlib.error:
         return None
-    return np.frombuffer(raw, STEP) if len(raw) == expected and inflater.eof else None
+    return np.frombuffer(raw, stored) if len(raw) == expected and inflater.eof else None
 
 
 def command_of(step: Any) -> Command:

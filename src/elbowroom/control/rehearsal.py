@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, columns_of
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.planning.root_path import RootPath
@@ -55,8 +55,8 @@ def standing_path(path: RootPath, root: Floats) -> RootPath:
 
 
 def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
-    """The motion (n+1, 10), and the same with some groups kept as in `upper`: one limb frees itself before another."""
-    columns = {group: _columns(group) for group in LOCAL_GROUPS}
+    """The motion (n+1, 11), and the same with some groups kept as in `upper`: one limb frees itself before another."""
+    columns = {group: columns_of(group) for group in LOCAL_GROUPS}
     found = []
     for count in range(len(LOCAL_GROUPS)):
         for kept in combinations(LOCAL_GROUPS, count):
@@ -68,11 +68,6 @@ def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
     return found
 
 
-def _columns(group: DofGroup) -> slice:
-    first = DofGroup.WAIST.value.start
-    return slice(group.value.start - first, group.value.stop - first)
-
-
 def frozen_motion(path: RootPath, upper: Floats) -> Floats:
-    """The upper body (10,) kept as it is along a path: (n+1, 10)."""
+    """The upper body (11,) kept as it is along a path: (n+1, 11)."""
     return np.tile(upper, (len(path.states), 1))

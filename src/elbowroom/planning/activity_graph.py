@@ -34,7 +34,7 @@ class GraphArrays(NamedTuple):
     degrees: Ints  # (rows,)
     size: Ints  # (1,) number of the graph's own vertices
     visitors: Ints  # (1,) number of visitors
-    limits: Floats  # (d, 2) radians
+    limits: Floats  # (d, 2) radians; where both are equal the component is held there
     elevation: float  # the first two components are no longer than this, radians; infinite for the waist
     radius: float  # r, radians
     capacity: int  # rows for the graph's own vertices
@@ -45,9 +45,17 @@ class ActivityGraph:
 
     `configurations` (V, d) are brought within the limits of `group`, duplicates are merged; `radius` r > 0 in radians
     bounds how far the group moves from one key frame to the next; beyond `capacity` vertices it grows no further.
+    New vertices keep to `bounds` (d, 2), the limits of the group if they are not given.
     """
 
-    def __init__(self, group: DofGroup, configurations: ArrayLike, radius: float, capacity: int = 512) -> None:
+    def __init__(
+        self,
+        group: DofGroup,
+        configurations: ArrayLike,
+        radius: float,
+        capacity: int = 512,
+        bounds: Floats | None = None,
+    ) -> None:
         points = clamp(group, np.asarray(configurations, np.float64).reshape(-1, group.size))
         _check(points, radius, capacity)
         self.group = group
@@ -60,7 +68,7 @@ class ActivityGraph:
             np.zeros(rows, np.int32),
             np.zeros(1, np.int32),
             np.zeros(1, np.int32),
-            limits(group),
+            limits(group) if bounds is None else np.array(bounds, np.float64),
             np.inf if group is DofGroup.WAIST else MAX_ELEVATION,
             float(radius),
             int(capacity),
@@ -75,6 +83,7 @@ class ActivityGraph:
         radius: float,
         capacity: int = 512,
         accept: Callable[[Floats], NDArray[np.bool_]] | None = None,
+        bounds: Floats | None = None,
     ) -> "ActivityGraph":
         """The graph of several clips of one group, each resampled at k = `samples_per_clip` equal times (section 4.1).
 
@@ -85,7 +94,7 @@ class ActivityGraph:
         if len({clip.group for clip in clips}) != 1:
             raise InputError(f"activity graph: {len(clips)} clips given, at least one is needed and all of one group")
         points = np.concatenate([clip.resample(samples_per_clip) for clip in clips])
-        return cls(clips[0].group, points if accept is None else points[accept(points)], radius, capacity)
+        return cls(clips[0].group, points if accept is None else points[accept(points)], radius, capacity, bounds)
 
     def reset(self) -> None:
         """Forget every vertex that was added since construction, and all visitors."""
@@ -101,7 +110,7 @@ class ActivityGraph:
 
     def copy(self) -> "ActivityGraph":
         """An independent graph with the vertices that this one began with."""
-        return ActivityGraph(self.group, self._initial, self.arrays.radius, self.arrays.capacity)
+        return ActivityGraph(self.group, self._initial, self.arrays.radius, self.arrays.capacity, self.arrays.limits)
 
     @property
     def size(self) -> int:

@@ -6,10 +6,10 @@ one nearest to the goal of the next key time is popped first; where none is free
 the dead end is tried, pushed and kept in the activity graph (Enhance); the empty stack is failure.
 
 Where the figure is silent: of equally near nodes the vertex itself is popped before its neighbours, an older neighbour
-before a younger one; a random configuration is uniform in the ball of radius r and clamped to the limits; one that runs
-into the avatar's own trunk collides too (`self_contact`); one that hits a known vertex is that vertex; a full graph
-draws none. One check is counted for each candidate tested, as the paper counts them, though most answers come from a
-table. Out of checks, the search stops.
+before a younger one; a random configuration is uniform in the ball of radius r (in the components that are not held)
+and clamped to the limits; one that runs into the avatar's own trunk collides too (`self_contact`); one that hits a
+known vertex is that vertex; a full graph draws none. One check is counted for each candidate tested, as the paper
+counts them, though most answers come from a table. Out of checks, the search stops.
 """
 
 import math
@@ -81,7 +81,7 @@ def _sample_neighbor(graph: GraphArrays, target: int, state: NDArray[np.uint64])
     while length >= 1.0:
         length = 0.0
         for k in range(size):
-            step[k] = _uniform(state)
+            step[k] = _uniform(state) if graph.limits[k, 0] < graph.limits[k, 1] else 0.0
             length += step[k] * step[k]
     for k in range(size):
         value = graph.vertices[target, k] + graph.radius * _INSIDE * step[k]

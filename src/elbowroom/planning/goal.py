@@ -52,5 +52,5 @@ def natural_walk() -> Mapping[DofGroup, GoalFunction]:
 
 
 def goal_configurations(goals: Mapping[DofGroup, GoalFunction], path: RootPath) -> Floats:
-    """The goals of all local groups side by side: (n+1, 10) waist, left arm, right arm."""
+    """The goals of all local groups side by side: (n+1, 11) waist, left arm, right arm."""
     return np.concatenate([goals[group](path) for group in LOCAL_GROUPS], axis=1)

@@ -37,6 +37,7 @@ class Limb(NamedTuple):
     mirror: float  # +1 left arm, -1 right arm
     joints: Indices  # (C,) joints that carry the group's capsules
     ends: Floats  # (C, 6) capsule end points in their joints' frames
+    half_leg: float  # metres, the unit of the waist's lowering
     radii: Floats32  # (C,) metres
     trunk: (
         Floats  # (K, 6) for an arm, the trunk's capsules in the chest frame with the waist at rest; none for the waist
@@ -63,6 +64,7 @@ def limb_of(model: BodyModel, group: DofGroup) -> Limb:
         1.0 - 2.0 * side,
         capsules.joints,
         capsules.ends,
+        model.gait.half_leg,
         capsules.radii,
         trunk,
         allowed,
@@ -88,7 +90,7 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
     if limb.is_waist:
         return posing.pose_trunk(
             limb.base, limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights,
-            limb.gaze, limb.gaze_weights, limb.joints, limb.ends, configurations,
+            limb.gaze, limb.gaze_weights, limb.joints, limb.ends, limb.half_leg, configurations,
         )[0]  # fmt: skip
     return posing.pose_arm(
         limb.base, limb.parents, limb.offsets, limb.order, limb.spine[-1], limb.arm_joints, limb.mirror,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
@@ -94,7 +94,7 @@ class LocalPlanner:
         return self._posed[group].graph
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
-        """Find motion along `path` that begins at `start` (10,): waist, left arm, right arm, radians.
+        """Find motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians.
 
         `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all boxes.
         """
@@ -131,7 +131,7 @@ class LocalPlanner:
         return Roadmap(posed, tables, start)
 
     def _chest_tables(self, boxes: Floats, positions: Floats, rotations: Floats, waist: Floats) -> NDArray[np.float32]:
-        """The boxes in the chest frame at each key time, for the chosen waist motion (n+1, 2)."""
+        """The boxes in the chest frame at each key time, for the chosen waist motion (n+1, 3)."""
         chest_positions, chest_rotations = chest_frames(self._model, waist)
         return tables_in_frames(boxes, *compose(positions, rotations, chest_positions, chest_rotations))
 
@@ -147,8 +147,11 @@ class LocalPlanner:
         def accept(configurations: Floats) -> NDArray[np.bool_]:
             return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
+        clips, bounds = upright(group_clips(group)), limits(group)
+        if group is DofGroup.WAIST:
+            bounds[LOWERING - group.value.start] = 0.0
         graph = ActivityGraph.from_clips(
-            group_clips(group), chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept
+            clips, chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept, bounds
         )
         return PosedGraph(limb, graph)
 
@@ -160,6 +163,14 @@ class LocalPlanner:
         return max(waist.reach, *(shoulders + self._posed[group].reach for group in LOCAL_GROUPS[1:]))
 
 
+def upright(clips: tuple[MotionClip, ...]) -> tuple[MotionClip, ...]:
+    """Those of a group's clips that do not lower the pelvis: the paper's avatar cannot."""
+    if clips[0].group is not DofGroup.WAIST:
+        return clips
+    column = LOWERING - DofGroup.WAIST.value.start
+    return tuple(clip for clip in clips if not clip.configurations[:, column].any())
+
+
 def group_clips(group: DofGroup) -> tuple[MotionClip, ...]:
     """The clips of a group's graph: the stock clips, and for an arm its swing at other speeds."""
     if group is DofGroup.WAIST:
@@ -167,12 +178,6 @@ def group_clips(group: DofGroup) -> tuple[MotionClip, ...]:
     phases = np.linspace(0.0, 1.0, 33)
     swings = (arm_swing_goal(group, phases, np.full(len(phases), speed)) for speed in _SWING_SPEEDS)
     return stock_clips(group) + tuple(MotionClip("arm_swing", group, phases, swing, loop=True) for swing in swings)
-
-
-def columns_of(group: DofGroup) -> slice:
-    """The group's columns of a configuration without the root (10,)."""
-    first = DofGroup.WAIST.value.start
-    return slice(group.value.start - first, group.value.stop - first)
 
 
 def _evidence(group: DofGroup, result: SearchResult) -> GroupEvidence:

@@ -23,12 +23,12 @@ class Lead(NamedTuple):
 
     duration: float  # seconds until the plan's first key frame, 0 or more
     roots: Floats  # (L, 7) root states at equal steps of the duration, the first of them now; none for duration 0
-    upper: Floats  # (10,) waist, left arm, right arm now, radians
-    velocity: Floats  # (10,) their rate of change, rad/s
+    upper: Floats  # (11,) waist, left arm, right arm now, radians
+    velocity: Floats  # (11,) their rate of change, rad/s
 
 
 def no_lead(upper: Floats) -> Lead:
-    """A plan that starts now, from rest, at `upper` (10,)."""
+    """A plan that starts now, from rest, at `upper` (11,)."""
     return Lead(0.0, np.empty((0, 7)), upper, np.zeros_like(upper))
 
 
@@ -37,7 +37,7 @@ class MotionQuery(NamedTuple):
 
     time: float  # seconds, of the first key frame
     root: RootState  # there
-    upper: Floats  # (10,) there, radians
+    upper: Floats  # (11,) there, radians
     command: Command
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames

@@ -20,7 +20,7 @@ class Planner(Protocol):
     """Finds upper-body motion for root paths; it may learn from plan to plan."""
 
     def plan(self, path: RootPath, start: NDArray[np.float64], rng: np.random.Generator) -> LocalPlan:
-        """Motion along `path` that begins at `start` (10,): waist, left arm, right arm, radians."""
+        """Motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians."""
 
 
 PlannerFactory = Callable[[Humanoid, Scene], Planner]

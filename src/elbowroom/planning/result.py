@@ -47,8 +47,8 @@ class LocalPlan:
     """Upper-body motion for a root path, or the status of the first group that found none."""
 
     status: PlanStatus
-    configurations: NDArray[np.float64]  # (n+1, 10) waist, left arm, right arm at the key times; (0, 10) unless FOUND
-    goals: NDArray[np.float64]  # (n+1, 10) what the goal functions asked for
+    configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
+    goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
 
     @property

@@ -31,13 +31,13 @@ class Poser:
         self._hips, self._hips_rest = _hips_map(humanoid.rig)
 
     def node_pose(self, q: Floats, root: Floats) -> NodePose:
-        """What the nodes get for a configuration (13,) and a root state (7,)."""
+        """What the nodes get for a configuration (14,) and a root state (7,)."""
         rotations = np.matmul(self._rotation, local_rotations(self.model, q, root)[:, :, None])[:, :, 0]
-        hips = self._hips @ hips_position(self.model, root) + self._hips_rest
+        hips = self._hips @ hips_position(self.model, q, root) + self._hips_rest
         return NodePose(hips, rotations.astype(np.float32))
 
     def segments(self, q: Floats, roots: Floats) -> NDArray[np.float32]:
-        """End points of all capsules in the world, (N, C, 6), for configurations (N, 13) and root states (N, 7)."""
+        """End points of all capsules in the world, (N, C, 6), for configurations (N, 14) and root states (N, 7)."""
         return np.ascontiguousarray(np.moveaxis(posture_capsules(self.model, q, roots), -1, 0))
 
 

@@ -16,7 +16,7 @@ from elbowroom.experiment.gauntlet.certificate import Certificate, certify
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.levels import TWIST, Level, level_of
 from elbowroom.experiment.gauntlet.line import CourseLine, Turn
-from elbowroom.experiment.gauntlet.motion import Passage, draw_motion
+from elbowroom.experiment.gauntlet.motion import DRAWN, Passage, draw_motion
 from elbowroom.experiment.gauntlet.placing import Placed, fill_passage, surroundings
 from elbowroom.experiment.gauntlet.self_clearance import SelfClearance
 from elbowroom.experiment.gauntlet.speeds import HumanSpeeds
@@ -106,7 +106,7 @@ class CourseMaker:
         if not _all_clear(groups, swept, level.margin):
             return None
         document = _document(level, seed, line, passages, groups)
-        drawn = [document, motion.way.tolist(), np.round(motion.postures, GRAIN).tolist(), certificate.speed]
+        drawn = [document, motion.way.tolist(), np.round(motion.postures[:, DRAWN], GRAIN).tolist(), certificate.speed]
         return Course(
             level=level.number,
             seed=seed,

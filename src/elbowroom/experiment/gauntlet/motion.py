@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.dof import DofGroup, clamp
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of
 from elbowroom.control.canned import standing_posture
 from elbowroom.experiment.gauntlet import levels
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw, Range
@@ -17,7 +17,9 @@ Floats = NDArray[np.float64]
 
 ArmRanges = tuple[Range, Range, Range, Range]
 
-WAIST, LEFT, RIGHT = slice(0, 2), slice(2, 6), slice(6, 10)  # columns of an upper body (10,)
+WAIST, LEFT, RIGHT = (columns_of(group) for group in LOCAL_GROUPS)  # columns of an upper body (11,)
+_BEND, _TWIST, _ABDUCTIONS = WAIST.start, WAIST.start + 1, [LEFT.start + 1, RIGHT.start + 1]
+DRAWN = np.delete(np.arange(LOCAL), LOWERING - DofGroup.WAIST.value.start)  # a certificate's pelvis is never lowered
 
 _BENT, _LEANING = (0.75, 1.25), (0.60, 0.95)  # forward bend alone, and with a twist
 _TWISTED = (0.50, 0.78)
@@ -70,10 +72,10 @@ class BodyMotion:
     """Upper bodies as a function of the way: through key postures, resting at each, C1."""
 
     way: Floats  # (K,) metres along the line, increasing
-    postures: Floats  # (K, 10) waist, left arm, right arm, radians
+    postures: Floats  # (K, 11) waist, left arm, right arm, radians
 
     def at(self, s: ArrayLike) -> Floats:
-        """Upper bodies (N, 10) at ways (N,)."""
+        """Upper bodies (N, 11) at ways (N,)."""
         place = np.asarray(s, np.float64)
         k = np.clip(np.searchsorted(self.way, place, side="right") - 1, 0, len(self.way) - 2)
         part = smoothstep((place - self.way[k]) / (self.way[k + 1] - self.way[k]))[:, None]
@@ -120,14 +122,14 @@ def _posture(
 def _asked(draw: Draw, passage: Passage, hanging: Floats) -> Floats:
     """A random posture of the kind that the passage asks for."""
     asks, posture = passage.asks, hanging.copy()
-    posture += [draw.between(_LITTLE) for _ in posture]
-    posture[[3, 7]] += [draw.between(_AWAY), draw.between(_AWAY)]
+    posture[DRAWN] += [draw.between(_LITTLE) for _ in DRAWN]
+    posture[_ABDUCTIONS] += [draw.between(_AWAY), draw.between(_AWAY)]
     if asks in (levels.BEND, levels.BEND_ARMS):
-        posture[0] = draw.between(_BENT)
+        posture[_BEND] = draw.between(_BENT)
     if asks == levels.BEND_TWIST:
-        posture[0] = draw.between(_LEANING)
+        posture[_BEND] = draw.between(_LEANING)
     if asks in (levels.TWIST, levels.TWIST_ARMS, levels.BEND_TWIST):
-        posture[1] = passage.side * draw.between(_TWISTED)
+        posture[_TWIST] = passage.side * draw.between(_TWISTED)
     if asks in _ARMS:
         posture[LEFT], posture[RIGHT] = _arm(draw, _ARMS[asks]), _arm(draw, _ARMS[asks])
     near, other = (LEFT, RIGHT) if passage.side > 0 else (RIGHT, LEFT)
@@ -145,7 +147,8 @@ def _arm(draw: Draw, kinds: tuple[ArmRanges, ...]) -> Floats:
 def _drifted(draw: Draw, held: Floats, hanging: Floats, check: SelfClearance, reach: Floats) -> Floats:
     """The posture at the end of a passage: a little further on in what differs from hanging, if there is room."""
     for _ in range(_DRIFTS):
-        drift = np.array([draw.between(_DRIFT) for _ in held])
+        drift = np.zeros(LOCAL)
+        drift[DRAWN] = [draw.between(_DRIFT) for _ in DRAWN]
         moved = _limited(held, held + np.where(np.abs(held - hanging) > 0.2, drift, 0.0), reach)
         if check.clear(_walking(_STEPS), np.tile(moved, (_STEPS, 1))).all():
             return moved
@@ -155,9 +158,7 @@ def _drifted(draw: Draw, held: Floats, hanging: Floats, check: SelfClearance, re
 def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
     """As far towards the wanted posture as limits and reach allow, group by group; whole milliradians."""
     posture = wanted.copy()
-    for columns, group, most in zip(
-        (WAIST, LEFT, RIGHT), (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM), reach, strict=True
-    ):
+    for columns, group, most in zip((WAIST, LEFT, RIGHT), LOCAL_GROUPS, reach, strict=True):
         posture[columns] = clamp(group, posture[columns])
         move = posture[columns] - before[columns]
         posture[columns] = before[columns] + move * min(1.0, 0.99 * most / max(float(np.linalg.norm(move)), 1e-9))

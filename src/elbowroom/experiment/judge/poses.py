@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 _SPINE_PARTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
 _GAZE = 0.65  # the part of the waist's rotation that neck and head turn back
 _RIGHT, _UP, _AHEAD = 0, 1, 2  # axes
+_SETBACK = 0.5  # how far lowered hips go back, against how far they go down
+_SPLAY = 1.2  # radians that the knees open for each leg length that the hips go back
 _SOFT = 0.004  # of the leg: a knee that straightens more slows down
 
 
@@ -42,16 +44,17 @@ class Poser:
         self._relaxed = relaxed_rotations(self.skeleton)
 
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
-        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, 13), `roots` (N, 7)."""
+        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, 14), `roots` (N, 7)."""
         feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
         _pose_trunk(self.skeleton, q[:, 3], q[:, 4], rotations)
-        _pose_arm(self.skeleton, "left", 1.0, q[:, 5:9], rotations)
-        _pose_arm(self.skeleton, "right", -1.0, q[:, 9:13], rotations)
+        _pose_arm(self.skeleton, "left", 1.0, q[:, 6:10], rotations)
+        _pose_arm(self.skeleton, "right", -1.0, q[:, 10:14], rotations)
+        lowered = 0.25 * self._gait.legs[:, -2:].sum() * q[:, 5:6]
+        moved = -(drops[:, None] + lowered) * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
         for side, name in enumerate(("left", "right")):
-            _pose_leg(self.skeleton, name, feet[:, side], drops, rotations)
-        hips = self.skeleton.positions[0] - drops[:, None] * np.eye(3)[_UP]
-        return rotations, hips
+            _pose_leg(self.skeleton, name, feet[:, side], moved, rotations)
+        return rotations, self.skeleton.positions[0] + moved
 
     def world(self, local: Floats, hips: Floats, places: Floats) -> Posed:
         """Joints in the world for rotations (N, J, 4), hips (N, 3) and places (N, 3): x, z, heading of the root."""
@@ -108,14 +111,19 @@ def _pose_arm(skeleton: Skeleton, side: str, mirror: float, arm: Floats, out: Fl
     out[:, skeleton.index(f"{side}LowerArm")] = quaternion.about_axis(_UP, -mirror * elbow)
 
 
-def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, drops: Floats, out: Floats) -> None:
-    """Hip, knee, ankle and toes for feet (N, 6): ankle x, y, z, yaw, pitch, bend of the toes, in the root frame."""
+def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, moved: Floats, out: Floats) -> None:
+    """Hip, knee, ankle and toes for feet (N, 6): ankle x, y, z, yaw, pitch, bend of the toes, in the root frame.
+
+    `moved` (N, 3) is how far the hips are from their place in T-pose.
+    """
     bones = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")]
     hip, knee, ankle = (skeleton.positions[skeleton.index(bone)] for bone in bones[:3])
     thigh, shin = knee - hip, ankle - knee
-    outward = foot[:, :3] + drops[:, None] * np.eye(3)[_UP] - hip
-    half_yaw = quaternion.rotate(quaternion.about_axis(_UP, 0.5 * foot[:, 3]), [1.0, 0.0, 0.0])
-    to_knee, to_ankle, axis = _bent(outward, np.linalg.norm(thigh), np.linalg.norm(shin), half_yaw)
+    outward = foot[:, :3] - moved - hip
+    lengths = np.linalg.norm(thigh), np.linalg.norm(shin)
+    opening = (1.0 if side == "left" else -1.0) * _SPLAY * -moved[:, _AHEAD] / sum(lengths)
+    knee_axis = quaternion.rotate(quaternion.about_axis(_UP, 0.5 * foot[:, 3] + opening), [1.0, 0.0, 0.0])
+    to_knee, to_ankle, axis = _bent(outward, *lengths, knee_axis)
     upper = quaternion.from_matrix(_axes(to_knee, axis) @ _axes(thigh, np.eye(3)[_RIGHT]).T)
     lower = quaternion.from_matrix(_axes(to_ankle, axis) @ _axes(shin, np.eye(3)[_RIGHT]).T)
     sole = quaternion.multiply(quaternion.about_axis(_UP, foot[:, 3]), quaternion.about_axis(_RIGHT, foot[:, 4]))

@@ -32,6 +32,8 @@ class Smoothness:
 def smoothness(motion: ShownMotion) -> dict[str, Smoothness]:
     """Figures for `waist`, `leftArm`, `rightArm` and `heading` in radians, and for `root` in metres.
 
+    The waist's lowering counts in its own unit, see `body.dof`.
+
     Nothing is taken over a jump. Frames at one and the same time count once.
     """
     tracks = {

@@ -46,7 +46,7 @@ class ExactPlanner:
         self._last: _Whole | None = None
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
-        """Motion along `path` that begins at rest at `start` (10,); nothing is left to chance."""
+        """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
         return self._body.plan(path, start, no_lead(start)).plan
 
@@ -103,7 +103,7 @@ class ExactPlanner:
         return self._body.plan(path, query.upper, query.lead, self._kept(path))
 
     def _kept(self, path: RootPath) -> Floats | None:
-        """What the last plan had at the key times of `path` (n+1, 10), if it has any of them."""
+        """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""
         if self._last is None or not len(self._last.local.configurations):
             return None
         last = self._last.root.path

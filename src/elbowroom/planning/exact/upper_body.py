@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.planning.activity_graph import ActivityGraph
@@ -25,7 +25,7 @@ from elbowroom.planning.exact.slices import any_free
 from elbowroom.planning.frames import compose
 from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
-from elbowroom.planning.local_planner import columns_of, group_clips
+from elbowroom.planning.local_planner import group_clips
 from elbowroom.planning.motion import Lead
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -74,7 +74,7 @@ class UpperBody:
         self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
 
     def plan(self, path: RootPath, start: Floats, lead: Lead, kept: Floats | None = None) -> UpperPlan:
-        """Motion along `path` from `start` (10,), shown after `lead`; near `kept` (n+1, 10), the last plan's."""
+        """Motion along `path` from `start` (11,), shown after `lead`; near `kept` (n+1, 11), the last plan's."""
         moments = moments_of(path, lead, self.settings.samples)
         postures = {group: self.postures(group, path.interval) for group in LOCAL_GROUPS}
         frames = self._frames(moments, postures)
@@ -137,7 +137,7 @@ class UpperBody:
         extra[depth, candidates[~free]] = np.inf
 
     def _tables_under(self, waists: Floats, at: int, frames: _Frames) -> Floats32:
-        """The boxes (F, B, 15) in the chest frames that waist postures (F, 2) would have at a moment."""
+        """The boxes (F, B, 15) in the chest frames that waist postures (F, 3) would have at a moment."""
         places, turns = chest_frames(self._model, waists)
         here = np.full(len(waists), at)
         return tables_in_frames(frames.boxes, *compose(frames.positions[here], frames.rotations[here], places, turns))
