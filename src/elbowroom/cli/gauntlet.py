@@ -167,6 +167,7 @@ def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
     }
     if summary.judged_poses is not None:
         rows["touching poses, by the judge"] = f"{summary.judged_touching} of {summary.judged_poses}"
+        rows["poses that touch themselves"] = str(summary.judged_self_touching)
     last = settings.seed + settings.courses - 1
     about = f"level {settings.level} ({100 * level_of(settings.level).margin:.0f} cm), seeds {settings.seed} to {last}"
     trial = settings.trial

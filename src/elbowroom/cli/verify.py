@@ -65,6 +65,7 @@ def _as_json(verdict: "Verdict") -> dict[str, Any]:
         "frames_checked": verdict.poses,
         "seconds": verdict.seconds,
         "capsules": _body_json(verdict.capsules),
+        "self_contact": _body_json(verdict.itself),
         "mesh": mesh,
         "mesh_note": verdict.mesh_note,
         "smoothness": {name: asdict(figures) for name, figures in verdict.smoothness.items()},
@@ -105,10 +106,11 @@ def _print(recorded: "Recording", scene: str, verdict: "Verdict") -> None:
     capsules = _body_rows("capsules", verdict.capsules)
     no_mesh = {} if verdict.mesh else {"mesh": f"not judged: {verdict.mesh_note}"}
     print_row(f"{recorded.path.name}, scene {scene}", judged | capsules | no_mesh)
+    print_row("Body against itself, beyond its natural walk", _self_rows(verdict.itself))
     if verdict.mesh is not None:
         left_out = f", {verdict.triangles_left_out} left out" if verdict.triangles_left_out else ""
         print_row("Skinned mesh", {"triangles": f"{verdict.triangles}{left_out}"} | _body_rows("mesh", verdict.mesh))
-    for name, body in (("Capsules", verdict.capsules), ("Mesh", verdict.mesh)):
+    for name, body in (("Capsules", verdict.capsules), ("Mesh", verdict.mesh), ("Own parts", verdict.itself)):
         if body is not None and body.contacts:
             print_row(f"{name} that touch", _contact_rows(body))
     _print_smoothness(verdict)
@@ -126,6 +128,13 @@ def _body_rows(name: str, body: "BodyVerdict") -> dict[str, str]:
         return rows | {"least clearance": "no obstacle"}
     where = f"{body.least.part}, {body.least.obstacle}, {body.least.time:.3f} s"
     return rows | {"least clearance": f"{1e3 * body.least.clearance:.2f} mm", "there": where}
+
+
+def _self_rows(body: "BodyVerdict") -> dict[str, str]:
+    rows = {"parts in each other in": f"{body.touching} frames (deeper than {1e3 * body.tolerance:g} mm)"}
+    if body.touching:
+        rows["deepest"] = f"{1e3 * body.deepest:.2f} mm"
+    return rows
 
 
 def _contact_rows(body: "BodyVerdict") -> dict[str, str]:

@@ -27,6 +27,7 @@ class GauntletSummary:
     plan_ms_max: float
     judged_poses: int | None  # None unless the judge looked at every walk
     judged_touching: int | None
+    judged_self_touching: int | None  # poses with parts of the body in each other
 
     @classmethod
     def of(cls, results: Sequence[TrialResult]) -> "GauntletSummary":
@@ -51,4 +52,5 @@ class GauntletSummary:
             plan_ms_max=round(percentile(costs, 100.0), 3),
             judged_poses=sum(figure.poses for figure in figures) if judged else None,
             judged_touching=sum(figure.touching for figure in figures) if judged else None,
+            judged_self_touching=sum(figure.self_touching for figure in figures) if judged else None,
         )

@@ -73,5 +73,10 @@ def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigu
     verdict = judge(motion, humanoid, course.scene, JudgeSettings(mesh=False))
     least = verdict.capsules.least
     return JudgeFigures(
-        verdict.poses, verdict.capsules.touching, verdict.capsules.deepest, None if least is None else least.clearance
+        poses=verdict.poses,
+        touching=verdict.capsules.touching,
+        deepest=verdict.capsules.deepest,
+        least_clearance=None if least is None else least.clearance,
+        self_touching=verdict.itself.touching,
+        self_deepest=verdict.itself.deepest,
     )

@@ -34,6 +34,8 @@ class JudgeFigures:
     touching: int  # of these
     deepest: float  # metres, 0 where nothing touches
     least_clearance: float | None  # metres
+    self_touching: int = 0  # poses with parts of the body deeper in each other than in the natural walk
+    self_deepest: float = 0.0  # metres
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from elbowroom.experiment.judge.mesh_judge import MeshJudge
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.obstacles import obstacles_of
 from elbowroom.experiment.judge.poses import Poser
+from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.skin import Skin, skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.world.scene import Scene
@@ -32,6 +33,7 @@ class JudgeSettings:
     mesh: bool = True  # where the avatar has one
     capsule_tolerance: float = 1e-5  # metres inside an obstacle that are no contact: rounding
     mesh_tolerance: float = 1e-5  # metres, the same for the mesh
+    self_tolerance: float = 0.02  # metres that parts of the body may be deeper in each other than in the natural walk
 
     def __post_init__(self) -> None:
         if not 1.0 <= self.rate <= _HIGHEST_RATE:
@@ -59,6 +61,7 @@ class Verdict:
     seconds: float  # of motion
     capsules: BodyVerdict
     mesh: BodyVerdict | None  # None: not asked for, or the avatar has none
+    itself: BodyVerdict  # the collision body against itself: parts in each other deeper than in the natural walk
     mesh_note: str  # why there is no mesh, else empty
     triangles: int  # of the mesh that were judged
     triangles_left_out: int  # moved by springs, or rigid things on a skinned body
@@ -66,7 +69,7 @@ class Verdict:
 
     @property
     def clean(self) -> bool:
-        """Whether nothing touches."""
+        """Whether no obstacle is touched; what the body does to itself is a figure of its own."""
         return self.capsules.touching == 0 and (self.mesh is None or self.mesh.touching == 0)
 
 
@@ -94,21 +97,28 @@ def judge(
     skin, note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
     moments = motion.moments(chosen.rate)
     of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
-    capsule_judge = CapsuleJudge(humanoid, obstacles)
+    of_itself = Ledger(chosen.self_tolerance)
+    capsule_judge, self_judge = CapsuleJudge(humanoid, obstacles), SelfJudge(humanoid)
     mesh_judge = None if skin is None else MeshJudge(skin, humanoid.skeleton, obstacles)
     for first in range(0, len(moments.times), _AT_ONCE):
         some = moments.part(slice(first, first + _AT_ONCE))
         posed = poser.at(motion, some)
         capsule_judge.judge(posed, some.times, first, of_capsules)
+        self_judge.judge(posed, some.times, first, of_itself)
         if mesh_judge is not None:
             mesh_judge.judge(posed, some.times, first, of_mesh)
         if progress is not None:
             progress(float(some.times[-1]))
-    return _verdict(motion, moments, (skin, note), of_capsules, of_mesh)
+    return _verdict(motion, moments, (skin, note), of_capsules, of_itself, of_mesh)
 
 
 def _verdict(
-    motion: ShownMotion, moments: Moments, surface: tuple[Skin | None, str], capsules: Ledger, mesh: Ledger
+    motion: ShownMotion,
+    moments: Moments,
+    surface: tuple[Skin | None, str],
+    capsules: Ledger,
+    itself: Ledger,
+    mesh: Ledger,
 ) -> Verdict:
     skin, note = surface
     return Verdict(
@@ -117,6 +127,7 @@ def _verdict(
         seconds=float(motion.times[-1] - motion.times[0]),
         capsules=_body_verdict(capsules, motion, moments),
         mesh=None if skin is None else _body_verdict(mesh, motion, moments),
+        itself=_body_verdict(itself, motion, moments),
         mesh_note=note,
         triangles=0 if skin is None else len(skin.triangles),
         triangles_left_out=0 if skin is None else skin.left_out,

@@ -1,0 +1,53 @@
+"""An avatar's capsules as the other library's shapes, and where a pose puts them."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.experiment.judge.obstacles import coal_library
+from elbowroom.experiment.judge.poses import Posed
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+_POINT = 1e-9  # metres: a shorter capsule is a ball
+
+
+class Placed(NamedTuple):
+    """Capsules at N poses."""
+
+    turns: Floats  # (N, C, 3, 3) of the joints
+    middles: Floats  # (N, C, 3) metres
+    half_axes: Floats  # (N, C, 3)
+
+
+class CapsuleShapes:
+    """The collision body of one avatar."""
+
+    def __init__(self, humanoid: Humanoid) -> None:
+        self._coal, capsules = coal_library(), humanoid.capsules
+        self.names, self.radii = capsules.names, capsules.radii
+        self._joints = capsules.joints
+        self._middles = 0.5 * (capsules.starts + capsules.ends)
+        axes = capsules.ends - capsules.starts
+        lengths = np.linalg.norm(axes, axis=1)
+        upright = np.where(lengths[:, None] > _POINT, axes, [0.0, 0.0, 1.0])
+        self._half_axes = 0.5 * axes
+        self._turns = quaternion.to_matrix(quaternion.between(np.tile([0.0, 0.0, 1.0], (len(axes), 1)), upright))
+        self.shapes = [
+            self._coal.Capsule(float(radius), float(length)) if length > _POINT else self._coal.Sphere(float(radius))
+            for radius, length in zip(self.radii, lengths, strict=True)
+        ]
+
+    def placed(self, posed: Posed) -> Placed:
+        """The capsules of N posed bodies."""
+        turns = posed.rotations[:, self._joints]
+        middles = posed.positions[:, self._joints] + np.einsum("ncij,cj->nci", turns, self._middles)
+        return Placed(turns, middles, np.einsum("ncij,cj->nci", turns, self._half_axes))
+
+    def place(self, placed: Placed, pose: int, capsule: int) -> Any:
+        """Where the library has to put a capsule's shape."""
+        turn = placed.turns[pose, capsule] @ self._turns[capsule]
+        return self._coal.Transform3s(turn, placed.middles[pose, capsule])

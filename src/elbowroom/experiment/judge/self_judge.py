@@ -1,0 +1,94 @@
+"""A body against itself: arms against trunk, head, legs and each other, by the other library.
+
+Capsules wrap the mesh generously, and some builds hold their arms against their sides. So what counts is how much
+deeper two parts are in each other than ever in the natural walk of this avatar; that is measured here, once, on poses
+of the judge's own. What a joint holds together is not looked at: parts of one arm, the trunk's parts, and an upper arm
+against the trunk below the neck.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.bones import SPINE
+from elbowroom.body.dof import DOF, DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
+from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.obstacles import coal_library
+from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.root_path import RootPath
+
+Floats = NDArray[np.float64]
+
+_ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
+_SPEEDS = (0.0, 0.5, 1.1, 1.6, 2.2)  # m/s of the natural walk
+_PHASES = 24
+
+
+class SelfJudge:
+    """Judges one avatar's collision body against itself."""
+
+    def __init__(self, humanoid: Humanoid) -> None:
+        self._coal, self._shapes = coal_library(), CapsuleShapes(humanoid)
+        self._pairs = _pairs(humanoid)
+        self._lengths = np.linalg.norm(humanoid.capsules.ends - humanoid.capsules.starts, axis=1)
+        self._request = self._coal.DistanceRequest()
+        natural = self._shapes.placed(_natural_poses(humanoid))
+        every = range(len(natural.turns))
+        self._natural = np.array([min(0.0, *(self._distance(natural, n, a, b) for n in every)) for a, b in self._pairs])
+
+    def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
+        """Enter what the parts do at N poses, whose numbers begin at `first`."""
+        placed = self._shapes.placed(posed)
+        bounds = self._bounds(placed)  # (N, P)
+        for at in np.argsort(bounds, axis=None):
+            pose, pair = (int(i) for i in np.unravel_index(at, bounds.shape))
+            if bounds[pose, pair] > ledger.limit:
+                return
+            one, other = (int(i) for i in self._pairs[pair])
+            beyond = self._distance(placed, pose, one, other) - self._natural[pair]
+            names = self._shapes.names[one], self._shapes.names[other]
+            ledger.enter(first + pose, Nearness(*names, float(times[pose]), float(beyond)))
+
+    def _bounds(self, placed: Placed) -> Floats:
+        """A lower bound of every distance: that of the balls round two axes, less the radii."""
+        one, other = self._pairs.T
+        apart = np.linalg.norm(placed.middles[:, one] - placed.middles[:, other], axis=2)
+        size = 0.5 * self._lengths + self._shapes.radii
+        bounds: Floats = apart - size[one] - size[other] - self._natural
+        return bounds
+
+    def _distance(self, placed: Placed, pose: int, one: int, other: int) -> float:
+        shapes, places = self._shapes.shapes, [self._shapes.place(placed, pose, part) for part in (one, other)]
+        result = self._coal.DistanceResult()
+        return float(self._coal.distance(shapes[one], places[0], shapes[other], places[1], self._request, result))
+
+
+def _pairs(humanoid: Humanoid) -> NDArray[np.int64]:
+    """The capsules (P, 2) that are not held together by a joint."""
+    capsules, names = humanoid.capsules, humanoid.skeleton.names
+    bones = [names[joint] for joint in capsules.joints]
+    left, right = ([i for i, group in enumerate(capsules.groups) if group is arm] for arm in _ARMS)
+    rest = [i for i, group in enumerate(capsules.groups) if group not in _ARMS]
+    rooted = [i for i in rest if bones[i] in (*SPINE, "hips")]
+    pairs = [
+        (one, other)
+        for arm in (left, right)
+        for one in arm
+        for other in rest
+        if not (bones[one].endswith("UpperArm") and other in rooted)
+    ]
+    return np.array(pairs + [(one, other) for one in left for other in right], np.int64)
+
+
+def _natural_poses(humanoid: Humanoid) -> Posed:
+    """The avatar standing and walking, at several speeds and phases of the stride."""
+    roots = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
+    roots[:, 3] = np.repeat(_SPEEDS, _PHASES)
+    roots[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
+    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, roots))
+    q = np.concatenate([np.zeros((len(roots), DOF - uppers.shape[1])), uppers], axis=1)
+    poser = Poser(humanoid)
+    return poser.world(*poser.local(q, roots), roots[:, :3])
