@@ -1,0 +1,165 @@
+"""Our planners and a general one on the same crossings: who gets through, how long planning takes, how it looks."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.frame import Frame
+from elbowroom.errors import InputError
+from elbowroom.experiment.bench.general import GeneralPlan, check_installed, plan_generally
+from elbowroom.experiment.bench.general_problem import crossing_problem
+from elbowroom.experiment.crossing import DT, CrossingSettings, controller_for, run_timed_crossing, warm_up
+from elbowroom.experiment.gauntlet.course import make_course
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.planning.command import Command
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.planner import PLANNERS
+from elbowroom.planning.root_path import RootPath
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+GENERAL = "rrt-connect"
+_COURSES = 1000  # of a level among which straight ones are looked for
+
+
+@dataclass(frozen=True)
+class PlannersSettings:
+    """What is compared."""
+
+    scenes: tuple[str, ...] = ("a", "b", "c", "d")
+    levels: tuple[int, ...] = (
+        1,
+        2,
+        3,
+    )  # of gauntlets; courses that wind are left out, the general planner walks straight
+    trials: int = 3  # seeds in a scene, courses of a level
+    limit: float = 30.0  # seconds that a user has to cross, and the general planner to plan
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.trials <= 1000:
+            raise InputError(f"trials {self.trials}: allowed are 1 to 1000")
+        if not 0.0 < self.limit <= 3600.0:
+            raise InputError(f"limit {self.limit:g}: allowed is more than 0, up to 3600 seconds")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One planner on one crossing."""
+
+    where: str
+    planner: str
+    seed: int
+    through: bool  # straight, for ours: never stuck; found, for the general one
+    planning_seconds: float  # all planning of the crossing together
+    longest_plan_ms: float  # the longest wait for one plan
+    touching: int  # of the judge's poses, 240 a second
+    away: float  # radians from the natural walk, root mean square over the upper body's joints and the motion
+    swing: float  # rad/s, mean speed of the upper body
+
+
+@dataclass(frozen=True)
+class PlannersReport:
+    """All runs."""
+
+    settings: PlannersSettings
+    runs: tuple[Run, ...]
+
+    def cells(self) -> Iterator[tuple[str, str, list[Run]]]:
+        """The runs by place and planner, in the order in which they were made."""
+        keys = dict.fromkeys((run.where, run.planner) for run in self.runs)
+        for where, planner in keys:
+            yield where, planner, [run for run in self.runs if (run.where, run.planner) == (where, planner)]
+
+
+def run(settings: PlannersSettings, tick: Callable[[int], None] = lambda _: None) -> PlannersReport:
+    """Every planner on every crossing, one after another. Raises `InputError` where OMPL or coal is missing."""
+    check_installed()
+    humanoid = Humanoid.default()
+    runs: list[Run] = []
+    for where, scene, seed in _crossings(settings):
+        for planner in PLANNERS:
+            runs.append(_ours(humanoid, scene, where, planner, seed, settings.limit))
+            tick(len(runs))
+        runs.append(_general(humanoid, scene, where, seed, settings.limit))
+        tick(len(runs))
+    return PlannersReport(settings, tuple(runs))
+
+
+def amount(settings: PlannersSettings) -> int:
+    """How many runs there will be."""
+    return (len(settings.scenes) + len(settings.levels)) * settings.trials * (len(PLANNERS) + 1)
+
+
+def as_dict(report: PlannersReport) -> dict[str, object]:
+    """Settings and runs."""
+    return {"settings": asdict(report.settings), "runs": [asdict(run) for run in report.runs]}
+
+
+def _crossings(settings: PlannersSettings) -> Iterator[tuple[str, Scene, int]]:
+    for name in settings.scenes:
+        scene = Scene.load(name)
+        for seed in range(settings.trials):
+            yield f"scene {name}", scene, seed
+    for level in settings.levels:
+        yield from ((f"level {level}", scene, seed) for scene, seed in _straight_courses(level, settings.trials))
+
+
+def _straight_courses(level: int, count: int) -> Iterator[tuple[Scene, int]]:
+    for seed in range(_COURSES):
+        course = make_course(level, seed)
+        if course.line.straight:
+            yield course.scene, seed
+            count -= 1
+        if count == 0:
+            return
+    raise InputError(f"level {level}: fewer straight courses among {_COURSES} than asked for")
+
+
+def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int, limit: float) -> Run:
+    # A gauntlet's scene is its seed's; only the user's start and patience vary with a scene's seeds.
+    settings = CrossingSettings(planner=planner, seed=seed if where.startswith("scene") else 0, limit=limit)
+    controller = controller_for(humanoid, scene, settings)
+    warm_up(controller)
+    shown: list[Frame] = []
+
+    def listen(command: Command, dt: float, frame: Frame) -> None:
+        del command, dt
+        shown.append(frame)
+
+    result, times = run_timed_crossing(controller, settings, listen)
+    motion = ShownMotion.at_rate(
+        np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown]), 1.0 / DT
+    )
+    waits = times.plan_ms if len(times.plan_ms) else np.zeros(1)
+    costs = float(waits.sum()) / 1e3, float(waits.max())
+    return _judged(humanoid, scene, motion, (where, planner, seed), result.straight, costs)
+
+
+def _general(humanoid: Humanoid, scene: Scene, where: str, seed: int, limit: float) -> Run:
+    plan: GeneralPlan = plan_generally(humanoid, scene, limit, seed)
+    if not plan.found:
+        return Run(where, GENERAL, seed, False, plan.seconds, 1e3 * plan.seconds, 0, np.nan, np.nan)
+    motion = plan.shown(crossing_problem(humanoid, scene))
+    return _judged(humanoid, scene, motion, (where, GENERAL, seed), True, (plan.seconds, 1e3 * plan.seconds))
+
+
+def _judged(
+    humanoid: Humanoid,
+    scene: Scene,
+    motion: ShownMotion,
+    about: tuple[str, str, int],
+    through: bool,
+    costs: tuple[float, float],
+) -> Run:
+    verdict = judge(motion, humanoid, scene, JudgeSettings(mesh=False))
+    upper = motion.q[:, DofGroup.ROOT.size :]
+    goals = goal_configurations(natural_walk(), RootPath(0.0, DT, motion.roots))
+    away = float(np.sqrt(np.mean((upper - goals) ** 2)))
+    swing = float(np.linalg.norm(np.diff(upper, axis=0), axis=1).mean() / DT)
+    return Run(*about, through, *costs, verdict.capsules.touching, away, swing)
