@@ -9,7 +9,7 @@ import pytest
 import elbowroom
 
 PACKAGE = Path(elbowroom.__file__).parent
-ROOMS = ["geometry", "formats", "body", "world", "planning", "control", "experiment", "server", "cli"]
+ROOMS = ["geometry", "formats", "body", "clips", "world", "planning", "control", "experiment", "server", "cli"]
 FOR_ALL = {"errors", "jit"}
 
 

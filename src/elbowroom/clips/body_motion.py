@@ -1,0 +1,117 @@
+"""How a body moved: one rotation per bone since the T-pose, and where the hips were; free of the file it was in."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.bones import PARENTS
+from elbowroom.clips.figure import Figure
+from elbowroom.formats.takes import Take
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+_GROUNDED = 2.0  # percent of the frames that may be lower than the ground
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """A figure in motion: metres, Y up, its T-pose facing +Z; frames at equal time steps."""
+
+    name: str
+    bones: tuple[str, ...]  # (B,) VRM 1.0 names, parents first, "hips" first
+    rest: Floats  # (B, 3) joint positions in T-pose, the ground at y = 0
+    frame_time: float  # seconds
+    turns: Floats  # (F, B, 4) world rotation of each bone since the T-pose, xyzw
+    hips: Floats  # (F, 3) the hips joint, the ground at y = 0
+    soles: Floats  # (2, 2, 3) heel and toe of the left and the right foot in T-pose, on the ground
+
+    def __len__(self) -> int:
+        return len(self.turns)
+
+    @property
+    def times(self) -> Floats:
+        """Seconds (F,) from the first frame."""
+        times: Floats = np.arange(len(self), dtype=np.float64) * self.frame_time
+        return times
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first frame to the last."""
+        return (len(self) - 1) * self.frame_time
+
+    def index(self, bone: str) -> int:
+        """The place of a bone; raises ValueError where the figure lacks it."""
+        return self.bones.index(bone)
+
+    def turn(self, bone: str) -> Floats:
+        """World rotations (F, 4) of a bone since the T-pose."""
+        turns: Floats = self.turns[:, self.index(bone)]
+        return turns
+
+    def position(self, bone: str) -> Floats:
+        """World positions (F, 3) of a bone's joint, metres."""
+        chain = joint_chain(self.bones, bone)
+        at = self.hips.copy()
+        for above, below in pairwise(chain):
+            step = self.rest[self.index(below)] - self.rest[self.index(above)]
+            at = at + quaternion.rotate(self.turn(above), step)
+        return at
+
+    def sole_points(self) -> Floats:
+        """World positions (F, 2, 2, 3) of heels and toes."""
+        points = np.empty((len(self), 2, 2, 3))
+        for i, side in enumerate(("left", "right")):
+            foot = f"{side}Foot"
+            ankle, turn, rest = self.position(foot), self.turn(foot), self.rest[self.index(foot)]
+            for j in range(2):
+                points[:, i, j] = ankle + quaternion.rotate(turn, self.soles[i, j] - rest)
+        return points
+
+
+def joint_chain(bones: tuple[str, ...], bone: str) -> list[str]:
+    """The bones from the hips to `bone`, those that are present."""
+    chain, above = [bone], PARENTS[bone]
+    while above is not None:
+        if above in bones:
+            chain.append(above)
+        above = PARENTS[above]
+    return chain[::-1]
+
+
+def body_motion(take: Take, figure: Figure, *, floor_known: bool) -> BodyMotion:
+    """The motion of a take's figure.
+
+    `floor_known`: the ground is where the rest pose stands (glTF); otherwise it is where the lowest sole is.
+    """
+    nodes = np.array(list(figure.bones.values()))
+    turns, places = take.world(nodes)
+    to_up = figure.upright
+    turned = quaternion.normalize(quaternion.multiply(to_up, turns))
+    motion = BodyMotion(
+        name=take.name,
+        bones=figure.names,
+        rest=figure.positions,
+        frame_time=take.frame_time,
+        turns=quaternion.multiply(turned, quaternion.conjugate(figure.turns)),
+        hips=figure.unit * quaternion.rotate(to_up, places[:, 0]),
+        soles=figure.soles,
+    )
+    floor = _rest_floor(take, figure) if floor_known else _walked_floor(motion)
+    return BodyMotion(
+        motion.name, motion.bones, motion.rest, motion.frame_time, motion.turns,
+        motion.hips - np.array([0.0, floor, 0.0]), motion.soles,
+    )  # fmt: skip
+
+
+def _walked_floor(motion: BodyMotion) -> float:
+    lowest = motion.sole_points()[..., 1].min(axis=(1, 2))
+    return float(np.percentile(lowest, _GROUNDED)) if len(lowest) else 0.0
+
+
+def _rest_floor(take: Take, figure: Figure) -> float:
+    """Height of the ground in the file, by its rest pose, metres."""
+    hips = take.tree.world_matrices(take.tree.rotations)[figure.bones["hips"], :3, 3]
+    return figure.unit * float(quaternion.rotate(figure.upright, hips)[1]) - figure.hips_height

@@ -1,0 +1,133 @@
+"""Motion files: BVH, the animations of a glTF file, and VRM animations, told apart by their content."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from elbowroom.clips.body_motion import BodyMotion, body_motion
+from elbowroom.clips.bones import bones_of
+from elbowroom.clips.figure import Figure, figure_of
+from elbowroom.clips.told import Told
+from elbowroom.errors import InputError
+from elbowroom.formats.animations import read_animations, take_of
+from elbowroom.formats.bvh import MAX_BYTES, is_bvh, parse_bvh
+from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.takes import Take
+from elbowroom.formats.vrm import read_vrm, read_vrm_animation
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedClip:
+    """One clip of a file, its figure recognised."""
+
+    name: str  # within its file
+    file: str
+    format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
+    figure: Figure
+    motion: BodyMotion
+
+    @property
+    def fps(self) -> float:
+        """Frames a second."""
+        return 1.0 / self.motion.frame_time
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFile:
+    """A file's clips by name; each is read when it is asked for."""
+
+    name: str
+    format: str
+    clips: dict[str, Callable[[], RecordedClip]]
+
+    def clip(self, name: str | None = None) -> RecordedClip:
+        """The clip of this name; without one the only clip. Raises `InputError`."""
+        if name is None and len(self.clips) == 1:
+            name = next(iter(self.clips))
+        if name is None:
+            some = ", ".join(list(self.clips)[:5])
+            raise InputError(
+                f"{self.name} holds {len(self.clips)} clips: choose one with {self.name}#NAME ({some}, ...)"
+            )
+        if name not in self.clips:
+            some = ", ".join(list(self.clips)[:60])
+            raise InputError(f"{self.name} holds no clip {name[:60]!r}; there are {some}")
+        return self.clips[name]()
+
+
+def open_motion(path: Path, told: Told | None = None) -> MotionFile:
+    """Open a motion file; raises `InputError`."""
+    try:
+        if path.stat().st_size > 8 * MAX_BYTES:
+            raise InputError(f"{path.name} is larger than {8 * MAX_BYTES >> 20} MB")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
+    except ValueError:
+        raise InputError(f"{str(path)!r} is not a file name") from None
+    return parse_motion(data, path.name, told, path.parent)
+
+
+def parse_motion(data: bytes, name: str, told: Told | None = None, folder: Path | None = None) -> MotionFile:
+    """Read the bytes of a motion file; `folder` is where a glTF may have its buffers. Raises `InputError`."""
+    told = told or Told()
+    if data[:4] == b"glTF" or data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
+        return _from_gltf(parse_gltf(data, name, folder), told)
+    if not is_bvh(data):
+        shown = data[:16].decode("latin-1")
+        raise InputError(f"{name} begins with {shown!r}: it is neither BVH (HIERARCHY) nor glTF, GLB or VRMA")
+    return _from_bvh(data, name, told)
+
+
+def _from_bvh(data: bytes, name: str, told: Told) -> MotionFile:
+    take = _at_rate(parse_bvh(data, name).take(), told)
+    if not len(take):
+        raise InputError(f"{name} holds no frames: it is a skeleton without motion")
+
+    def clip() -> RecordedClip:
+        figure = figure_of(take, bones_of(take.tree, name), told, name)
+        return RecordedClip(take.name, name, "BVH", figure, body_motion(take, figure, floor_known=False))
+
+    return MotionFile(name, "BVH", {take.name: clip})
+
+
+def _from_gltf(gltf: Gltf, told: Told) -> MotionFile:
+    tree = read_nodes(gltf)
+    animations = read_animations(gltf, len(tree))
+    if not animations:
+        raise InputError(f"{gltf.name} holds no animation of nodes")
+    vrma = read_vrm_animation(gltf, len(tree))
+    vrm = read_vrm(gltf, len(tree))
+    kind = "glTF 2.0" if vrma is None else "VRM animation 1.0"
+    named = vrma or (vrm.bones if vrm else None)
+
+    def clip(index: int, name: str) -> RecordedClip:
+        place = f"{gltf.name}#{name}"
+        take = _at_rate(take_of(animations[index], tree, place), told)
+        bones = bones_of(tree, gltf.name, named)
+        figure = figure_of(take, bones, told, place, t_posed=vrma is not None, metric=True)
+        return RecordedClip(name, gltf.name, kind, figure, body_motion(take, figure, floor_known=True))
+
+    names = _distinct([animation.name for animation in animations])
+    return MotionFile(gltf.name, kind, {name: _bound(clip, i, name) for i, name in enumerate(names)})
+
+
+def _bound(clip: Callable[[int, str], RecordedClip], index: int, name: str) -> Callable[[], RecordedClip]:
+    return lambda: clip(index, name)
+
+
+def _distinct(names: list[str]) -> list[str]:
+    """The names, numbered where one occurs again."""
+    seen: dict[str, int] = {}
+    result = []
+    for name in names:
+        seen[name] = seen.get(name, 0) + 1
+        result.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return result
+
+
+def _at_rate(take: Take, told: Told) -> Take:
+    if told.fps is None:
+        return take
+    return Take(take.name, take.tree, 1.0 / told.fps, take.rotations, take.translations)

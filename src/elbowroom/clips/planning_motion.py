@@ -1,0 +1,67 @@
+"""A recorded motion in the terms of planning: root states with their gait phase, configurations of the upper body."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.bones import SPINE
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
+from elbowroom.clips.body_motion import BodyMotion
+from elbowroom.clips.root_track import RootTrack, in_root_frame, root_track
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+_SIDES = {DofGroup.LEFT_ARM: "left", DofGroup.RIGHT_ARM: "right"}
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningMotion:
+    """What planning keeps of a motion, and what it loses."""
+
+    name: str
+    frame_time: float  # seconds
+    track: RootTrack  # root states (F, 7) and strides
+    groups: dict[DofGroup, Floats]  # (F, size) of each local group, within the limits
+    trunk_error: Floats  # (F,) radians between the chest and what bend and twist make of it
+    arm_error: Floats  # (F, 4) radians between the directions of left upper arm, forearm, right ...; and theirs
+
+    def __len__(self) -> int:
+        return len(self.track.states)
+
+
+def planning_motion(motion: BodyMotion) -> PlanningMotion:
+    """Bring a motion to the planning degrees of freedom."""
+    track = root_track(motion)
+    turns, hips = in_root_frame(motion, track.states)
+    chest = turns[:, motion.index(next(bone for bone in reversed(SPINE) if bone in motion.bones))]
+    waist = _waist(motion, chest, hips)
+    planned = chest_rotation(waist)
+    groups, errors = {DofGroup.WAIST: waist}, []
+    back = quaternion.conjugate(planned)
+    for group, side in _SIDES.items():
+        upper = quaternion.multiply(back, turns[:, motion.index(f"{side}UpperArm")])
+        lower = quaternion.multiply(back, turns[:, motion.index(f"{side}LowerArm")])
+        groups[group] = clamp(group, arm_angles(upper, lower, side))
+        outwards = np.array([1.0 if side == "left" else -1.0, 0.0, 0.0])
+        for rotation, direction in zip((upper, lower), arm_directions(groups[group], side), strict=True):
+            errors.append(_angle(quaternion.rotate(rotation, outwards), direction))
+    trunk_error = np.linalg.norm(quaternion.to_rotation_vector(quaternion.multiply(back, chest)), axis=1)
+    return PlanningMotion(motion.name, motion.frame_time, track, groups, trunk_error, np.stack(errors, axis=1))
+
+
+def _waist(motion: BodyMotion, chest: Floats, hips: Floats) -> Floats:
+    del motion, hips
+    return clamp(DofGroup.WAIST, waist_angles(chest))
+
+
+def upper_body(motion: PlanningMotion) -> Floats:
+    """The local groups side by side: waist, left arm, right arm."""
+    return np.concatenate([motion.groups[group] for group in LOCAL_GROUPS], axis=1)
+
+
+def _angle(a: Floats, b: Floats) -> Floats:
+    angles: Floats = np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
+    return angles
