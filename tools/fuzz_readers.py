@@ -38,8 +38,42 @@ def glb_reader() -> Reader:
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words)
 
 
+def bvh_reader() -> Reader:
+    """BVH files, down to the motion in planning's terms."""
+    from bvh_builder import BvhRecipe, random_motion, write_bvh
+    from elbowroom.clips.files import parse_motion
+    from elbowroom.clips.planning_motion import planning_motion
+
+    motion = random_motion(np.random.default_rng(0), 4)
+    recipes = (BvhRecipe(), BvhRecipe(unit=1.0, order="YZX", all_positions=True, crlf=True))
+    words = (b"JOINT x {", b"End Site {", b"}", b"OFFSET 1e9 nan 0", b"CHANNELS 6", b"MOTION", b"Frames: 9999999", b"-")
+    return Reader(
+        lambda data: planning_motion(parse_motion(data, "fuzz.bvh").clip().motion),
+        tuple(write_bvh(motion, recipe) for recipe in recipes),
+        words,
+    )
+
+
+def animation_reader() -> Reader:
+    """Animations in GLB and VRM animations."""
+    from animation_builder import animated_glb
+    from elbowroom.clips.files import parse_motion
+    from elbowroom.clips.planning_motion import planning_motion
+
+    words = (b'"count":1e9', b'"interpolation":"STEP"', b'"node":-1', b'"path":"rotation"', b"null", b"[[[[", b"1e308")
+
+    def read(data: bytes) -> None:
+        library = parse_motion(data, "fuzz.glb")
+        for name in library.clips:
+            planning_motion(library.clip(name).motion)
+
+    return Reader(read, (animated_glb(), animated_glb(vrma=True), animated_glb(mode="CUBICSPLINE")), words)
+
+
 READERS: dict[str, Callable[[], Reader]] = {
     "glb": glb_reader,
+    "bvh": bvh_reader,
+    "animation": animation_reader,
 }
 
 

@@ -1,19 +1,21 @@
 """How a body moved: one rotation per bone since the T-pose, and where the hips were; free of the file it was in."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import PARENTS
+from elbowroom.body.skeleton import Skeleton
 from elbowroom.clips.figure import Figure
+from elbowroom.clips.floor import plane_below
 from elbowroom.formats.takes import Take
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
 
-_GROUNDED = 2.0  # percent of the frames that may be lower than the ground
+_JUMP, _TIMES = 0.25, 8.0  # radians that some joint turns by, and times the usual step: more is no motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +43,12 @@ class BodyMotion:
     def duration(self) -> float:
         """Seconds from the first frame to the last."""
         return (len(self) - 1) * self.frame_time
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The figure in T-pose."""
+        parents = [-1, *(self.index(joint_chain(self.bones, bone)[-2]) for bone in self.bones[1:])]
+        return Skeleton(self.bones, np.array(parents, dtype=np.int64), self.rest)
 
     def index(self, bone: str) -> int:
         """The place of a bone; raises ValueError where the figure lacks it."""
@@ -100,18 +108,32 @@ def body_motion(take: Take, figure: Figure, *, floor_known: bool) -> BodyMotion:
         soles=figure.soles,
     )
     floor = _rest_floor(take, figure) if floor_known else _walked_floor(motion)
-    return BodyMotion(
-        motion.name, motion.bones, motion.rest, motion.frame_time, motion.turns,
-        motion.hips - np.array([0.0, floor, 0.0]), motion.soles,
-    )  # fmt: skip
+    return without_calibration(replace(motion, hips=motion.hips - floor))
 
 
-def _walked_floor(motion: BodyMotion) -> float:
-    lowest = motion.sole_points()[..., 1].min(axis=(1, 2))
-    return float(np.percentile(lowest, _GROUNDED)) if len(lowest) else 0.0
-
-
-def _rest_floor(take: Take, figure: Figure) -> float:
-    """Height of the ground in the file, by its rest pose, metres."""
+def _rest_floor(take: Take, figure: Figure) -> Floats:
+    """The ground in the file, by its rest pose: (3,) metres."""
     hips = take.tree.world_matrices(take.tree.rotations)[figure.bones["hips"], :3, 3]
-    return figure.unit * float(quaternion.rotate(figure.upright, hips)[1]) - figure.hips_height
+    height = figure.unit * float(quaternion.rotate(figure.upright, hips)[1]) - figure.hips_height
+    return np.array([0.0, height, 0.0])
+
+
+def _walked_floor(motion: BodyMotion) -> Floats:
+    """The ground under the hips (F, 3), so that the lowest soles stand on it: captured floors are seldom level."""
+    if not len(motion):
+        return np.zeros(3)
+    soles = motion.sole_points().reshape(len(motion), -1, 3)
+    lowest = soles[np.arange(len(soles)), soles[..., 1].argmin(axis=1)]
+    floor = np.zeros_like(motion.hips)
+    floor[:, 1] = plane_below(lowest, motion.hips)
+    return floor
+
+
+def without_calibration(motion: BodyMotion) -> BodyMotion:
+    """The motion without a first frame that is a pose by itself: many recordings begin with one in the T-pose."""
+    if len(motion) < 4:
+        return motion
+    steps = quaternion.angle_between(motion.turns[1:6], motion.turns[:5]).max(axis=1)
+    if steps[0] < _JUMP or steps[0] < _TIMES * float(np.median(steps[1:])):
+        return motion
+    return replace(motion, turns=motion.turns[1:], hips=motion.hips[1:])

@@ -1,14 +1,43 @@
 """Which node of a motion file is which bone."""
 
-from collections.abc import Mapping
+from dataclasses import replace
 
-from elbowroom.body.bone_names import bones_by_name, checked_bones
-from elbowroom.formats.nodes import NodeTree
+import numpy as np
+
+from elbowroom.body.bone_mapping.file_nodes import FileNodes
+from elbowroom.body.bone_mapping.mapping import map_bones
+from elbowroom.body.bone_mapping.structure import CheckedBones, checked_bones
+from elbowroom.body.file_bones import file_nodes
+from elbowroom.body.rig_repair import repaired
+from elbowroom.formats.gltf import Gltf
+from elbowroom.formats.nodes import NodeTree, read_nodes
+from elbowroom.geometry import quaternion
+
+# Where the shape of the tree has to tell the bones it must stand upright; who knows which axis of a BVH file is up.
+_STANDS = (quaternion.IDENTITY, quaternion.about_axis(0, -0.5 * np.pi), quaternion.about_axis(2, 0.5 * np.pi))
 
 
-def bones_of(tree: NodeTree, place: str, named: Mapping[str, int] | None = None) -> dict[str, int]:
-    """The bones of a skeleton, parents first; `named` are those that the file itself names.
+def bvh_bones(tree: NodeTree, place: str) -> dict[str, int]:
+    """The bones of a BVH skeleton, parents first; raises `InputError` where one that is needed is missing."""
+    places = tree.world_matrices(tree.rotations)[:, :3, 3]
+    stood = [FileNodes(tree.names, tree.parents, quaternion.rotate(turn, places)) for turn in _STANDS]
+    nodes, mapping = min(((nodes, map_bones(nodes)) for nodes in stood), key=lambda pair: len(pair[1].missing))
+    return checked_bones(mapping.nodes, nodes, place, strict=True).nodes
+
+
+def gltf_bones(gltf: Gltf, tree: NodeTree, named: dict[str, int] | None) -> tuple[NodeTree, dict[str, int]]:
+    """The bones of a glTF skeleton, `named` by the file itself or found, and the tree with hands and feet it lacked.
 
     Raises `InputError` where one that is needed is missing.
     """
-    return checked_bones(named or bones_by_name(tree, ()), tree, place)[0]
+    nodes = file_nodes(gltf, tree)
+    if named is not None:
+        return tree, checked_bones(named, nodes, gltf.name, strict=True).nodes
+    checked = checked_bones(map_bones(nodes).nodes, nodes, gltf.name, strict=False)
+    mended, bones, _ = repaired(gltf, tree, _without_detached(checked))
+    return (tree if mended is gltf else read_nodes(mended)), bones
+
+
+def _without_detached(bones: CheckedBones) -> CheckedBones:
+    """Arms that hang beside the spine may do so in a motion: only where bones are in the world is looked at."""
+    return replace(bones, detached={})

@@ -24,6 +24,8 @@ _ANY_HUMAN = (0.6, 2.5)
 _TYPICAL = 1.5  # where no unit fits
 _UPRIGHT = 0.7  # cosine: so near to an axis is meant to be it
 _WATCHED = 200  # frames that are looked at to see where up is
+_ENDS = ("end", "nub", "site")  # how the names of end sites end
+_SUNK, _RAISED = 0.03, 0.12  # of the head joint's height: so near to its zero a file's lowest joint stands on it
 _ANKLE = 0.045  # of the leg: how high the ankle joint is above the sole, where nothing below it shows
 
 
@@ -35,7 +37,7 @@ class Figure:
     turns: Floats  # (B, 4) world rotations of the bones' nodes in T-pose
     positions: Floats  # (B, 3) metres, the sole at y = 0
     soles: Floats  # (2, 2, 3) heel and toe of the left and the right foot on the ground, T-pose
-    upright: Floats  # (4,) rotation from the file's axes to Y up
+    upright: Floats  # (4,) rotation from the file's axes to Y up; of a glTF, whose rest pose shows it, to +Z ahead too
     up: str  # the file's axis that points up: "y", "z", "-x", ...
     unit: float  # metres per unit of the file
     unit_name: str  # "cm", "inch", ...; "body" where the unit is none of the usual ones and was taken from the height
@@ -69,7 +71,7 @@ def figure_of(
     `t_posed`: the rest pose is the T-pose by the format's rule. `metric`: the format counts in metres with Y up (glTF).
     Raises `InputError` where the skeleton has not the shape of a human.
     """
-    tree = take.tree if t_posed else _standing(take, bones, place)
+    tree, stood = (take.tree, quaternion.IDENTITY) if t_posed else _standing(take, bones, place)
     rotations = tree.rotations if t_posed else t_pose(tree, bones, 0.0)
     nodes = np.array(list(bones.values()))
     positions = tree.world_matrices(rotations)[:, :3, 3]
@@ -78,15 +80,18 @@ def figure_of(
     if not np.isfinite(head) or head < 1e-6:
         raise InputError(f"{place}: the head is not above the feet: that is no standing humanoid")
     unit, unit_name = _unit(head, told, metric)
-    up = told.up.lower() if told.up else "y" if metric else _up_axis(take, bones)
+    if metric and told.up is None:
+        upright = stood
+    else:
+        upright = quaternion.between(_axis(told.up.lower() if told.up else _up_axis(take, bones)), [0.0, 1.0, 0.0])
     ground = np.array([0.0, floor, 0.0])
     return Figure(
         bones=bones,
         turns=tree.world_rotations(rotations)[nodes],
         positions=unit * (positions[nodes] - ground),
         soles=unit * (soles - ground),
-        upright=quaternion.between(_axis(up), [0.0, 1.0, 0.0]),
-        up=up,
+        upright=upright,
+        up=_axis_name(quaternion.rotate(quaternion.conjugate(upright), [0.0, 1.0, 0.0])),
         unit=unit,
         unit_name=unit_name,
     )
@@ -98,8 +103,17 @@ def _axis(name: str) -> Floats:
     return axis
 
 
-def _standing(take: Take, bones: Mapping[str, int], place: str) -> NodeTree:
-    """The rest pose stood upright, facing +Z; if it has not the shape of a human, the first frame instead."""
+def _axis_name(direction: Floats) -> str:
+    """The axis nearest to a direction."""
+    k = int(np.argmax(np.abs(direction)))
+    return ("-" if direction[k] < 0.0 else "") + "xyz"[k]
+
+
+def _standing(take: Take, bones: Mapping[str, int], place: str) -> tuple[NodeTree, Floats]:
+    """The rest pose stood upright, facing +Z, and how it was turned.
+
+    If it has not the shape of a human, the first frame is taken instead. Raises `InputError` if that has not either.
+    """
     frames = [(take.tree.rotations, take.tree.translations)]
     if len(take):
         frames.append((take.rotations[0], take.translations[0]))
@@ -111,7 +125,7 @@ def _standing(take: Take, bones: Mapping[str, int], place: str) -> NodeTree:
             stood = _turned(tree, turn)
             matrices = stood.world_matrices(stood.rotations)
             facing_of({bone: matrices[node, :3, 3] for bone, node in bones.items()}, place)
-            return stood
+            return stood, turn
     raise InputError(f"{place}: neither the rest pose nor the first frame shows a human that stands upright")
 
 
@@ -167,9 +181,8 @@ def _up_axis(take: Take, bones: Mapping[str, int]) -> str:
         spines.insert(0, (at[:, 1] - at[:, 0]).mean(axis=0))
     for spine in spines:
         length = float(np.linalg.norm(spine))
-        k = int(np.argmax(np.abs(spine)))
-        if length > 0.0 and abs(spine[k]) >= _UPRIGHT * length:
-            return ("-" if spine[k] < 0.0 else "") + "xyz"[k]
+        if length > 0.0 and np.abs(spine).max() >= _UPRIGHT * length:
+            return _axis_name(spine)
     return "y"
 
 
@@ -190,10 +203,14 @@ def _unit(head: float, told: Told, metric: bool) -> tuple[float, str]:
 def _soles(tree: NodeTree, bones: Mapping[str, int], positions: Floats) -> tuple[float, Floats]:
     """Height of the ground under a T-pose (Y up), and heel and toe of both feet on it, (2, 2, 3)."""
     leg = float(positions[bones["hips"], 1]) - float(positions[bones["leftFoot"], 1])
-    below = {side: _below(tree, bones[f"{side}Foot"]) for side in ("left", "right")}
+    below = {side: _of_foot(tree, bones, side) for side in ("left", "right")}
     lowest = min(float(positions[nodes, 1].min()) for nodes in below.values())
     ankle = min(float(positions[bones[f"{side}Foot"], 1]) for side in below)
-    floor = min(lowest, ankle - _ANKLE * leg)
+    head = float(positions[bones["head"], 1])
+    if -_SUNK * head <= lowest <= _RAISED * head:  # the file itself stands on the ground
+        floor = min(lowest, 0.0)
+    else:
+        floor = min(lowest, ankle - _ANKLE * leg)
     soles = np.empty((2, 2, 3))
     for i, (side, nodes) in enumerate(below.items()):
         at = positions[bones[f"{side}Foot"]]
@@ -202,10 +219,8 @@ def _soles(tree: NodeTree, bones: Mapping[str, int], positions: Floats) -> tuple
     return floor, soles
 
 
-def _below(tree: NodeTree, node: int) -> list[int]:
-    """A node and all that hangs on it."""
-    found = {node}
-    for other in map(int, tree.order):
-        if int(tree.parents[other]) in found:
-            found.add(other)
-    return sorted(found)
+def _of_foot(tree: NodeTree, bones: Mapping[str, int], side: str) -> list[int]:
+    """The joints of a foot and its end sites; other nodes that hang on it may be anything."""
+    nodes = [bones[f"{side}{bone}"] for bone in ("Foot", "Toes") if f"{side}{bone}" in bones]
+    ends = [n for n in map(int, tree.order) if tree.names[n].lower().endswith(_ENDS) and nodes[0] in tree.ancestors(n)]
+    return nodes + ends

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.clips.body_motion import BodyMotion, body_motion
-from elbowroom.clips.bones import bones_of
+from elbowroom.clips.bones import bvh_bones, gltf_bones
 from elbowroom.clips.figure import Figure, figure_of
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
@@ -86,7 +86,7 @@ def _from_bvh(data: bytes, name: str, told: Told) -> MotionFile:
         raise InputError(f"{name} holds no frames: it is a skeleton without motion")
 
     def clip() -> RecordedClip:
-        figure = figure_of(take, bones_of(take.tree, name), told, name)
+        figure = figure_of(take, bvh_bones(take.tree, name), told, name)
         return RecordedClip(take.name, name, "BVH", figure, body_motion(take, figure, floor_known=False))
 
     return MotionFile(name, "BVH", {take.name: clip})
@@ -104,8 +104,8 @@ def _from_gltf(gltf: Gltf, told: Told) -> MotionFile:
 
     def clip(index: int, name: str) -> RecordedClip:
         place = f"{gltf.name}#{name}"
-        take = _at_rate(take_of(animations[index], tree, place), told)
-        bones = bones_of(tree, gltf.name, named)
+        whole, bones = gltf_bones(gltf, tree, named)
+        take = _at_rate(take_of(animations[index], whole, place), told)
         figure = figure_of(take, bones, told, place, t_posed=vrma is not None, metric=True)
         return RecordedClip(name, gltf.name, kind, figure, body_motion(take, figure, floor_known=True))
 

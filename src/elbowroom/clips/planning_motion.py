@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
-from elbowroom.clips.root_track import RootTrack, in_root_frame, root_track
+from elbowroom.clips.root_track import RootTrack, root_track, seen_from_root
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
@@ -35,9 +36,9 @@ class PlanningMotion:
 def planning_motion(motion: BodyMotion) -> PlanningMotion:
     """Bring a motion to the planning degrees of freedom."""
     track = root_track(motion)
-    turns, hips = in_root_frame(motion, track.states)
+    turns = seen_from_root(motion, track.states)
     chest = turns[:, motion.index(next(bone for bone in reversed(SPINE) if bone in motion.bones))]
-    waist = _waist(motion, chest, hips)
+    waist = _waist(motion, chest, track.states)
     planned = chest_rotation(waist)
     groups, errors = {DofGroup.WAIST: waist}, []
     back = quaternion.conjugate(planned)
@@ -52,9 +53,12 @@ def planning_motion(motion: BodyMotion) -> PlanningMotion:
     return PlanningMotion(motion.name, motion.frame_time, track, groups, trunk_error, np.stack(errors, axis=1))
 
 
-def _waist(motion: BodyMotion, chest: Floats, hips: Floats) -> Floats:
-    del motion, hips
-    return clamp(DofGroup.WAIST, waist_angles(chest))
+def _waist(motion: BodyMotion, chest: Floats, states: Floats) -> Floats:
+    """Bend, twist and lowering (F, 3): how far the hips are below where the walking cycle has them."""
+    gait = gait_shape(motion.skeleton)
+    _, drops = foot_poses(gait.legs, gait.scale, states)
+    lowering = (motion.rest[0, 1] - motion.hips[:, 1] - drops) / gait.half_leg
+    return clamp(DofGroup.WAIST, np.concatenate([waist_angles(chest), lowering[:, None]], axis=1))
 
 
 def upper_body(motion: PlanningMotion) -> Floats:

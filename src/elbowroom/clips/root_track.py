@@ -48,11 +48,9 @@ def hips_heading(motion: BodyMotion) -> Floats:
     return np.unwrap(2.0 * np.arctan2(turn[:, 1], turn[:, 3]))
 
 
-def in_root_frame(motion: BodyMotion, states: Floats) -> tuple[Floats, Floats]:
-    """Turns (F, B, 4) and hips (F, 3) seen from the root."""
-    back = quaternion.about_axis(1, -states[:, 2])
-    moved = motion.hips - np.stack([states[:, 0], np.zeros(len(states)), states[:, 1]], axis=1)
-    return quaternion.multiply(back[:, None], motion.turns), quaternion.rotate(back, moved)
+def seen_from_root(motion: BodyMotion, states: Floats) -> Floats:
+    """The turns (F, B, 4) of all bones in the axes of the root."""
+    return quaternion.multiply(quaternion.about_axis(1, -states[:, 2])[:, None], motion.turns)
 
 
 def _smooth(values: Floats, frame_time: float) -> Floats:

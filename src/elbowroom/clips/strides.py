@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from elbowroom.clips.body_motion import BodyMotion
+from elbowroom.geometry.quaternion import angle_between
 
 Floats = NDArray[np.float64]
 
@@ -60,21 +61,14 @@ def loop_frames(motion: BodyMotion) -> int:
     if len(motion) < 8:
         return 0
     turns = motion.turns
-    last = float(np.abs(_difference(turns[-1], turns[0])).mean())
-    steps = np.abs(_difference(turns[1:], turns[:-1])).mean(axis=1)
-    step, spread = float(np.median(steps)), float(np.abs(_difference(turns, turns[:1])).mean(axis=1).max())
+    last = float(angle_between(turns[-1], turns[0]).mean())
+    step = float(np.median(angle_between(turns[1:], turns[:-1]).mean(axis=1)))
+    spread = float(angle_between(turns, turns[:1]).mean(axis=1).max())
     if last > 0.25 * spread:
         return 0
     if last <= 0.3 * step:
         return len(motion) - 1
     return len(motion) if last <= 1.6 * step else 0
-
-
-def _difference(a: Floats, b: Floats) -> Floats:
-    """Angles between rotations, radians."""
-    cosine = np.clip(np.abs(np.sum(a * b, axis=-1)), 0.0, 1.0)
-    angles: Floats = 2.0 * np.arccos(cosine)
-    return angles
 
 
 def _ahead(motion: BodyMotion, heading: Floats, side: str) -> Floats:
@@ -129,6 +123,7 @@ def _ground_speed(motion: BodyMotion, ahead: Floats) -> float:
     speeds = []
     for side, row in zip(("left", "right"), ahead, strict=True):
         height = motion.position(f"{side}Foot")[:, 1]
-        low = height <= height.min() + _LOW * max(float(np.ptp(height)), 1e-6)
+        down, up = np.percentile(height, [5.0, 95.0])
+        low = height <= down + _LOW * max(float(up - down), 1e-6)
         speeds.append(-np.gradient(row, motion.frame_time)[low])
     return max(float(np.median(np.concatenate(speeds))), 0.0)

@@ -84,6 +84,12 @@ def _direction(v: ArrayLike) -> Floats:
     return direction
 
 
+def angle_between(a: ArrayLike, b: ArrayLike) -> Floats:
+    """The angle (...) in radians of the rotation from `a` to `b`, at most pi."""
+    angle: Floats = np.linalg.norm(to_rotation_vector(multiply(conjugate(a), b)), axis=-1)
+    return angle
+
+
 def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> Floats:
     """Spherical interpolation along the shorter arc; `t` (...) in [0, 1]."""
     step = to_rotation_vector(multiply(conjugate(a), b))
