@@ -9,6 +9,7 @@ from elbowroom.body.bone_mapping.mapping import OVERRIDE, map_bones
 from elbowroom.body.bone_mapping.override import override_nodes
 from elbowroom.body.bone_mapping.structure import checked_bones
 from elbowroom.body.bones import PARENTS
+from elbowroom.body.hanim_names import NamedBones
 from elbowroom.body.humanoid import BoneSource
 from elbowroom.body.rig_repair import repaired
 from elbowroom.formats.fields import Field
@@ -31,11 +32,17 @@ class FileBones:
     notes: tuple[str, ...]
 
 
-def file_bones(gltf: Gltf, tree: NodeTree, vrm: Vrm | None, override: Field | None) -> FileBones:
-    """Find, check and repair; raises `InputError`."""
+def file_bones(
+    gltf: Gltf, tree: NodeTree, vrm: Vrm | None, override: Field | None, hanim: NamedBones | None = None
+) -> FileBones:
+    """Find, check and repair; `hanim` are the bones that an H-Anim file names. Raises `InputError`."""
     nodes = file_nodes(gltf, tree)
     chosen = {} if override is None else override_nodes(override, nodes)
-    if vrm is None:
+    if hanim is not None and hanim.is_humanoid:
+        found = {bone: node for bone, node in hanim.nodes.items() if bone not in chosen}
+        found |= {bone: node for bone, node in chosen.items() if node is not None}
+        how = {bone: OVERRIDE if bone in chosen else hanim.found_by[bone] for bone in found}
+    elif vrm is None:
         mapping = map_bones(nodes, chosen)
         found, how = mapping.nodes, mapping.how
     else:

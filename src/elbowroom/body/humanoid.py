@@ -45,7 +45,7 @@ class Humanoid:
 
     @classmethod
     def load(cls, path: str | Path, settings: LoadSettings | None = None) -> "Humanoid":
-        """Read a VRM 0.x, VRM 1.0 or glTF/GLB humanoid.
+        """Read a VRM 0.x, VRM 1.0, glTF/GLB or H-Anim (X3D, VRML97) humanoid.
 
         Raises `InputError` if the file cannot be read or holds no humanoid.
         """

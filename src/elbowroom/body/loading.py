@@ -12,6 +12,7 @@ from elbowroom.body.file_bones import file_bones
 from elbowroom.body.fitting import BodyPoints, fit_capsules
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
 from elbowroom.body.load_settings import LoadSettings
+from elbowroom.body.loading_hanim import HanimAsset, parse_hanim, read_hanim
 from elbowroom.body.proportions import proportional_capsules
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.body.surface import body_points
@@ -20,18 +21,22 @@ from elbowroom.formats.gltf import Gltf, parse_gltf, read_gltf
 from elbowroom.formats.meshes import SurfacePoints, compression, surface_points
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.formats.packing import pack_glb
-from elbowroom.formats.vrm import read_vrm
+from elbowroom.formats.vrm import Vrm, read_vrm
+from elbowroom.formats.x3d.files import SUFFIXES, is_x3d
 
 _ASKED = 1e-3  # relative difference of heights that is none
 
 
 def load_humanoid(path: Path, settings: LoadSettings | None = None) -> Humanoid:
-    """Read a VRM 0.x, VRM 1.0 or glTF/GLB humanoid; raises `InputError`."""
+    """Read a VRM 0.x, VRM 1.0, glTF/GLB or H-Anim (X3D, VRML97) humanoid; raises `InputError`."""
     return load_with_surface(path, settings)[0]
 
 
 def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     """The same for the bytes of a file that was sent to us; it must not refer to other files."""
+    if is_x3d(data):
+        hanim = parse_hanim(data, name)
+        return _humanoid(hanim.gltf, None, None, LoadSettings(), hanim)[0]
     return _humanoid(parse_gltf(data, name), None, None, LoadSettings())[0]
 
 
@@ -39,15 +44,19 @@ def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple
     """The humanoid and the points of its own surface (None without a readable mesh), to judge its capsules by."""
     chosen = settings or LoadSettings()
     beside = chosen.bones or override_beside(path)
-    return _humanoid(read_gltf(path), path, None if beside is None else read_override(beside), chosen)
+    override = None if beside is None else read_override(beside)
+    if path.name.lower().endswith(SUFFIXES):
+        hanim = read_hanim(path)
+        return _humanoid(hanim.gltf, path, override, chosen, hanim)
+    return _humanoid(read_gltf(path), path, override, chosen)
 
 
 def _humanoid(
-    gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings
+    gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings, hanim: HanimAsset | None = None
 ) -> tuple[Humanoid, BodyPoints | None]:
     tree = read_nodes(gltf)
     vrm = read_vrm(gltf, len(tree))
-    bones = file_bones(gltf, tree, vrm, override)
+    bones = file_bones(gltf, tree, vrm, override, hanim.bones if hanim else None)
     figure = figure_of(gltf.name, bones.tree, bones.nodes, vrm.facing if vrm else None)
     surface, surface_notes = _surface(bones.gltf, bones.tree)
     springs = vrm.spring_nodes if vrm else frozenset()
@@ -58,16 +67,20 @@ def _humanoid(
         points = BodyPoints(rig.to_model(points.positions), points.joints)
     capsules, capsule_notes = _capsules(skeleton, points)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
-    meta = AvatarMeta(
+    told = hanim.meta if hanim else _meta(gltf, vrm)
+    meta = replace(told, notes=told.notes + bones.notes + unit + surface_notes + capsule_notes, bones=bones.sources)
+    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(bones.gltf))
+    return (humanoid, points) if settings.height is None else _scaled(humanoid, points, settings.height)
+
+
+def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
+    """What a VRM or glTF file says about itself."""
+    return AvatarMeta(
         title=vrm.title if vrm else "",
         authors=vrm.authors if vrm else (),
         licence=vrm.licence if vrm else gltf.root.at("asset").at("copyright").text(),
         format=vrm.version if vrm else "glTF 2.0",
-        notes=bones.notes + unit + surface_notes + capsule_notes,
-        bones=bones.sources,
     )
-    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(bones.gltf))
-    return (humanoid, points) if settings.height is None else _scaled(humanoid, points, settings.height)
 
 
 def _surface(gltf: Gltf, tree: NodeTree) -> tuple[SurfacePoints | None, tuple[str, ...]]:

@@ -82,7 +82,7 @@ class AvatarStore:
         from elbowroom.body.loading import load_humanoid_bytes
 
         humanoid = load_humanoid_bytes(data, name)
-        avatar = self._stored(secrets.token_hex(8), humanoid, data)
+        avatar = self._stored(secrets.token_hex(8), humanoid)
         with self._lock:
             self._uploads[avatar.id] = avatar
             while len(self._uploads) > 1 and self._too_many():
@@ -95,17 +95,15 @@ class AvatarStore:
         return len(self._uploads) > MAX_UPLOADS or sum(sizes) > MAX_UPLOADED
 
     def _keep(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
-        avatar = self._stored(avatar_id, humanoid, humanoid.source)
+        avatar = self._stored(avatar_id, humanoid)
         with self._lock:
             return self._kept.setdefault(avatar_id, avatar)
 
-    def _stored(self, avatar_id: str, humanoid: Humanoid, source: Path | bytes | None) -> StoredAvatar:
-        if source is None:
+    def _stored(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
+        if humanoid.glb is None:
             return StoredAvatar(avatar_id, humanoid, None)
-        from elbowroom.formats.packing import as_glb
-
         path = Path(self._folder.name) / f"{avatar_id}.glb"
-        path.write_bytes(as_glb(source))
+        path.write_bytes(humanoid.glb)
         return StoredAvatar(avatar_id, humanoid, path)
 
 

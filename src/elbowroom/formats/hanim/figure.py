@@ -1,0 +1,268 @@
+"""The humanoid of an X3D or VRML97 file as a glTF under construction, with its joints' names.
+
+H-Anim gives joints their places by `center`, in the coordinates of the whole figure, and rotations about them; glTF
+gives each node a place relative to its parent. A joint therefore becomes a node at its center, and what hangs on it is
+moved back by that center. The figure stands in H-Anim's default pose, in which all joints are unturned.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.formats.glb_draft import GlbDraft
+from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.hanim.skin import skin_weights
+from elbowroom.formats.x3d.expand import MAX_NODES, expand
+from elbowroom.formats.x3d.files import Library, parse_x3d, read_bytes
+from elbowroom.formats.x3d.looks import Looks, linear_colours
+from elbowroom.formats.x3d.mesh import Mesh
+from elbowroom.formats.x3d.model import Node, Nodes, Notes, X3dScene
+from elbowroom.formats.x3d.parts import shown_parts
+from elbowroom.formats.x3d.placing import TRANSFORMS, placing_of
+from elbowroom.formats.x3d.shapes import triangles_of
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+_MAX_VERTICES = 2_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """An HAnimJoint and the glTF node that it became."""
+
+    node: int
+    name: str  # its `name`, "" if the file gives none
+    definition: str  # its DEF name
+    centre: Floats  # (3,) in the coordinates of the humanoid
+
+
+@dataclass(frozen=True, eq=False)
+class HanimFigure:
+    """A humanoid, ready to be written as glTF; whoever reads it may still turn `top` or add nodes to the draft."""
+
+    file: str
+    draft: GlbDraft
+    top: int  # the node that everything hangs on
+    joints: tuple[Joint, ...]  # parents before children
+    name: str
+    version: str  # of H-Anim, as the file says, e.g. "2.0"
+    loa: int | None  # level of articulation, where the file says it
+    info: dict[str, str]  # of the humanoid and the header: authorName, copyright, license, ...
+    notes: tuple[str, ...]
+
+    def gltf(self) -> Gltf:
+        """What the draft holds now."""
+        return parse_gltf(self.draft.finish(), self.file)
+
+
+def read_figure(path: Path, default_pose: bool = True) -> HanimFigure:
+    """The humanoid of a file; raises `InputError`. Without `default_pose` its joints stay as the file turns them."""
+    return parse_figure(read_bytes(path), path.name, path.parent, default_pose)
+
+
+def parse_figure(data: bytes, file: str, folder: Path | None = None, default_pose: bool = True) -> HanimFigure:
+    """The same for bytes; `folder` is where files that it names may lie (none for an upload)."""
+    notes = Notes()
+    scene = parse_x3d(data, file, notes)
+    library = Library(folder, notes)
+    return _Maker(scene, expand(scene, library), library, notes, default_pose).figure()
+
+
+class _Maker:
+    def __init__(self, scene: X3dScene, roots: Nodes, library: Library, notes: Notes, default_pose: bool) -> None:
+        self._scene, self._roots, self._notes = scene, roots, notes
+        self._draft = GlbDraft()
+        self._looks = Looks(self._draft, library, notes)
+        self._meshes: dict[int, tuple[int, Mesh] | None] = {}
+        self._joints: list[tuple[Joint, Node]] = []
+        self._vertices = 0
+        self._default_pose = default_pose
+
+    def figure(self) -> HanimFigure:
+        top = self._draft.add_node("figure", scale=np.full(3, self._scene.metre))
+        path = _path_to_humanoid(self._roots)
+        humanoid = path[-1] if path else None
+        self._centred = self._default_pose and _is_centred(humanoid)
+        parent, offset = top, np.zeros(3)
+        for above in path[:-1]:
+            if above.kind in TRANSFORMS:
+                parent, offset = self._transform(above, parent, offset)
+        self._walk([humanoid] if humanoid else self._roots, parent, offset)
+        return HanimFigure(
+            file=self._scene.file,
+            draft=self._draft,
+            top=top,
+            joints=tuple(joint for joint, _ in self._joints),
+            name=humanoid.text("name") if humanoid else "",
+            version=humanoid.text("version") if humanoid else "",
+            loa=_loa(humanoid),
+            info=_info(self._scene, humanoid),
+            notes=tuple(self._notes.lines),
+        )
+
+    def _walk(self, roots: Nodes, parent: int, offset: Floats) -> None:
+        """Draw everything in `roots`, which hang on a node whose origin lies at `offset` in their coordinates."""
+        waiting = [(node, parent, offset) for node in reversed(roots)]
+        visited = 0
+        while waiting:
+            node, parent, offset = waiting.pop()
+            visited += 1
+            if visited > MAX_NODES:
+                raise InputError(f"{node.place}: more than {MAX_NODES} nodes are shown")
+            if node.kind == "Shape":
+                self._shape(node, parent, offset)
+                continue
+            if node.kind in TRANSFORMS:
+                parent, offset = self._transform(node, parent, offset)
+            if node.kind == "HAnimHumanoid":
+                before = len(self._joints)
+                self._walk(node.nodes("skeleton") or node.nodes("humanoidBody"), parent, offset)
+                self._skin(node, self._joints[before:], parent, offset)
+                continue
+            waiting += [(part, parent, offset) for part in reversed(shown_parts(node))]
+
+    def _transform(self, node: Node, parent: int, offset: Floats) -> tuple[int, Floats]:
+        """The glTF node of a Transform, and what its origin is in the coordinates of the nodes inside."""
+        placing = placing_of(node, self._scene.radian)
+        is_joint = node.kind == "HAnimJoint"
+        rotation = quaternion.IDENTITY if is_joint and self._centred else placing.rotation
+        made = self._draft.add_node(
+            (node.text("name") if is_joint else "") or node.name or node.kind,
+            parent,
+            placing.translation + placing.center - offset,
+            quaternion.multiply(rotation, placing.stretch),
+            placing.scale,
+        )
+        if is_joint:
+            self._joints.append((Joint(made, node.text("name"), node.name, placing.center), node))
+        if not np.array_equal(placing.stretch, quaternion.IDENTITY):
+            made = self._draft.add_node("", made, rotation=quaternion.conjugate(placing.stretch))
+        return made, placing.center
+
+    def _shape(self, node: Node, parent: int, offset: Floats) -> None:
+        if id(node) not in self._meshes:
+            self._meshes[id(node)] = self._mesh(node)
+        made = self._meshes[id(node)]
+        if made is not None:
+            self._draft.add_node(node.name, parent, -offset, mesh=made[0])
+
+    def _mesh(self, node: Node, weights: dict[str, int] | None = None) -> tuple[int, Mesh] | None:
+        """The glTF mesh of a Shape; None without faces."""
+        geometry = node.node("geometry")
+        mesh = triangles_of(geometry) if geometry else None
+        if mesh is None or not len(mesh.triangles):
+            return None
+        return self._add_mesh(node, mesh, weights or {}), mesh
+
+    def _add_mesh(self, node: Node, mesh: Mesh, weights: dict[str, int]) -> int:
+        self._vertices += len(mesh.points)
+        if self._vertices > _MAX_VERTICES:
+            raise InputError(f"{node.place}: the shapes have more than {_MAX_VERTICES} vertices")
+        draft = self._draft
+        attributes = {"POSITION": draft.add_vertices(mesh.points, bounds=True)} | weights
+        if mesh.normals is not None:
+            attributes["NORMAL"] = draft.add_vertices(mesh.normals)
+        if mesh.colours is not None:
+            attributes["COLOR_0"] = draft.add_vertices(linear_colours(mesh.colours))
+        if mesh.uvs is not None:
+            attributes["TEXCOORD_0"] = draft.add_vertices(mesh.uvs * [1.0, -1.0] + [0.0, 1.0])
+        material = self._looks.material(
+            node.node("appearance"), mesh.colours is not None, mesh.uvs is not None, mesh.two_sided
+        )
+        primitive = {"attributes": attributes, "indices": draft.add_indices(mesh.triangles), "material": material}
+        return draft.add("meshes", {"primitives": [primitive]})
+
+    def _skin(self, humanoid: Node, joints: list[tuple[Joint, Node]], parent: int, offset: Floats) -> None:
+        """The shapes in `skin`: those that share the points of `skinCoord` follow the joints, others the humanoid."""
+        shapes = list(_shapes_in(humanoid.nodes("skin")))
+        coord = humanoid.node("skinCoord") or next((c for shape in shapes if (c := _coord(shape))), None)
+        moving = [shape for shape in shapes if coord is not None and _coord(shape) is coord]
+        for shape in shapes:
+            if shape not in moving:
+                self._shape(shape, parent, offset)
+        if coord is None or not moving or not joints:
+            return
+        weights = skin_weights([node for _, node in joints], len(coord.vectors("point", 3)))
+        binds = np.tile(np.eye(4), (len(joints), 1, 1))
+        binds[:, :3, 3] = [-joint.centre for joint, _ in joints]
+        skin = self._draft.add(
+            "skins",
+            {
+                "joints": [joint.node for joint, _ in joints],
+                "inverseBindMatrices": self._draft.add_vertices(binds.transpose(0, 2, 1)),
+            },
+        )
+        for shape in moving:
+            geometry = shape.node("geometry")
+            mesh = triangles_of(geometry) if geometry else None
+            if mesh is None or not len(mesh.triangles):
+                continue
+            attributes = {
+                "JOINTS_0": self._draft.add_vertices(weights.joints[mesh.sources], "<u2"),
+                "WEIGHTS_0": self._draft.add_vertices(weights.weights[mesh.sources]),
+            }
+            self._draft.add_node(shape.name or "skin", mesh=self._add_mesh(shape, mesh, attributes), skin=skin)
+
+
+def _path_to_humanoid(roots: Nodes) -> Nodes:
+    """The nodes from a root down to the first HAnimHumanoid, both included; empty if there is none."""
+    waiting: list[tuple[Node, tuple[Node, ...]]] = [(node, ()) for node in reversed(roots)]
+    seen: set[int] = set()
+    while waiting:
+        node, above = waiting.pop()
+        if node.kind == "HAnimHumanoid":
+            return [*above, node]
+        if id(node) not in seen:
+            seen.add(id(node))
+            waiting += [(part, (*above, node)) for part in reversed(shown_parts(node))]
+    return []
+
+
+def _shapes_in(nodes: Nodes) -> Iterator[Node]:
+    waiting, visited = list(reversed(nodes)), 0
+    while waiting:
+        node = waiting.pop()
+        visited += 1
+        if visited > MAX_NODES:
+            raise InputError(f"{node.place}: the skin has more than {MAX_NODES} nodes")
+        if node.kind == "Shape":
+            yield node
+        waiting += reversed(shown_parts(node))
+
+
+def _coord(shape: Node) -> Node | None:
+    geometry = shape.node("geometry")
+    return geometry.node("coord") if geometry else None
+
+
+def _is_centred(humanoid: Node | None) -> bool:
+    """Whether the joints have their places by `center`, as H-Anim has it, and not by `translation`, as robots do."""
+    waiting = humanoid.nodes("skeleton") or humanoid.nodes("humanoidBody") if humanoid else []
+    waiting, visited = list(waiting), 0
+    while waiting and visited < MAX_NODES:
+        node = waiting.pop()
+        visited += 1
+        if node.kind == "HAnimJoint" and node.vector("center", (0.0, 0.0, 0.0)).any():
+            return True
+        waiting += shown_parts(node)
+    return False
+
+
+def _loa(humanoid: Node | None) -> int | None:
+    loa = int(humanoid.number("loa", -1.0)) if humanoid else -1
+    return loa if 0 <= loa <= 4 else None
+
+
+def _info(scene: X3dScene, humanoid: Node | None) -> dict[str, str]:
+    """The header's `meta` and the humanoid's `info`, which is written "key=value"."""
+    info = dict(scene.meta)
+    for line in humanoid.strings("info")[:100] if humanoid else ():
+        key, equals, value = line.partition("=")
+        if equals:
+            info.setdefault(key.strip()[:100], " ".join(value.split())[:200])
+    return info
