@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
-from elbowroom.control import controller as module
+from elbowroom.control import wayfinder as module
 from elbowroom.control.canned import canned_walk
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
@@ -58,7 +58,7 @@ class FakePlanner:
         self.outcomes = outcomes
 
     def plan(self, path: RootPath, start: np.ndarray, rng: np.random.Generator) -> LocalPlan:
-        found = canned_walk(path)
+        found = canned_walk(path, start)
         stands = not path.states[:, 3:6].any()  # asked after a failure, for the limbs alone: that is not the figure's
         if not stands and next(self.outcomes, True):
             return found

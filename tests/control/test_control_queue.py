@@ -33,18 +33,15 @@ def random_uppers(rng: np.random.Generator, first: np.ndarray) -> np.ndarray:
 def filled_queue(rng: np.random.Generator) -> KeyFrameQueue:
     queue = KeyFrameQueue(SIZE, INTERVAL)
     start = Playback(np.zeros(7), rng.normal(size=LOCAL), np.zeros(LOCAL))
-    queue.refill(straight_path(0.0, start.root, 1.2), random_uppers(rng, start.upper), start)
+    queue.splice(straight_path(0.0, start.root, 1.2), random_uppers(rng, start.upper), np.zeros(LOCAL))
     return queue
 
 
 def refill(queue: KeyFrameQueue, rng: np.random.Generator, at_once: bool) -> None:
-    now = queue.sample()
-    coming = queue.unplayed()
-    if at_once:
-        time, root, upper = queue.time, now.root, now.upper
-    else:
-        time, root, upper = coming.times[0], coming.roots[0], coming.uppers[0]
-    queue.refill(straight_path(float(time), root, rng.uniform(-1, 1.3)), random_uppers(rng, upper), now)
+    time = queue.time if at_once else float(queue.unplayed().times[0])
+    start = queue.at(time)
+    path = straight_path(time, start.root, rng.uniform(-1, 1.3))
+    queue.splice(path, random_uppers(rng, start.upper), start.upper_velocity)
 
 
 def test_a_new_queue_is_empty() -> None:
@@ -70,7 +67,7 @@ def test_keys_are_consumed_as_time_is_played() -> None:
 
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000), st.lists(st.tuples(st.floats(0.001, 0.5), st.booleans()), min_size=1, max_size=6))
-def test_refills_are_continuous_in_value_and_velocity(seed: int, refills: list[tuple[float, bool]]) -> None:
+def test_splices_are_continuous_in_value_and_velocity(seed: int, refills: list[tuple[float, bool]]) -> None:
     rng = np.random.default_rng(seed)
     queue = filled_queue(rng)
     for wait, at_once in refills:
@@ -102,7 +99,41 @@ def test_velocities_are_the_derivatives_of_what_is_played(seed: int, at_once: bo
         np.testing.assert_allclose(slope, middle.upper_velocity, atol=0.1)
 
 
-def test_a_refill_from_the_next_key_keeps_the_interval_in_play() -> None:
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 10_000), st.floats(0.01, 0.5))
+def test_until_a_splice_all_is_played_as_it_was_and_there_it_goes_on(seed: int, ahead: float) -> None:
+    rng = np.random.default_rng(seed)
+    queue, same = filled_queue(rng), filled_queue(np.random.default_rng(seed))
+    queue.advance(0.13)
+    same.advance(0.13)
+    start = queue.at(queue.time + ahead)
+    path = straight_path(queue.time + ahead, start.root, 0.5)
+    queue.splice(path, random_uppers(rng, start.upper), start.upper_velocity)
+    for part in np.linspace(0.0, 1.0, 9):
+        before, after = same.at(same.time + part * ahead), queue.at(queue.time + part * ahead)
+        np.testing.assert_allclose(after.root[:6], before.root[:6], atol=1e-9)
+        np.testing.assert_allclose(after.root[6], before.root[6], atol=0.01)  # the stride: a rate of its own, nearly it
+        np.testing.assert_allclose(after.upper, before.upper, atol=1e-9)
+        np.testing.assert_allclose(after.upper_velocity, before.upper_velocity, atol=1e-7)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 10_000), st.lists(st.floats(0.0, 1.0), min_size=1, max_size=30))
+def test_played_slower_the_poses_are_the_same_and_their_velocities_less(seed: int, rates: list[float]) -> None:
+    queue, same = (filled_queue(np.random.default_rng(seed)) for _ in range(2))
+    for rate in rates:
+        queue.advance(0.03, rate)
+        same.advance(0.03 * rate)
+        slow, planned = queue.sample(), same.sample()
+        np.testing.assert_allclose(slow.root[[0, 1, 2, 6]], planned.root[[0, 1, 2, 6]], atol=1e-9)
+        np.testing.assert_allclose(slow.upper, planned.upper, atol=1e-9)
+        np.testing.assert_allclose(slow.root[3:6], rate * planned.root[3:6], atol=1e-9)
+        np.testing.assert_allclose(slow.upper_velocity, rate * planned.upper_velocity, atol=1e-7)
+    assert queue.time == pytest.approx(0.03 * len(rates))
+    assert queue.time - queue.delay == pytest.approx(same.time)
+
+
+def test_a_splice_at_the_next_key_keeps_the_interval_in_play() -> None:
     rng = np.random.default_rng(3)
     queue, same = filled_queue(rng), filled_queue(np.random.default_rng(3))
     queue.advance(0.21)

@@ -12,7 +12,7 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
@@ -66,7 +66,7 @@ def hanging() -> Floats:
 def shown_clearance(humanoid: Humanoid, scene: Scene, path: RootPath, uppers: Floats) -> float:
     """The least clearance of the upper body over all that the queue plays, 240 poses a second, posed in the world."""
     model, queue = body_model(humanoid), KeyFrameQueue(path.horizon, path.interval)
-    queue.refill(path, uppers, Playback(path.states[0], uppers[0], np.zeros(LOCAL)))
+    queue.splice(path, uppers, np.zeros(LOCAL))
     roots, postures = [], []
     while not queue.empty:
         playback = queue.sample()

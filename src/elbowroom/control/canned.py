@@ -7,14 +7,18 @@ from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 
+Floats = NDArray[np.float64]
 
-def canned_walk(path: RootPath) -> LocalPlan:
-    """The goal functions' upper-body motion along a root path as it is, whatever it touches."""
+
+def canned_walk(path: RootPath, start: Floats) -> LocalPlan:
+    """The goal functions' upper-body motion along a root path, from `start` (LOCAL,) on, whatever it touches."""
     goals = goal_configurations(natural_walk(), path)
-    return LocalPlan(PlanStatus.FOUND, goals, goals, ())
+    configurations = goals.copy()
+    configurations[0] = start
+    return LocalPlan(PlanStatus.FOUND, configurations, goals, ())
 
 
-def standing_posture(root: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The relaxed upper body (11,) of somebody who stands at root state (7,)."""
-    posture: NDArray[np.float64] = canned_walk(RootPath(0.0, 1.0, np.stack([root, root]))).goals[0]
+def standing_posture(root: Floats) -> Floats:
+    """The relaxed upper body (LOCAL,) of somebody who stands at root state (7,)."""
+    posture: Floats = goal_configurations(natural_walk(), RootPath(0.0, 1.0, np.stack([root, root])))[0]
     return posture

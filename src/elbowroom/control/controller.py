@@ -1,6 +1,9 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,37 +12,49 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, configuration
-from elbowroom.control.canned import canned_walk, standing_posture
+from elbowroom.control.canned import standing_posture
+from elbowroom.control.desk import ImmediateDesk, PlanningDesk
+from elbowroom.control.foresight import Foresight
 from elbowroom.control.frame import Frame, Phase, PlanReport
+from elbowroom.control.holding import Holding
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.rehearsal import Rehearsal, frozen_motion, partial_motions, standing_path
+from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
+from elbowroom.control.wayfinder import Answer, Question, Wayfinder
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.planning.motion import Lead, Motion, MotionPlanner, MotionQuery
+from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
-from elbowroom.planning.planner import make_planner
-from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlanKind
-from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
-_SETTLE = 0.06  # seconds: time constant with which the legs come to a stand where the avatar is held, or lead over
-_STILL = 0.02  # m/s and rad/s: slower is standing
 _SAME = 1e-6  # radians
-_LEAD_POSES = 8  # poses of the interval in play that a planner may look at
+_SAME_TIME = 1e-9  # seconds
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
+_RESERVE = 2.4  # seconds of motion that are kept for late plans
+
+
+class _Asked(NamedTuple):
+    """A plan that is being made."""
+
+    question: Question
+    time: float  # seconds, when it was asked for
+    delay: float  # of the queue then
+    standing: bool  # it starts where the avatar stands, whenever that is
 
 
 class Controller:
     """Turns commands into poses that touch nothing, one `step` at a time.
 
     It reads no clock: time is the sum of the `dt` it was given, chance comes from the seed, so the same steps give the
-    same frames bit for bit. It owns what lives: the queue, the planners with their growing activity graphs, the pose.
+    same frames bit for bit. It owns what lives: the queue, the planners with what they remember, the pose.
+
+    Planning is done at a desk, at once by default. A desk that takes its time is asked for plans that start a little
+    later; meanwhile what is in the queue is played, and slows down to a stand before it ends.
     """
 
     def __init__(
@@ -53,6 +68,7 @@ class Controller:
         seed: int = 0,
         assist: bool = True,
         start: RootState | None = None,
+        desk: PlanningDesk | None = None,
     ) -> None:
         """Stand the humanoid at the scene's start, or at `start`.
 
@@ -63,21 +79,23 @@ class Controller:
         self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
         self.start = scene.start if start is None else start
         self._check = BodyCheck(humanoid, scene)
-        self._root_planner = RootPlanner(humanoid, scene)
+        self._desk: PlanningDesk = desk or ImmediateDesk()
         self.reset()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
-        self._rng = np.random.default_rng(self.settings.seed)
-        self._root_planner.reset()
-        self._planner = make_planner(self.settings.planner, self.humanoid, self.scene)
+        self._desk.forget()  # a plan in the making has planners of its own
+        self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
+        self._foresight = Foresight(self._desk.immediate)
+        self._holding = Holding()
         self._assist = self.settings.assist
         self._plan_report: PlanReport | None = None
+        self._asked: _Asked | None = None
         self._command = Command()
         self._flow = self._next = Phase.PLAN
-        self._held = self._blocked = self._resting = False
-        self._stance = np.zeros(3)
+        self._blocked = self._resting = self._halting = False
+        self.late_plans = 0  # that could not be shown any more when they came
         self._stand_at_start()
 
     def _stand_at_start(self) -> None:
@@ -112,6 +130,7 @@ class Controller:
         self._assist = wanted
         self._next, self._resting = Phase.RESET, False
         if wanted and self._clearance < 0.0:
+            self._clear()
             self._show(self._free, self._check.clearance(self._free.root, self._free.upper))
 
     def step(self, command: Command, dt: float) -> Frame:
@@ -129,17 +148,18 @@ class Controller:
         return self._frame(wanted)
 
     def _turn(self, command: Command, dt: float) -> Phase:
+        self._take_plan(command)
         flow = self._choose_flow(command)
         if flow is Phase.RESET:
-            self._queue.clear()
+            self._reset_queue()
         if flow is not Phase.PLAY:
-            self._plan(command)
+            self._plan(command, at_once=flow is Phase.RESET or steering.changed(self._command, command))
         self._play(dt)
         return flow
 
     def _choose_flow(self, command: Command) -> Phase:
         """Figure 4 (b): which flow this turn takes."""
-        if self._resting and command.idle:
+        if self._desk.busy or (self._resting and command.idle):
             return Phase.PLAY
         if steering.overturned(self._command, command):
             return Phase.RESET
@@ -155,103 +175,111 @@ class Controller:
             return False
         return self._queue.time - self._plan_report.time < self.settings.interval
 
-    def _plan(self, command: Command) -> None:
-        """Flow A: a root path, its upper-body motion; on success the queue is refilled, else it keeps what it has."""
-        time, root, upper = self._planning_start(command)
-        horizon, interval = self.settings.queue_size, self.settings.interval
-        query = MotionQuery(time, RootState(*root.tolist()), upper, command, horizon, interval, self._lead(time))
-        root_plan, local = self._search(query)
-        path = root_plan.path
+    # --- flow A ------------------------------------------------------------------------------------------------------
+
+    def _plan(self, command: Command, *, at_once: bool) -> None:
+        """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
+        time, start = self._planning_start(at_once)
+        query = MotionQuery(
+            time, RootState(*start.root.tolist()), start.upper, start.upper_velocity, command, self._horizon(),
+            self.settings.interval,
+        )  # fmt: skip
+        held = None
+        if self._holding.active and self._assist:
+            held = Held(start.root, start.upper, self._holding.stance, self._clearance)
+        question = Question(query, self._assist, held)
+        self._asked = _Asked(question, self._queue.time, self._queue.delay, self._queue.empty)
+        self._desk.submit(partial(self._wayfinder.answer, question))
+        self._take_plan(command)
+
+    def _planning_start(self, at_once: bool) -> tuple[float, Playback]:
+        """When and from where to plan: as soon as a plan can be there.
+
+        That is the next unplayed key frame (receding horizon), or between key frames, if the user wants something else
+        at once; where nothing is left to play, it is what is shown now.
+        """
+        if self._queue.empty:
+            return self._queue.time, self._holding.start(self._shown)
+        coming, soonest = self._queue.unplayed().times, self._queue.time + self._foresight.lead
+        time = soonest if at_once else next((time for time in coming if time >= soonest), coming[-1])
+        time = min(float(time), float(coming[-1]))
+        return time, self._queue.at(time)
+
+    def _horizon(self) -> int:
+        """Key intervals to plan: the queue's size; with a planner that sees farther, a reserve for late plans."""
+        if self._desk.immediate or not (self._assist and self._wayfinder.looks_far):
+            return self.settings.queue_size
+        return max(self.settings.queue_size, round(_RESERVE / self.settings.interval))
+
+    def _take_plan(self, command: Command) -> None:
+        """On success the queue goes on with the plan, else it keeps what it has."""
+        answer, asked = self._desk.take(), self._asked
+        if answer is None or asked is None:
+            return
+        self._asked = None
+        self._foresight.waited(self._queue.time - asked.time)
+        start = self._queue.time if asked.standing else answer.path.start_time + self._queue.delay - asked.delay
+        if asked.question.assist is not self._assist or steering.overturned(asked.question.query.command, command):
+            self._next = Phase.RESET
+        elif start < self._queue.time - _SAME_TIME:
+            self.late_plans += 1
+            self._next = Phase.PLAN
+        else:
+            self._go_on_with(answer, asked.question, start)
+
+    def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1
-        report = PlanReport(number, self._queue.time, root_plan, local)
-        self._command, self._plan_report, self._next = command, report, Phase.PLAY
-        self._resting = False
+        root = replace(answer.root, path=replace(answer.root.path, start_time=start))
+        self._plan_report = PlanReport(number, self._queue.time, root, answer.local)
+        found, command = answer.uppers is not None, question.query.command
+        self._halting = not found and (self._halting or steering.overturned(self._command, command))
+        self._command, self._next, self._resting = command, Phase.PLAY, False
+        self._blocked = not found and self._queue.empty
         self._queue.start_count()
-        motion = local.configurations if report.found else None
-        if self._held and self._assist:
-            path, motion = self._way_out(path, motion)
-        self._blocked = motion is None and self._queue.empty
-        if motion is not None:
-            self._queue.refill(path, motion, self._shown)
-            self._resting = command.idle and self._stands_still(path, motion)
+        if answer.uppers is not None:
+            path = replace(answer.path, start_time=start)
+            self._queue.splice(path, answer.uppers, question.query.velocity, answer.velocities)
+            self._resting = command.idle and self._stands_still(path.states, answer.uppers)
 
-    def _search(self, query: MotionQuery) -> Motion:
-        """A root path and its upper body; from the planner as one if it can do that."""
-        if self._assist and isinstance(self._planner, MotionPlanner):
-            return self._planner.plan_motion(self._root_planner, query)
-        root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
-        if not self._assist:
-            return Motion(root, canned_walk(root.path))
-        return Motion(root, self._planner.plan(root.path, query.upper, self._rng))
+    def _stands_still(self, states: Floats, uppers: Floats) -> bool:
+        shown = self._shown
+        moving = states[:, 3:6].any() or self._holding.stance.any() or np.abs(shown.upper_velocity).max() > _SAME
+        return not moving and bool(np.abs(uppers - shown.upper).max() < _SAME)
 
-    def _lead(self, time: float) -> Lead:
-        """What is shown now, and the root's way to the key frame at `time`."""
-        return Lead(
-            time - self._queue.time,
-            self._queue.roots_until(time, _LEAD_POSES),
-            self._shown.upper,
-            self._shown.upper_velocity,
-        )
-
-    def _way_out(self, path: RootPath, motion: Floats | None) -> tuple[RootPath, Floats | None]:
-        """What can follow a contact: a motion that does not touch again within the first key interval, if there is one.
-
-        Hard against an obstacle nearly every move of a limb touches it. So to keep the pose is a way out too: where the
-        plan's way begins too close by, or, without a plan, where the root leads away: whoever walked in can walk out.
-        Where even that touches, the root stands and the limbs free themselves, together or one before the other.
-        """
-        rehearsal = Rehearsal(self._queue, self._shown, self._stance, self._check)
-        if motion is not None and rehearsal.is_playable(path, motion):
-            return path, motion
-        frozen = frozen_motion(path, self._shown.upper)
-        useful = motion is not None or rehearsal.leads_away(path, frozen, self._clearance)
-        if useful and rehearsal.is_playable(path, frozen):
-            return path, frozen
-        standing = standing_path(path, self._shown.root)
-        freed = self._planner.plan(standing, self._shown.upper, self._rng).configurations
-        parts = partial_motions(freed, self._shown.upper) if len(freed) else []
-        return standing, next((part for part in parts if rehearsal.is_playable(standing, part)), None)
-
-    def _planning_start(self, command: Command) -> tuple[float, Floats, Floats]:
-        """Time, root state and upper body from which to plan.
-
-        That is the next unplayed key frame (receding horizon); where nothing is left to play, or the user wants
-        something else at once, it is what is shown now.
-        """
-        if not (self._queue.empty or steering.changed(self._command, command)):
-            coming = self._queue.unplayed()
-            return float(coming.times[0]), coming.roots[0], coming.uppers[0]
-        root = self._shown.root.copy()
-        if self._held:
-            self._stance = root[3:6].copy()
-        root[3:6] -= self._stance
-        return self._queue.time, root, self._shown.upper
-
-    def _stands_still(self, path: RootPath, uppers: Floats) -> bool:
-        moving = path.states[:, 3:6].any() or self._stance.any() or np.abs(self._shown.upper_velocity).max() > _SAME
-        return not moving and bool(np.abs(uppers - self._shown.upper).max() < _SAME)
+    # --- flow B ------------------------------------------------------------------------------------------------------
 
     def _play(self, dt: float) -> None:
         """Flow B: interpolate, check, show; what touches is not shown, and leads to flow C, as does an empty queue."""
-        ended = self._queue.empty
-        self._queue.advance(dt)
+        ended = self._queue.empty and not self._is_continued()
+        self._queue.advance(dt, self._rate(dt))
         if self._resting:
             return
         if ended:
             self._hold(dt)
             return
-        playback = self._queue.sample()
-        for stance in self._stances(dt):
-            posed = _in_stance(playback, stance)
+        for posed, stance in self._holding.over(self._queue.sample(), dt):
             clearance = self._check.clearance(posed.root, posed.upper)
             if not self._assist or self._is_free(posed, clearance):
-                self._held, self._blocked, self._stance = False, False, stance
+                self._holding.end(stance)
+                self._blocked = False
                 self._show(posed, clearance)
                 break
         else:
             self._hold(dt)
         if self._queue.empty:
             self._next = Phase.RESET
+
+    def _is_continued(self) -> bool:
+        """Whether the plan that is being made goes on from the queue."""
+        return self._asked is not None and not self._asked.standing
+
+    def _rate(self, dt: float) -> float:
+        """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
+        left = self._queue.left if self._queue.ends_moving else math.inf
+        rate = self._foresight.next_rate(left, dt, halting=self._halting)
+        if rate == 0.0 and self._halting:
+            self._clear()
+        return rate
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
@@ -260,24 +288,31 @@ class Controller:
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
         return self._check.clearance_between(roots, uppers) >= 0.0
 
-    def _stances(self, dt: float) -> list[Floats]:
-        """What may be left of the stance in which the legs were held: less than before; all, where that touches."""
-        faded = self._stance * math.exp(-dt / _SETTLE)
-        faded[np.abs(faded) < _STILL] = 0.0
-        return [faded, self._stance] if self._stance.any() else [faded]
-
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""
-        self._held, self._next = True, Phase.RESET
-        self._queue.clear()
-        root = self._shown.root.copy()
-        root[3:6] *= math.exp(-dt / _SETTLE)
-        root[3:6][np.abs(root[3:6]) < _STILL] = 0.0
-        still = Playback(root, self._shown.upper, np.zeros_like(self._shown.upper))
+        self._clear()
+        self._next = Phase.RESET
+        still = self._holding.settle(self._shown, dt)
         clearance = self._check.clearance(still.root, still.upper)
         if self._assist and not self._is_free(still, clearance):
             still, clearance = still._replace(root=self._shown.root), self._clearance
         self._show(still, clearance)
+
+    # --- flow C ------------------------------------------------------------------------------------------------------
+
+    def _reset_queue(self) -> None:
+        """Flow C: what is in the queue is not wanted any more. It is still played until there is something else."""
+        if self._desk.immediate:
+            self._queue.clear()
+
+    def _clear(self) -> None:
+        """Empty the queue; a plan in the making that goes on from it is of no use then."""
+        self._queue.clear()
+        self._halting = False
+        if self._is_continued():
+            self._asked = None
+
+    # --- what is shown -----------------------------------------------------------------------------------------------
 
     def _show(self, playback: Playback, clearance: float) -> None:
         self._shown, self._clearance = playback, clearance
@@ -305,7 +340,7 @@ class Controller:
         return stopped and not self._shown.root[3:6].any()
 
     def _goal(self) -> Floats:
-        """The goal functions' posture now, from the last plan (11,)."""
+        """The goal functions' posture now, from the last plan (LOCAL,)."""
         if self._plan_report is None:
             return self._shown.upper
         path, goals = self._plan_report.root.path, self._plan_report.local.goals
@@ -313,9 +348,3 @@ class Controller:
         k = min(int(place), len(goals) - 2)
         goal: Floats = goals[k] + (place - k) * (goals[k + 1] - goals[k])
         return goal
-
-
-def _in_stance(playback: Playback, stance: Floats) -> Playback:
-    root = playback.root.copy()
-    root[3:6] += stance
-    return playback._replace(root=root)

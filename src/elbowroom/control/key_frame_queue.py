@@ -20,38 +20,42 @@ class KeyFrames(NamedTuple):
 
     times: Floats  # (m,) seconds
     roots: Floats  # (m, 7) root states
-    uppers: Floats  # (m, 11) waist, left arm, right arm
+    uppers: Floats  # (m, LOCAL) waist, left arm, right arm
 
 
 class Playback(NamedTuple):
     """What the queue says for one moment."""
 
     root: Floats  # (7,)
-    upper: Floats  # (11,)
-    upper_velocity: Floats  # (11,) per second
+    upper: Floats  # (LOCAL,)
+    upper_velocity: Floats  # (LOCAL,) per second
 
 
 class KeyFrameQueue:
     """Key frames that wait to be played, and the play head.
 
-    A refill replaces what has not been played. Its path starts either at the next unplayed key frame (receding horizon:
-    the interval in play goes on as it was), or at the play head itself (the motion is bent at once). In both cases the
-    upper body goes on from where it is with the velocity it has.
+    A new motion is spliced in where it starts: until then everything is played exactly as it was, root and upper body,
+    and there it goes on with the velocity that it has. So what is shown does not depend on when a plan was ready, as
+    long as it was ready before its start is played.
+
+    The key frames can be played slower than they were planned: what has not been played moves into the future, and the
+    poses stay the same.
     """
 
     def __init__(self, capacity: int, interval: float) -> None:
         self.capacity = capacity  # |Q|, key frames planned ahead
         self.interval = interval  # T_interval, seconds
         self.time = 0.0  # the play head, seconds
+        self.delay = 0.0  # seconds that were lost by playing slower
+        self._rate = 1.0
         self.clear()
 
     def clear(self) -> None:
         """Forget all key frames; the play head stays."""
         self._times = np.empty(0)
         self._roots = np.empty((0, ROOT_STATE))
-        self._knots = np.empty(0)  # key times of the upper body, the first of them the moment of the refill
         self._uppers = np.empty((0, LOCAL))
-        self._tangents = np.empty((0, LOCAL))
+        self._velocities = np.empty((0, LOCAL))
         self.start_count()
 
     def start_count(self) -> None:
@@ -64,60 +68,81 @@ class KeyFrameQueue:
         return (self.time - self._counted_from) / self.interval
 
     @property
+    def left(self) -> float:
+        """Seconds of motion that are left to play."""
+        return float(self._times[-1]) - self.time if len(self._times) else 0.0
+
+    @property
     def empty(self) -> bool:
         """Whether nothing is left to play."""
-        return len(self._times) == 0 or self.time >= self._times[-1] - _SAME_TIME
+        return self.left <= _SAME_TIME
+
+    @property
+    def ends_moving(self) -> bool:
+        """Whether the root still moves at the last key frame."""
+        return bool(len(self._roots) and self._roots[-1, 3:6].any())
 
     @property
     def fill(self) -> int:
         """Unplayed key frames, up to |Q|: after a refill |Q| lie beyond the one that is played towards."""
-        return min(int(np.count_nonzero(self._times > self.time + _SAME_TIME)), self.capacity)
+        return min(int(np.count_nonzero(self._coming(self._times))), self.capacity)
 
     def unplayed(self) -> KeyFrames:
         """The key frames that are still to come."""
-        keys, knots = self._times > self.time + _SAME_TIME, self._knots > self.time + _SAME_TIME
-        return KeyFrames(self._times[keys], self._roots[keys], self._uppers[knots])
+        keys = self._coming(self._times)
+        return KeyFrames(self._times[keys], self._roots[keys], self._uppers[keys])
 
-    def refill(self, path: RootPath, uppers: Floats, now: Playback) -> None:
-        """Replace what has not been played by key frames along `path`, `uppers` (n+1, 11) at its key times.
+    def _coming(self, times: Floats) -> NDArray[np.bool_]:
+        coming: NDArray[np.bool_] = times > self.time + _SAME_TIME
+        return coming
 
-        `path` starts at the next unplayed key frame or at the play head; `now` is what is shown at the play head.
+    def splice(self, path: RootPath, uppers: Floats, velocity: Floats, velocities: Floats | None = None) -> None:
+        """From the start of `path` on, play it with the upper body `uppers` (n+1, LOCAL) at its key times.
+
+        The path starts at the play head or later, in the state that `at` gives for its start; `velocity` (LOCAL,) is
+        the upper body's there. `velocities` (n+1, LOCAL) are those at all key times, where the planner has chosen them.
         """
-        times = path.start_time + path.interval * np.arange(len(path.states))
-        played = self._times <= self.time + _SAME_TIME
-        keep_last = times[0] > self.time + _SAME_TIME  # the interval in play needs the key frame where it began
-        before = slice(int(played.sum()) - 1, int(played.sum())) if keep_last else slice(0, 0)
-        coming = times > self.time + _SAME_TIME
-        self._times = np.concatenate([self._times[before], times])
-        self._roots = np.concatenate([self._roots[before], path.states])
-        self._knots = np.concatenate([[self.time], times[coming]])
-        self._uppers = np.concatenate([now.upper[None], uppers[coming]])
-        self._tangents = monotone_tangents(self._knots, self._uppers, now.upper_velocity)
+        times = path.times
+        kept = self._kept_until(times[0])
+        curve = monotone_tangents(times, uppers, velocity) if velocities is None else velocities.copy()
+        curve[0] = velocity
+        self._times = np.concatenate([self._times[kept], times])
+        self._roots = np.concatenate([self._roots[kept], path.states])
+        self._uppers = np.concatenate([self._uppers[kept], uppers])
+        self._velocities = np.concatenate([self._velocities[kept], curve])
         self.start_count()
 
-    def advance(self, dt: float) -> None:
-        """Move the play head by `dt` seconds."""
+    def _kept_until(self, time: float) -> slice:
+        """The key frames from the last one played until, and without, the one at `time`; none where it is now."""
+        if time <= self.time + _SAME_TIME:
+            return slice(0, 0)
+        played = int(np.count_nonzero(~self._coming(self._times)))
+        return slice(max(played - 1, 0), int(np.count_nonzero(self._times < time - _SAME_TIME)))
+
+    def advance(self, dt: float, rate: float = 1.0) -> None:
+        """Move the play head by `dt` seconds, in which `rate` times as many seconds of the motion are played."""
         self.time += dt
+        self._rate = rate
+        if rate != 1.0:
+            lost = (1.0 - rate) * dt
+            self.delay += lost
+            self._times = self._times + lost
 
     def sample(self) -> Playback:
-        """Root and upper body at the play head: C1 in time, across refills too; the queue has key frames."""
-        upper, velocity = hermite(self._knots, self._uppers, self._tangents, self.time)
-        return Playback(self._root(self.time), upper, velocity)
+        """Root and upper body at the play head, C1 in time across splices too; the queue has key frames."""
+        planned = self.at(self.time)
+        if self._rate == 1.0:
+            return planned
+        root = planned.root.copy()
+        root[3:6] *= self._rate
+        return Playback(root, planned.upper, self._rate * planned.upper_velocity)
 
-    def roots_until(self, time: float, count: int) -> Floats:
-        """Root states (count, 7) at equal steps from the play head to `time`, which is not among them.
-
-        None, (0, 7), if that time has come; the queue must reach to `time`.
-        """
-        if time <= self.time + _SAME_TIME:
-            return np.empty((0, ROOT_STATE))
-        return np.stack([self._root(self.time + i / count * (time - self.time)) for i in range(count)])
-
-    def _root(self, time: float) -> Floats:
-        last = len(self._times) - 1
-        k = max(int(np.searchsorted(self._times, time, side="right")) - 1, 0)
-        if k >= last:
-            return np.array(self._roots[last])
-        share = max((time - self._times[k]) / self.interval, 0.0)
-        state: Floats = interpolate_root(self._roots[k], self._roots[k + 1], share, self.interval)
-        return state
+    def at(self, time: float) -> Playback:
+        """What the motion has at `time`, played as it was planned; at its end the root still has its velocity."""
+        upper, velocity = hermite(self._times, self._uppers, self._velocities, time)
+        k = max(int(np.searchsorted(self._times, time + _SAME_TIME, side="right")) - 1, 0)
+        if abs(self._times[k] - time) <= _SAME_TIME or k == len(self._times) - 1:
+            return Playback(self._roots[k].copy(), self._uppers[k].copy(), self._velocities[k].copy())
+        interval = float(self._times[k + 1] - self._times[k])
+        share = max((time - self._times[k]) / interval, 0.0)
+        return Playback(interpolate_root(self._roots[k], self._roots[k + 1], share, interval), upper, velocity)

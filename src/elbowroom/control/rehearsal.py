@@ -1,14 +1,14 @@
 """Playing a motion in advance: how clear of everything it stays."""
 
-import copy
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, columns_of
 from elbowroom.control.body_check import BodyCheck
-from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -19,31 +19,41 @@ _MOVES = 0.02  # radians: less is no motion
 _HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 
 
-class Rehearsal:
-    """What would be shown from now on, if the queue were refilled: only looked at, the queue stays as it is."""
+class Held(NamedTuple):
+    """The pose in which an avatar is held after a contact."""
 
-    def __init__(self, queue: KeyFrameQueue, now: Playback, stance: Floats, check: BodyCheck) -> None:
-        self._queue, self._now, self._stance, self._check = queue, now, stance, check
+    root: Floats  # (7,)
+    upper: Floats  # (LOCAL,)
+    stance: Floats  # (3,) velocities of the stride in which the legs were held; the root stands
+    clearance: float  # metres
+
+
+class Rehearsal:
+    """What would be shown if a motion were played from the pose in which the avatar is held."""
+
+    def __init__(self, held: Held, check: BodyCheck) -> None:
+        self._held, self._check = held, check
 
     def is_playable(self, path: RootPath, uppers: Floats) -> bool:
         """Whether the motion touches nothing within its first key interval."""
-        return bool(self._clearances(path, uppers, path.interval).min() >= 0.0)
+        return bool(self._clearances(path, uppers).min() >= 0.0)
 
-    def leads_away(self, path: RootPath, uppers: Floats, clearance: float) -> bool:
-        """Whether the motion begins by leaving, or sliding along, what is now at the given clearance, metres."""
-        found = self._clearances(path, uppers, path.interval)
+    def leads_away(self, path: RootPath, uppers: Floats) -> bool:
+        """Whether the motion begins by leaving, or sliding along, what is near."""
+        found, clearance = self._clearances(path, uppers), self._held.clearance
         leaves = found[-1] > clearance or clearance < _HARD_BY
         return bool(leaves and found.min() >= clearance - _CLOSER)
 
-    def _clearances(self, path: RootPath, uppers: Floats, duration: float) -> Floats:
-        trial = copy.copy(self._queue)  # a refill makes new arrays, so the original is not changed
-        trial.refill(path, uppers, self._now)
+    def _clearances(self, path: RootPath, uppers: Floats) -> Floats:
+        trial = KeyFrameQueue(path.horizon, path.interval)
+        trial.time = path.start_time
+        trial.splice(path, uppers, np.zeros_like(self._held.upper))
         found = []
-        for _ in range(round(duration / _SPACING)):
+        for _ in range(round(path.interval / _SPACING)):
             trial.advance(_SPACING)
-            root, upper, _ = trial.sample()
-            root[3:6] += self._stance
-            found.append(self._check.clearance(root, upper))
+            shown = trial.sample()
+            shown.root[3:6] += self._held.stance
+            found.append(self._check.clearance(shown.root, shown.upper))
         return np.array(found)
 
 

@@ -38,10 +38,10 @@ class MotionQuery(NamedTuple):
     time: float  # seconds, of the first key frame
     root: RootState  # there
     upper: Floats  # (11,) there, radians
+    velocity: Floats  # (11,) of the upper body there, rad/s
     command: Command
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames
-    lead: Lead
 
 
 class Motion(NamedTuple):

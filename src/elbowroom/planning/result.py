@@ -50,6 +50,7 @@ class LocalPlan:
     configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
     goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
+    velocities: NDArray[np.float64] | None = None  # (n+1, 11) of the curve at the key times, if the planner chose them
 
     @property
     def checks(self) -> int:

@@ -100,7 +100,8 @@ class ExactPlanner:
         return _Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
 
     def _dress(self, path: RootPath, query: MotionQuery) -> UpperPlan:
-        return self._body.plan(path, query.upper, query.lead, self._kept(path))
+        lead = no_lead(query.upper)._replace(velocity=query.velocity)
+        return self._body.plan(path, query.upper, lead, self._kept(path))
 
     def _kept(self, path: RootPath) -> Floats | None:
         """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""

@@ -1,0 +1,97 @@
+"""One question about the way ahead, and who answers it: root path, upper body, and what to do after a contact.
+
+A question holds all that its answer depends on, besides what the planners remember, so that it can be answered in
+another thread while playback goes on.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.canned import canned_walk
+from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
+from elbowroom.control.settings import ControlSettings
+from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery
+from elbowroom.planning.planner import make_planner
+from elbowroom.planning.result import LocalPlan, PlanStatus
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_plan import RootPlan
+from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+
+class Question(NamedTuple):
+    """What to plan for."""
+
+    query: MotionQuery
+    assist: bool  # off: the canned walk
+    held: Held | None  # the pose in which the avatar is held after a contact
+
+
+class Answer(NamedTuple):
+    """What was planned, and what of it can be shown."""
+
+    root: RootPlan
+    local: LocalPlan
+    path: RootPath
+    uppers: Floats | None  # (n+1, LOCAL) along the path; None where there is no way
+    velocities: Floats | None  # (n+1, LOCAL) where the planner has chosen them
+
+
+class Wayfinder:
+    """The planners of one avatar in one scene, with what they remember; answers one question at a time."""
+
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, check: BodyCheck) -> None:
+        self._root_planner = RootPlanner(humanoid, scene)
+        self._planner = make_planner(settings.planner, humanoid, scene)
+        self._rng = np.random.default_rng(settings.seed)
+        self._check = check
+
+    @property
+    def looks_far(self) -> bool:
+        """Whether the planner sees farther than the queue that it is asked to fill."""
+        return isinstance(self._planner, MotionPlanner)
+
+    def answer(self, question: Question) -> Answer:
+        """Plan; after a contact, find a way out of it."""
+        root, local = self._search(question)
+        found = local.status is PlanStatus.FOUND
+        answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities)
+        return self._way_out(answer, question) if question.held is not None else answer
+
+    def _search(self, question: Question) -> Motion:
+        """A root path and its upper body; from the planner as one if it can do that."""
+        query = question.query
+        if question.assist and isinstance(self._planner, MotionPlanner):
+            return self._planner.plan_motion(self._root_planner, query)
+        root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
+        if not question.assist:
+            return Motion(root, canned_walk(root.path, query.upper))
+        return Motion(root, self._planner.plan(root.path, query.upper, self._rng))
+
+    def _way_out(self, answer: Answer, question: Question) -> Answer:
+        """What can follow a contact: a motion that does not touch again within the first key interval, if there is one.
+
+        Hard against an obstacle nearly every move of a limb touches it. So to keep the pose is a way out too: where the
+        plan's way begins too close by, or, without a plan, where the root leads away: whoever walked in can walk out.
+        Where even that touches, the root stands and the limbs free themselves, together or one before the other.
+        """
+        assert question.held is not None
+        path, motion, upper = answer.path, answer.uppers, question.query.upper
+        rehearsal = Rehearsal(question.held, self._check)
+        if motion is not None and rehearsal.is_playable(path, motion):
+            return answer
+        frozen = frozen_motion(path, upper)
+        useful = motion is not None or rehearsal.leads_away(path, frozen)
+        if useful and rehearsal.is_playable(path, frozen):
+            return answer._replace(uppers=frozen, velocities=None)
+        standing = standing_path(path, question.held.root)
+        freed = self._planner.plan(standing, upper, self._rng).configurations
+        parts = partial_motions(freed, upper) if len(freed) else []
+        part = next((part for part in parts if rehearsal.is_playable(standing, part)), None)
+        return answer._replace(path=standing, uppers=part, velocities=None)
