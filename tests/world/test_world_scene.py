@@ -197,9 +197,9 @@ def test_files_that_are_no_text_too_big_or_absent(tmp_path: Path) -> None:
 
 
 def test_stock_scenes_by_name() -> None:
-    assert Scene.stock_names() == ("a", "b", "c", "d", "empty")
+    assert Scene.stock_names() == ("a", "b", "c", "d", "beam", "empty")
     assert Scene.load("D").name == "d"
-    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, empty\)"):
+    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, beam, empty\)"):
         Scene.load("e")
 
 
@@ -208,7 +208,7 @@ def test_a_stock_scene_is_valid_and_leaves_the_straight_way_free_for_the_legs(na
     text = (files("elbowroom.world") / "data" / "scenes" / f"{name}.json").read_text("utf-8")
     VALIDATOR.validate(json.loads(text))
     scene = Scene.load(name)
-    assert len(scene.boxes) == {"a": 4, "b": 4, "c": 4, "d": 6, "empty": 0}[name]
+    assert len(scene.boxes) == {"a": 4, "b": 4, "beam": 4, "c": 4, "d": 6, "empty": 0}[name]
     assert not scene.finished(scene.start)
     length = scene.finish.position[1] - scene.start.z
     z = scene.start.z + np.linspace(0.0, length + 1.0, 200)

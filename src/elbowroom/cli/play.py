@@ -29,7 +29,7 @@ def play(
     host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
-    scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
+    scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, beam, empty) or a scene file.")] = "a",
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,

@@ -22,7 +22,7 @@ _FRAMES_PER_UPDATE = 30
 
 def walk(
     *,
-    scene: Annotated[str, typer.Option(help="A stock scene by name (a, b, c, d, empty) or a scene file.")] = "a",
+    scene: Annotated[str, typer.Option(help="A stock scene by name (a, b, c, d, beam, empty) or a scene file.")] = "a",
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     seed: Annotated[int, typer.Option(help="Varies the planner's chance, the start and the user's patience.")] = 0,

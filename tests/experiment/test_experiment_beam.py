@@ -1,0 +1,47 @@
+"""The scene that needs bent knees: crossed by who can crouch, and by nobody else."""
+
+import numpy as np
+import pytest
+
+from elbowroom.body import dof
+from elbowroom.body.dof import LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.stock_clips import stock_clips
+from elbowroom.control.frame import Frame
+from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.world.scene import Scene
+
+HUMANOID = Humanoid.default()
+
+
+def cross(seed: int, limit: float) -> tuple[CrossingResult, list[Frame]]:
+    settings = CrossingSettings(planner="exact", seed=seed, limit=limit)
+    frames: list[Frame] = []
+    controller = controller_for(HUMANOID, Scene.load("beam"), settings)
+    return run_crossing(controller, settings, lambda command, dt, frame: frames.append(frame)), frames
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_beam_is_passed_straight_with_bent_knees_and_touches_nothing(seed: int) -> None:
+    result, frames = cross(seed, 20.0)
+    assert result.straight
+    q, roots = np.array([frame.q for frame in frames]), np.array([frame.root for frame in frames])
+    assert q[:, LOWERING].max() > 0.2
+    assert q[0, LOWERING] == 0.0
+    verdict = judge(ShownMotion.at_rate(q, roots), HUMANOID, Scene.load("beam"), JudgeSettings(mesh=seed == 0))
+    assert verdict.capsules.touching == 0
+    assert verdict.mesh is None or verdict.mesh.touching == 0
+
+
+def test_a_body_that_cannot_crouch_stops_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert any(clip.configurations[:, 2].any() for clip in stock_clips(DofGroup.WAIST))
+    stiff = dof._LIMITS.copy()
+    stiff[columns_of(DofGroup.WAIST).start + LOWERING - DofGroup.WAIST.value.start] = 0.0
+    monkeypatch.setattr(dof, "_LIMITS", stiff)
+    assert not limits(DofGroup.WAIST)[2].any()
+    result, frames = cross(0, 7.0)
+    assert not result.passed
+    assert 1.0 < frames[-1].q[1] < 2.0
+    assert min(frame.clearance for frame in frames) >= 0.0
