@@ -62,7 +62,7 @@ def figure_of(place: str, tree: NodeTree, bones: Mapping[str, int], vrm_facing: 
     return Figure(place, tree, bones, rotations, tree.world_matrices(rotations), facing)
 
 
-def rig_of(figure: Figure, points: BodyPoints | None) -> Rig:
+def rig_of(figure: Figure, points: BodyPoints) -> Rig:
     """How the file is driven; `points` are the surface in the file's axes and units. Raises `InputError`."""
     hips = figure.bones["hips"]
     nodes = np.array(list(figure.bones.values()), dtype=np.int64)
@@ -121,12 +121,12 @@ def _check_scales(place: str, tree: NodeTree, bones: Mapping[str, int]) -> None:
                 )
 
 
-def _ground(figure: Figure, points: BodyPoints | None) -> float:
+def _ground(figure: Figure, points: BodyPoints) -> float:
     """Height of the ground in file units: the lowest point of the feet, or a little below the lowest joint."""
     names, height = list(figure.bones), figure.height
     soles = [i for i, bone in enumerate(names) if bone.endswith(("LowerLeg", "Foot", "Toes"))]
     lowest = min(float(figure.matrices[figure.bones[names[i]], 1, 3]) for i in soles)
-    if points is not None and np.isin(points.joints, soles).any():
+    if np.isin(points.joints, soles).any():
         mesh = float(points.positions[np.isin(points.joints, soles), 1].min())
         if lowest - mesh < _THICKEST_SOLE * height:
             return mesh

@@ -18,8 +18,8 @@ from elbowroom.body.skeleton import Skeleton
 from elbowroom.body.surface import body_points
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf, parse_gltf, read_gltf
-from elbowroom.formats.meshes import SurfacePoints, compression, surface_points
-from elbowroom.formats.nodes import NodeTree, read_nodes
+from elbowroom.formats.meshes import surface_points
+from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import pack_glb
 from elbowroom.formats.vrm import Vrm, read_vrm
 from elbowroom.formats.x3d.files import SUFFIXES, is_x3d
@@ -40,8 +40,8 @@ def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     return _humanoid(parse_gltf(data, name), None, None, LoadSettings())[0]
 
 
-def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple[Humanoid, BodyPoints | None]:
-    """The humanoid and the points of its own surface (None without a readable mesh), to judge its capsules by."""
+def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple[Humanoid, BodyPoints]:
+    """The humanoid and the points of its own surface to judge its capsules by."""
     chosen = settings or LoadSettings()
     beside = chosen.bones or override_beside(path)
     override = None if beside is None else read_override(beside)
@@ -53,22 +53,21 @@ def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple
 
 def _humanoid(
     gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings, hanim: HanimAsset | None = None
-) -> tuple[Humanoid, BodyPoints | None]:
+) -> tuple[Humanoid, BodyPoints]:
     tree = read_nodes(gltf)
     vrm = read_vrm(gltf, len(tree))
     bones = file_bones(gltf, tree, vrm, override, hanim.bones if hanim else None)
     figure = figure_of(gltf.name, bones.tree, bones.nodes, vrm.facing if vrm else None)
-    surface, surface_notes = _surface(bones.gltf, bones.tree)
+    surface = surface_points(bones.gltf, bones.tree)
     springs = vrm.spring_nodes if vrm else frozenset()
     points = body_points(bones.tree, list(bones.nodes.values()), springs, surface, figure.matrices)
     rig = rig_of(figure, points)
     skeleton = skeleton_of(figure, rig)
-    if points is not None:
-        points = BodyPoints(rig.to_model(points.positions), points.joints)
+    points = BodyPoints(rig.to_model(points.positions), points.joints)
     capsules, capsule_notes = _capsules(skeleton, points)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
-    meta = replace(told, notes=told.notes + bones.notes + unit + surface_notes + capsule_notes, bones=bones.sources)
+    meta = replace(told, notes=told.notes + bones.notes + unit + capsule_notes, bones=bones.sources)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(bones.gltf))
     return (humanoid, points) if settings.height is None else _scaled(humanoid, points, settings.height)
 
@@ -83,18 +82,9 @@ def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
     )
 
 
-def _surface(gltf: Gltf, tree: NodeTree) -> tuple[SurfacePoints | None, tuple[str, ...]]:
-    packed = compression(gltf)
-    if packed:
-        return None, (f"the mesh is compressed with {packed}, which is not read yet",)
-    return surface_points(gltf, tree), ()
-
-
-def _capsules(skeleton: Skeleton, points: BodyPoints | None) -> tuple[Capsules, tuple[str, ...]]:
+def _capsules(skeleton: Skeleton, points: BodyPoints) -> tuple[Capsules, tuple[str, ...]]:
     """The collision body, and notes on what of it has average proportions."""
     average = proportional_capsules(skeleton)
-    if points is None:
-        return average, ("the collision body has average proportions",)
     capsules, bare = fit_capsules(skeleton, points)
     if 2 * len(bare) > len(capsules.names):
         return average, ("no mesh on most of the bones: the collision body has average proportions",)
@@ -110,7 +100,7 @@ def crown_of(humanoid: Humanoid) -> float:
     return float(np.max(rest + ends + capsules.radii[head]))
 
 
-def _scaled(humanoid: Humanoid, points: BodyPoints | None, height: float) -> tuple[Humanoid, BodyPoints | None]:
+def _scaled(humanoid: Humanoid, points: BodyPoints, height: float) -> tuple[Humanoid, BodyPoints]:
     """The same avatar as tall as was asked for."""
     factor = height / crown_of(humanoid)
     if abs(factor - 1.0) < _ASKED or humanoid.rig is None:
@@ -130,4 +120,4 @@ def _scaled(humanoid: Humanoid, points: BodyPoints | None, height: float) -> tup
             humanoid.meta, notes=(*humanoid.meta.notes, f"scaled by {factor:.3g} to a height of {height:g} m")
         ),
     )
-    return scaled, None if points is None else BodyPoints(factor * points.positions, points.joints)
+    return scaled, BodyPoints(factor * points.positions, points.joints)

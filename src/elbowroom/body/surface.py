@@ -14,16 +14,14 @@ def body_points(
     tree: NodeTree,
     bone_nodes: list[int],
     spring_nodes: frozenset[int],
-    surface: SurfacePoints | None,
+    surface: SurfacePoints,
     matrices: NDArray[np.float64],
-) -> BodyPoints | None:
+) -> BodyPoints:
     """The points that belong to bones, in the file's axes and units at the pose of the world `matrices` (n, 4, 4).
 
     A point on a node between or beyond the bones goes with the nearest bone above it, unless a spring moves it. Where
-    the body is skinned, rigid pieces (weapons, shields, helmets) count as things that it carries. None without surface.
+    the body is skinned, rigid pieces (weapons, shields, helmets) count as things that it carries.
     """
-    if surface is None:
-        return None
     joint_of_node = _joints_of_nodes(tree, bone_nodes, spring_nodes)
     joints = joint_of_node[surface.nodes] if len(surface.nodes) else np.zeros(0, np.int64)
     kept = joints >= 0

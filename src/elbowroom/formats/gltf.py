@@ -1,7 +1,7 @@
 """The container: a GLB or .gltf file as checked JSON and its buffers. Nothing outside its own folder is ever read."""
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from elbowroom.errors import InputError
@@ -22,6 +22,7 @@ class Gltf:
     buffers: tuple[bytes | memoryview | None, ...]  # None: a buffer without data (compression fallback)
     glb: bytes | None  # the bytes as read, if they are a GLB that needs no other file
     folder: Path | None  # where neighbouring files may lie; None for uploaded bytes
+    decoded: dict[str, bytes] = field(default_factory=dict)  # compressed views that were read already, by their place
 
 
 def read_gltf(path: Path) -> Gltf:
@@ -51,7 +52,7 @@ def parse_gltf(data: bytes, name: str, folder: Path | None = None) -> Gltf:
     if not version.text().startswith("2."):
         raise version.wrong("'2.0'")
     fields = root.at("buffers").items(_MAX_BUFFERS)
-    buffers = tuple(_buffer(field, binary if i == 0 else None, folder) for i, field in enumerate(fields))
+    buffers = tuple(_buffer(place, binary if i == 0 else None, folder) for i, place in enumerate(fields))
     whole = is_glb and not _needs_files(root)
     return Gltf(name, root, buffers, data if whole else None, folder)
 
@@ -78,16 +79,16 @@ def _glb_chunks(data: bytes, name: str) -> tuple[bytes, memoryview | None]:
     return bytes(chunks[_JSON]), chunks.get(_BIN)
 
 
-def _buffer(field: Field, binary: memoryview | None, folder: Path | None) -> bytes | memoryview | None:
-    size = field.at("byteLength").integer(1, MAX_BYTES)
-    uri = field.at("uri")
+def _buffer(place: Field, binary: memoryview | None, folder: Path | None) -> bytes | memoryview | None:
+    size = place.at("byteLength").integer(1, MAX_BYTES)
+    uri = place.at("uri")
     data = read_uri(uri, folder, MAX_BYTES) if uri.present else binary
     if data is not None and len(data) < size:
-        raise InputError(f"{field.place} claims {size} bytes, {len(data)} are there: the file was cut off")
+        raise InputError(f"{place.place} claims {size} bytes, {len(data)} are there: the file was cut off")
     return data
 
 
 def _needs_files(root: Field) -> bool:
     """Whether a viewer would have to fetch anything but these bytes."""
-    uris = [field.at("uri") for key in ("buffers", "images") for field in root.at(key).items()]
+    uris = [place.at("uri") for key in ("buffers", "images") for place in root.at(key).items()]
     return any(uri.present and not uri.text().startswith("data:") for uri in uris)

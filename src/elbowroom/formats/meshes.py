@@ -11,10 +11,10 @@ from elbowroom.formats.accessors import read_accessor
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.nodes import NodeTree
+from elbowroom.formats.primitives import Primitive
 
 _MAX_POINTS = 5_000_000
 _MAX_PRIMITIVES = 100_000
-_COMPRESSION = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,19 +34,14 @@ class Skin:
     inverse_binds: NDArray[np.float64]  # (S, 4, 4), maybe more than slots
 
 
-def compression(gltf: Gltf) -> str | None:
-    """The name of a mesh compression that the file uses and we do not read, if there is one."""
-    used = {field.text() for key in ("extensionsRequired", "extensionsUsed") for field in gltf.root.at(key).items()}
-    return next((name for name in _COMPRESSION if name in used), None)
-
-
 def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
     """All vertices of all meshes that nodes show; vertices shared by several primitives are taken once."""
     skins: dict[int, Skin] = {}
     parts: list[tuple[NDArray[np.int64], NDArray[np.float64], bool]] = []
     total = 0
-    for node, attributes in _shown(gltf, tree):
-        points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
+    for node, field in _shown(gltf, tree):
+        primitive = Primitive(gltf, field)
+        points = primitive.positions()
         total += len(points)
         if total > _MAX_POINTS:
             raise InputError(f"{gltf.name}: the meshes have more than {_MAX_POINTS} vertices")
@@ -56,7 +51,7 @@ def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
             continue
         if index not in skins:
             skins[index] = read_skin(gltf, index, len(tree))
-        parts.append((*_skinned(gltf, attributes, points, skins[index]), True))
+        parts.append((*_skinned(primitive, points, skins[index]), True))
     return SurfacePoints(
         nodes=np.concatenate([np.zeros(0, np.int64), *(nodes for nodes, _, _ in parts)]),
         offsets=np.concatenate([np.zeros((0, 3)), *(offsets for _, offsets, _ in parts)]),
@@ -72,7 +67,7 @@ def skin_joints(gltf: Gltf, tree: NodeTree) -> set[int]:
 
 
 def _shown(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
-    """Each node with the attributes of each primitive it shows; those that share their vertices only once."""
+    """Each node with each primitive it shows; those that share their vertices only once."""
     meshes = gltf.root.at("meshes")
     seen: set[tuple[object, ...]] = set()
     examined = 0
@@ -85,7 +80,7 @@ def _shown(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
             key = (node, *(str(attributes.at(name).value) for name in ("POSITION", "JOINTS_0", "WEIGHTS_0")))
             if key not in seen and attributes.at("POSITION").present:
                 seen.add(key)
-                yield node, attributes
+                yield node, primitive
 
 
 def read_skin(gltf: Gltf, index: int, nodes: int) -> Skin:
@@ -102,30 +97,12 @@ def read_skin(gltf: Gltf, index: int, nodes: int) -> Skin:
 
 
 def _skinned(
-    gltf: Gltf, attributes: Field, points: NDArray[np.float64], skin: Skin
+    primitive: Primitive, points: NDArray[np.float64], skin: Skin
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    slots = _dominant_slots(gltf, attributes, len(points))
-    if slots.max(initial=0) >= len(skin.joints):
-        raise InputError(f"{attributes.place}.JOINTS_0 points to joint {slots.max()} of {len(skin.joints)}")
-    bind = skin.inverse_binds[slots]
+    """The nodes (P,) of the joints with the greatest weight, and the points in their axes."""
+    slots, weights = primitive.influences(len(points), len(skin.joints))
+    slot = np.take_along_axis(slots, np.argmax(weights, axis=1)[:, None], axis=1)[:, 0]
+    bind = skin.inverse_binds[slot]
     with np.errstate(all="ignore"):
         offsets = np.einsum("pij,pj->pi", bind[:, :3, :3], points) + bind[:, :3, 3]
-    return skin.joints[slots], offsets
-
-
-def _dominant_slots(gltf: Gltf, attributes: Field, count: int) -> NDArray[np.int64]:
-    """For every vertex the skin slot with the greatest weight (of all JOINTS_n / WEIGHTS_n sets)."""
-    joints, weights = [], []
-    for index in range(4):
-        slot_field, weight_field = attributes.at(f"JOINTS_{index}"), attributes.at(f"WEIGHTS_{index}")
-        if not slot_field.present:
-            break
-        joints.append(read_accessor(gltf, slot_field, "VEC4"))
-        weights.append(read_accessor(gltf, weight_field, "VEC4"))
-    if not joints or any(len(values) != count for values in joints + weights):
-        raise InputError(f"{attributes.place}: JOINTS_n and WEIGHTS_n are needed for each of the {count} vertices")
-    best = np.argmax(np.concatenate(weights, axis=1), axis=1)
-    slots = np.take_along_axis(np.concatenate(joints, axis=1), best[:, None], axis=1)[:, 0].astype(np.int64)
-    if slots.min(initial=0) < 0:
-        raise InputError(f"{attributes.place}.JOINTS_0 has a negative joint")
-    return slots
+    return skin.joints[slot], offsets

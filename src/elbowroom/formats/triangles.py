@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.formats.accessors import read_accessor
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.meshes import Skin, read_skin
 from elbowroom.formats.nodes import NodeTree
+from elbowroom.formats.primitives import Primitive
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -19,8 +19,7 @@ Ints = NDArray[np.int64]
 _MAX_VERTICES = 2_000_000
 _MAX_TRIANGLES = 4_000_000
 _MAX_PRIMITIVES = 10_000
-_SETS = 2  # of JOINTS_n / WEIGHTS_n that are read: eight joints for a vertex
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6  # primitive modes with a surface
+_TRIANGLES = 4  # the first of the primitive modes with a surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +60,10 @@ def _surfaces(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
                 yield node, primitive
 
 
-def _part(gltf: Gltf, tree: NodeTree, node: int, primitive: Field, skins: dict[int, Skin]) -> TriangleMesh:
-    attributes = primitive.at("attributes")
-    points = read_accessor(gltf, attributes.at("POSITION"), "VEC3")
-    triangles = _indices(gltf, primitive, len(points))
+def _part(gltf: Gltf, tree: NodeTree, node: int, field: Field, skins: dict[int, Skin]) -> TriangleMesh:
+    primitive = Primitive(gltf, field)
+    points = primitive.positions()
+    triangles = primitive.triangles(len(points))
     index = int(tree.skins[node])
     if index < 0:
         riders = np.full((len(points), 1), node, dtype=np.int64)
@@ -73,46 +72,11 @@ def _part(gltf: Gltf, tree: NodeTree, node: int, primitive: Field, skins: dict[i
     if index not in skins:
         skins[index] = read_skin(gltf, index, len(tree))
     skin = skins[index]
-    slots, weights = _influences(gltf, attributes, len(points), len(skin.joints))
+    slots, weights = primitive.influences(len(points), len(skin.joints))
     bind = skin.inverse_binds[slots]
     with np.errstate(all="ignore"):
         offsets = np.einsum("vkij,vj->vki", bind[..., :3, :3], points) + bind[..., :3, 3]
     return TriangleMesh(triangles, skin.joints[slots], weights, offsets, np.ones(len(points), bool))
-
-
-def _indices(gltf: Gltf, primitive: Field, count: int) -> Ints:
-    """Vertex indices (T, 3) of a primitive."""
-    field = primitive.at("indices")
-    order = np.arange(count)
-    if field.present:
-        order = read_accessor(gltf, field, "SCALAR")[:, 0].astype(np.int64)
-        if order.min() < 0 or order.max() >= count:
-            raise InputError(f"{field.place} points to vertex {order.max()} of {count}")
-    mode = primitive.at("mode").optional_integer(0, 6, _TRIANGLES)
-    if mode == _STRIP:
-        return np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
-    if mode == _FAN:
-        return np.stack([np.full(max(len(order) - 2, 0), order[0]), order[1:-1], order[2:]], axis=1)
-    return order[: len(order) // 3 * 3].reshape(-1, 3)
-
-
-def _influences(gltf: Gltf, attributes: Field, count: int, joints: int) -> tuple[Ints, Floats]:
-    """Slots (V, K) of the skin and weights that sum to 1; a vertex without weight goes with its first joint."""
-    slots, weights = [], []
-    for index in range(_SETS):
-        slot_field, weight_field = attributes.at(f"JOINTS_{index}"), attributes.at(f"WEIGHTS_{index}")
-        if not slot_field.present:
-            break
-        slots.append(read_accessor(gltf, slot_field, "VEC4"))
-        weights.append(read_accessor(gltf, weight_field, "VEC4"))
-    if not slots or any(len(values) != count for values in slots + weights):
-        raise InputError(f"{attributes.place}: JOINTS_n and WEIGHTS_n are needed for each of the {count} vertices")
-    weight = np.maximum(np.concatenate(weights, axis=1), 0.0)
-    slot = np.where(weight > 0.0, np.concatenate(slots, axis=1), np.concatenate(slots, axis=1)[:, :1]).astype(np.int64)
-    if slot.min() < 0 or slot.max() >= joints:
-        raise InputError(f"{attributes.place}.JOINTS_0 points to joint {slot.max()} of {joints}")
-    weight[weight.sum(axis=1) <= 0.0, 0] = 1.0
-    return slot, weight / weight.sum(axis=1, keepdims=True)
 
 
 def _joined(parts: list[TriangleMesh]) -> TriangleMesh:

@@ -14,7 +14,6 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.rig import Rig
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.formats.gltf import parse_gltf
-from elbowroom.formats.meshes import compression
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.formats.triangles import TriangleMesh, triangle_mesh
 from elbowroom.formats.vrm import read_vrm
@@ -57,9 +56,6 @@ def skin_of(humanoid: Humanoid) -> tuple[Skin | None, str]:
     if humanoid.glb is None or humanoid.rig is None:
         return None, "the avatar has no file"
     gltf = parse_gltf(humanoid.glb, humanoid.name)
-    packed = compression(gltf)
-    if packed:
-        return None, f"the mesh is compressed with {packed}, which is not read yet"
     tree = read_nodes(gltf)
     mesh = triangle_mesh(gltf, tree)
     vrm = read_vrm(gltf, len(tree))
