@@ -16,7 +16,8 @@ Open = Callable[..., LivePage]
 STOCK = Path(elbowroom.__file__).parent / "body" / "data" / "stock.vrm"
 FILES = [pytest.param(STOCK, id="stock")]
 if SHARED is not None:
-    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "m2m_human-male.glb", id="glb"))
+    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt"))
+    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired"))
 
 DROP = """
 ([name, text]) => {

@@ -13,7 +13,7 @@ from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf, read_gltf
 from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
-from elbowroom.formats.packing import as_glb, write_glb
+from elbowroom.formats.packing import pack_glb, write_glb
 
 GLB = build(Recipe(vrm="1"))
 EMPTY: dict[str, Any] = {"asset": {"version": "2.0"}}
@@ -86,14 +86,14 @@ def test_an_upload_must_not_refer_to_files() -> None:
 
 
 def test_a_whole_glb_is_packed_unchanged() -> None:
-    assert as_glb(GLB) is GLB
+    assert pack_glb(parse_gltf(GLB, "a.glb")) is GLB
 
 
 def test_a_picture_on_the_network_is_refused(tmp_path: Path) -> None:
     content = json_of(GLB) | {"images": [{"uri": "https://example.org/face.png"}]}
     (tmp_path / "figure.vrm").write_bytes(write_glb(content, _binary(GLB)))
     with pytest.raises(InputError, match="same folder"):
-        as_glb(tmp_path / "figure.vrm")
+        pack_glb(read_gltf(tmp_path / "figure.vrm"))
 
 
 def test_scattered_buffers_and_images_are_packed_into_one_glb(tmp_path: Path) -> None:
@@ -111,7 +111,7 @@ def test_scattered_buffers_and_images_are_packed_into_one_glb(tmp_path: Path) ->
     (tmp_path / "rest.bin").write_bytes(binary[half:])
     (tmp_path / "skin.png").write_bytes(b"\x89PNG not really")
     (tmp_path / "figure.gltf").write_text(json.dumps(content))
-    packed = as_glb(tmp_path / "figure.gltf")
+    packed = pack_glb(read_gltf(tmp_path / "figure.gltf"))
     assert "uri" not in json.dumps(json_of(packed))
     original, again = parse_gltf(GLB, "a"), parse_gltf(packed, "b")
     assert again.glb == packed

@@ -5,22 +5,17 @@ import json
 import struct
 from pathlib import Path
 
-from elbowroom.formats.gltf import MAX_BYTES, Gltf, parse_gltf, read_gltf
+from elbowroom.formats.gltf import MAX_BYTES, Gltf
 from elbowroom.formats.resources import read_uri
 
 _MIME = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".webp": "image/webp", ".ktx2": "image/ktx2"}
 
 
-def as_glb(source: Path | bytes) -> bytes:
+def pack_glb(gltf: Gltf) -> bytes:
     """The asset as one GLB that refers to no other file; a GLB or VRM which is so already comes back unchanged.
 
-    Raises `InputError` for what cannot be read, and for references to a network address or out of the file's folder.
+    Raises `InputError` for references to a network address or out of the file's folder.
     """
-    return pack_glb(read_gltf(source) if isinstance(source, Path) else parse_gltf(source, "the asset"))
-
-
-def pack_glb(gltf: Gltf) -> bytes:
-    """`as_glb` for an asset already in memory."""
     if gltf.glb is not None:
         return gltf.glb
     content = copy.deepcopy(gltf.root.value)

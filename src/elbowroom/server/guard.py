@@ -15,6 +15,7 @@ LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 POLICY = "; ".join(
     [
         "default-src 'self'",
+        "script-src 'self' 'wasm-unsafe-eval'",  # decoders of compressed meshes are WebAssembly
         "img-src 'self' blob: data:",
         "style-src 'self' 'unsafe-inline'",
         "connect-src 'self' blob: data:",
