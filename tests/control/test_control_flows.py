@@ -57,6 +57,9 @@ class FakePlanner:
     def __init__(self, outcomes: Iterator[bool]) -> None:
         self.outcomes = outcomes
 
+    def reset(self) -> None:
+        pass
+
     def plan(self, path: RootPath, start: np.ndarray, rng: np.random.Generator) -> LocalPlan:
         found = canned_walk(path, start)
         stands = not path.states[:, 3:6].any()  # asked after a failure, for the limbs alone: that is not the figure's

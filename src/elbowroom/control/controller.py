@@ -80,12 +80,19 @@ class Controller:
         self.start = scene.start if start is None else start
         self._check = BodyCheck(humanoid, scene)
         self._desk: PlanningDesk = desk or ImmediateDesk()
-        self.reset()
+        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check)
+        self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
-        self._desk.forget()  # a plan in the making has planners of its own
-        self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check)
+        if self._desk.busy:  # a plan in the making keeps its planners
+            self._desk.forget()
+            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check)
+        else:
+            self._wayfinder.reset()
+        self._begin()
+
+    def _begin(self) -> None:
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._foresight = Foresight(self._desk.immediate)
         self._holding = Holding()
@@ -180,14 +187,15 @@ class Controller:
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
         time, start = self._planning_start(at_once)
+        root, settings = RootState(*start.root.tolist()), self.settings
         query = MotionQuery(
-            time, RootState(*start.root.tolist()), start.upper, start.upper_velocity, command, self._horizon(),
-            self.settings.interval,
-        )  # fmt: skip
+            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval
+        )
         held = None
         if self._holding.active and self._assist:
             held = Held(start.root, start.upper, self._holding.stance, self._clearance)
-        question = Question(query, self._assist, held)
+        reserve = 0 if self._desk.immediate else round(_RESERVE / settings.interval)
+        question = Question(query, self._assist, held, reserve)
         self._asked = _Asked(question, self._queue.time, self._queue.delay, self._queue.empty)
         self._desk.submit(partial(self._wayfinder.answer, question))
         self._take_plan(command)
@@ -204,12 +212,6 @@ class Controller:
         time = soonest if at_once else next((time for time in coming if time >= soonest), coming[-1])
         time = min(float(time), float(coming[-1]))
         return time, self._queue.at(time)
-
-    def _horizon(self) -> int:
-        """Key intervals to plan: the queue's size; with a planner that sees farther, a reserve for late plans."""
-        if self._desk.immediate or not (self._assist and self._wayfinder.looks_far):
-            return self.settings.queue_size
-        return max(self.settings.queue_size, round(_RESERVE / self.settings.interval))
 
     def _take_plan(self, command: Command) -> None:
         """On success the queue goes on with the plan, else it keeps what it has."""

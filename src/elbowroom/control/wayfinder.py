@@ -4,6 +4,7 @@ A question holds all that its answer depends on, besides what the planners remem
 another thread while playback goes on.
 """
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from elbowroom.control.canned import canned_walk
 from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
 from elbowroom.control.settings import ControlSettings
 from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery
-from elbowroom.planning.planner import make_planner
+from elbowroom.planning.planner import Planner, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
@@ -31,6 +32,7 @@ class Question(NamedTuple):
     query: MotionQuery
     assist: bool  # off: the canned walk
     held: Held | None  # the pose in which the avatar is held after a contact
+    reserve: int  # key intervals to plan, where the planner sees farther than the queue is long
 
 
 class Answer(NamedTuple):
@@ -47,15 +49,23 @@ class Wayfinder:
     """The planners of one avatar in one scene, with what they remember; answers one question at a time."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, check: BodyCheck) -> None:
-        self._root_planner = RootPlanner(humanoid, scene)
-        self._planner = make_planner(settings.planner, humanoid, scene)
+        """The planners are made with the first answer: that takes a while."""
+        self._humanoid, self._scene, self._settings, self._check = humanoid, scene, settings, check
         self._rng = np.random.default_rng(settings.seed)
-        self._check = check
 
-    @property
-    def looks_far(self) -> bool:
-        """Whether the planner sees farther than the queue that it is asked to fill."""
-        return isinstance(self._planner, MotionPlanner)
+    @cached_property
+    def _root_planner(self) -> RootPlanner:
+        return RootPlanner(self._humanoid, self._scene)
+
+    @cached_property
+    def _planner(self) -> Planner:
+        return make_planner(self._settings.planner, self._humanoid, self._scene)
+
+    def reset(self) -> None:
+        """Forget all that was planned."""
+        self._rng = np.random.default_rng(self._settings.seed)
+        self._root_planner.reset()
+        self._planner.reset()
 
     def answer(self, question: Question) -> Answer:
         """Plan; after a contact, find a way out of it."""
@@ -68,7 +78,8 @@ class Wayfinder:
         """A root path and its upper body; from the planner as one if it can do that."""
         query = question.query
         if question.assist and isinstance(self._planner, MotionPlanner):
-            return self._planner.plan_motion(self._root_planner, query)
+            far = query._replace(horizon=max(query.horizon, question.reserve))
+            return self._planner.plan_motion(self._root_planner, far)
         root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
         if not question.assist:
             return Motion(root, canned_walk(root.path, query.upper))

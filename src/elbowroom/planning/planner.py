@@ -19,6 +19,9 @@ from elbowroom.world.scene import Scene
 class Planner(Protocol):
     """Finds upper-body motion for root paths; it may learn from plan to plan."""
 
+    def reset(self) -> None:
+        """Forget all plans made: equal calls from here on give equal plans."""
+
     def plan(self, path: RootPath, start: NDArray[np.float64], rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians."""
 

@@ -9,6 +9,7 @@ from elbowroom.errors import InputError
 from elbowroom.server.library import Library
 from elbowroom.server.messages import Configure, Loading, Notice
 from elbowroom.server.outbox import Outbox
+from elbowroom.server.planning_thread import PlanningThread
 from elbowroom.server.reports import avatar_message, scene_message
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import Walk, WalkSettings
@@ -89,7 +90,8 @@ class Changes:
 
 def make_walk(library: Library, scene: str, avatar: str, settings: WalkSettings, place: RootState | None) -> Walk:
     """A walk from the library; takes a while, so call it in a worker thread. Raises `InputError`."""
-    return Walk(library.avatars.get(avatar), library.find_scene(scene), settings, place)
+    desk = PlanningThread(library.planning)
+    return Walk(library.avatars.get(avatar), library.find_scene(scene), settings, place, desk)
 
 
 def _merged(settings: WalkSettings, message: Configure) -> WalkSettings:

@@ -1,6 +1,7 @@
 """What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
 
-from dataclasses import dataclass
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -10,6 +11,12 @@ from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS, Catalog, SceneChoice
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
+
+_THREADS = 16  # twice as many as sessions: a walk that was given up may still be planning
+
+
+def _planning_threads() -> Executor:
+    return ThreadPoolExecutor(_THREADS, "planning")
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +28,7 @@ class Library:
     scene: str  # the names that a session begins with
     avatar: str
     walk: WalkSettings
+    planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
 
     @classmethod
     def open(cls, scene: str = "a", avatar: Path | None = None, walk: WalkSettings | None = None) -> "Library":
@@ -38,7 +46,8 @@ class Library:
         )
 
     def close(self) -> None:
-        """Remove the files that the avatars lie in."""
+        """Remove the files that the avatars lie in; plans in the making end unheard."""
+        self.planning.shutdown(wait=False, cancel_futures=True)
         self.avatars.close()
 
     def find_scene(self, name: str) -> Scene:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
+from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -43,12 +44,21 @@ class Walk:
     """A living walk; `step` advances it."""
 
     def __init__(
-        self, avatar: StoredAvatar, scene: Scene, settings: WalkSettings, place: RootState | None = None
+        self,
+        avatar: StoredAvatar,
+        scene: Scene,
+        settings: WalkSettings,
+        place: RootState | None = None,
+        desk: PlanningDesk | None = None,
     ) -> None:
-        """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`."""
+        """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`.
+
+        Plans are made at `desk`, by default at once.
+        """
         self.avatar = avatar
         self.scene = scene
         self.settings = settings
+        self._desk = desk
         self._controller = self._made(place)
         self.crossed = 0
         self.stuck_times = 0
@@ -70,6 +80,7 @@ class Walk:
             queue_size=self.settings.queue_size,
             assist=self.settings.assist,
             start=place,
+            desk=self._desk,
         )
 
     def _begin(self) -> None:
@@ -111,6 +122,11 @@ class Walk:
     def plans(self) -> int:
         """Local plans since the last reset."""
         return self._plan_number
+
+    @property
+    def late_plans(self) -> int:
+        """Plans since the last reset that came too late to be shown."""
+        return self._controller.late_plans
 
     @property
     def finished(self) -> bool:

@@ -45,6 +45,10 @@ class ExactPlanner:
         self._body = UpperBody(humanoid, scene, self.settings)
         self._last: _Whole | None = None
 
+    def reset(self) -> None:
+        """Forget the last plan."""
+        self._last = None
+
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng

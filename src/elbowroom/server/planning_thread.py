@@ -1,0 +1,38 @@
+"""Planning beside playback: a session's plans are made in a thread of their own, where kernels need no GIL."""
+
+from concurrent.futures import Executor, Future
+
+from elbowroom.control.desk import Job
+from elbowroom.control.wayfinder import Answer
+
+
+class PlanningThread:
+    """A `PlanningDesk` whose jobs are done by an executor; one session, one job at a time."""
+
+    immediate = False
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._future: Future[Answer] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job is being done, or its answer waits."""
+        return self._future is not None
+
+    def submit(self, job: Job) -> None:
+        """Take on a job; returns at once."""
+        self._future = self._executor.submit(job)
+
+    def take(self) -> Answer | None:
+        """The answer, once, if it is there; raises what the job raised."""
+        if self._future is None or not self._future.done():
+            return None
+        future, self._future = self._future, None
+        return future.result()
+
+    def forget(self) -> None:
+        """Let the job go: one that has begun ends unheard."""
+        if self._future is not None:
+            self._future.cancel()
+            self._future = None
