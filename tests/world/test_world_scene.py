@@ -197,28 +197,33 @@ def test_files_that_are_no_text_too_big_or_absent(tmp_path: Path) -> None:
 
 
 def test_stock_scenes_by_name() -> None:
-    assert Scene.stock_names() == ("a", "b", "c", "d", "beam", "empty")
+    assert Scene.stock_names() == ("a", "b", "c", "d", "beam", "empty", "doorway")
     assert Scene.load("D").name == "d"
-    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, beam, empty\)"):
+    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, beam, empty, doorway\)"):
         Scene.load("e")
 
 
 @pytest.mark.parametrize("name", Scene.stock_names())
-def test_a_stock_scene_is_valid_and_leaves_the_straight_way_free_for_the_legs(name: str) -> None:
+def test_a_stock_scene_is_valid_and_lies_on_its_ground(name: str) -> None:
     text = (files("elbowroom.world") / "data" / "scenes" / f"{name}.json").read_text("utf-8")
     VALIDATOR.validate(json.loads(text))
     scene = Scene.load(name)
-    assert len(scene.boxes) == {"a": 4, "b": 4, "beam": 4, "c": 4, "d": 6, "empty": 0}[name]
     assert not scene.finished(scene.start)
-    length = scene.finish.position[1] - scene.start.z
-    z = scene.start.z + np.linspace(0.0, length + 1.0, 200)
-    legs = np.stack([0 * z, 0 * z + 0.24, z, 0 * z, 0 * z + 0.8, z])
-    assert np.all(clearance(legs[None], np.array([0.24]), scene.boxes.table) > 0.0)
-    assert scene.finished(RootState(x=0.0, z=scene.start.z + length + 0.01))
+    way = scene.finish.position[1] - scene.start.z
+    assert scene.finished(RootState(x=0.0, z=scene.start.z + way + 0.01))
     low = np.array(scene.ground_center) - 0.5 * np.array(scene.ground_size)
     corners = scene.boxes.corners[..., [0, 2]].reshape(-1, 2)
     assert np.all(corners >= low)
     assert np.all(corners <= low + scene.ground_size)
+
+
+@pytest.mark.parametrize(("name", "count"), [("a", 4), ("b", 4), ("c", 4), ("d", 6), ("beam", 4), ("empty", 0)])
+def test_the_papers_scenes_leave_the_straight_way_free_for_the_legs(name: str, count: int) -> None:
+    scene = Scene.load(name)
+    assert len(scene.boxes) == count
+    z = scene.start.z + np.linspace(0.0, scene.finish.position[1] - scene.start.z + 1.0, 200)
+    legs = np.stack([0 * z, 0 * z + 0.24, z, 0 * z, 0 * z + 0.8, z])
+    assert np.all(clearance(legs[None], np.array([0.24]), scene.boxes.table) > 0.0)
 
 
 def test_a_gate_is_crossed_in_its_direction_and_width() -> None:

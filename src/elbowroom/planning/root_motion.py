@@ -61,7 +61,7 @@ class Travel(NamedTuple):
 
 
 @exact_kernel
-def _wrapped(angle: float) -> float:
+def wrapped(angle: float) -> float:
     """The same angle in [-pi, pi)."""
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
@@ -85,7 +85,9 @@ def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, inte
 
 
 @exact_kernel
-def _limited(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds) -> None:
+def limited_step(
+    states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds
+) -> None:
     """Step towards the wanted velocities as far as the accelerations allow."""
     a = states[k]
     sine, cosine = np.sin(a[2]), np.cos(a[2])
@@ -101,9 +103,9 @@ def _limited(states: Floats, k: int, vx: float, vz: float, turn: float, interval
 
 
 @exact_kernel
-def _turn_towards(state: Floats, heading: float, interval: float, bounds: MotionBounds) -> float:
+def turn_towards(state: Floats, heading: float, interval: float, bounds: MotionBounds) -> float:
     """Heading rate at the end of the next step that brings the body round to `heading` without overshoot."""
-    error = _wrapped(heading - state[2])
+    error = wrapped(heading - state[2])
     gain = min(_RESPONSE, 1.0 / interval)
     rate: float = gain * (error - 0.5 * state[5] * interval) / (1.0 + 0.5 * gain * interval)
     return min(max(rate, -bounds.turn_rate), bounds.turn_rate)
@@ -113,7 +115,7 @@ def _turn_towards(state: Floats, heading: float, interval: float, bounds: Motion
 def brake(states: Floats, first: int, interval: float, bounds: MotionBounds) -> None:
     """Fill the states after `first` by slowing down to a stand as fast as allowed."""
     for k in range(first, states.shape[0] - 1):
-        _limited(states, k, 0.0, 0.0, 0.0, interval, bounds)
+        limited_step(states, k, 0.0, 0.0, 0.0, interval, bounds)
 
 
 @exact_kernel
@@ -125,7 +127,7 @@ def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds)
         heading = states[k, 2] + 0.5 * interval * (states[k, 5] + rate)
         sine, cosine = np.sin(heading), np.cos(heading)
         vx, vz = wanted[0] * sine + wanted[1] * cosine, wanted[0] * cosine - wanted[1] * sine
-        _limited(states, k, vx, vz, wanted[2], interval, bounds)
+        limited_step(states, k, vx, vz, wanted[2], interval, bounds)
 
 
 @exact_kernel
@@ -168,13 +170,13 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
         way = heading
         if (aim_x - x) ** 2 + (aim_z - z) ** 2 > 1e-6:
             way = np.arctan2(aim_x - x, aim_z - z)
-        turn = _turn_towards(states[k], way if travel.turns else travel.facing, interval, bounds)
+        turn = turn_towards(states[k], way if travel.turns else travel.facing, interval, bounds)
         if travel.turns:
             front = heading + 0.5 * interval * (states[k, 5] + turn)
-            error = _wrapped(way - front)
+            error = wrapped(way - front)
             speed *= min(max(1.25 * np.cos(error), 0.0), 1.0)
             way = front + min(max(error, -_SIDLE), _SIDLE)
-        _limited(states, k, speed * np.sin(way), speed * np.cos(way), turn, interval, bounds)
+        limited_step(states, k, speed * np.sin(way), speed * np.cos(way), turn, interval, bounds)
 
 
 @exact_kernel

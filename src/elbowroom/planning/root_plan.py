@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum
 
+from elbowroom.planning.root_evasion import EvasionSettings
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_route import RouteSettings
@@ -12,6 +13,7 @@ class RootPlanKind(Enum):
     """How a root path answers its command."""
 
     STRAIGHT = "straight"  # as commanded
+    EVASION = "evasion"  # aside of the line of travel, or with the body turned
     DETOUR = "detour"  # round an obstacle, at full speed
     SHORTENED = "shortened"  # slower than commanded, or ending early
     STOPPED = "stopped"  # no way on
@@ -23,6 +25,7 @@ class RootPlannerSettings:
 
     motion: RootMotionSettings = field(default_factory=RootMotionSettings)
     route: RouteSettings = field(default_factory=RouteSettings)
+    evasion: EvasionSettings = field(default_factory=EvasionSettings)
     sight: float = 3.2  # how far ahead the way is looked at
     widest_detour: float = 1.6  # how far from the line of travel a way round may lead
     worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
@@ -31,6 +34,10 @@ class RootPlannerSettings:
     margin: float = 0.01  # clearance of the straight way
     skin: float = 0.01  # clearance that posed legs keep along a path
     spacing: float = 0.0125  # seconds between checked states
+    untroubled: float = 0.15  # seconds lost below which nothing else is thought of
+    dead_end: float = 2.0  # seconds that a way costs that ends before an obstacle
+    aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
+    turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
     slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
 
 
@@ -43,3 +50,4 @@ class RootPlan:
     goal: tuple[float, float]  # x, z of the short-term goal: where the looked-at route ends
     checks: int  # postures and places whose clearance was computed
     nanoseconds: int
+    lost: float = 0.0  # seconds that it costs against a walk as commanded, ways aside and turns included

@@ -7,7 +7,9 @@ A path is accepted if the posed legs and the pelvis are free at dense samples of
 show, and if from each of its key frames a stop would be free too. So the next plan always has a way out: to brake.
 """
 
-import time
+import math
+from collections.abc import Iterator, Sequence
+from time import perf_counter_ns
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +18,27 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_evasion import EvasionFinder
 from elbowroom.planning.root_line import TravelLine, asked_direction, new_line, wanted_speed, wanted_velocities
 from elbowroom.planning.root_motion import MotionBounds
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan, RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root_query import RootQuery
+from elbowroom.planning.root_profile import Profile
+from elbowroom.planning.root_query import Answer, RootQuery
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
 
+Evading = tuple[Profile, TravelLine] | None  # the evasion being followed, and the line that it leads from
+Candidate = tuple[RootPlan, Evading]
+
+
 class RootPlanner:
     """Plans root paths for one humanoid in one scene.
 
-    It remembers one thing between plans: the line of travel of the command that is being held, and where the last path
-    led. `reset` forgets it; a start that does not continue the last path does so too.
+    It remembers between plans: the line of travel of the command that is being held, where the last path led, and how
+    that left the line. `reset` forgets it; a start that does not continue the last path does so too.
     """
 
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings | None = None) -> None:
@@ -38,12 +46,14 @@ class RootPlanner:
         self.body = LowerBody(humanoid, scene.boxes)
         motion = self.settings.motion
         self.bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
-        self._line: TravelLine | None = None
-        self._last: Floats | None = None
+        self._evasions = EvasionFinder(humanoid, scene.boxes.table, self.settings.evasion)
+        self.reset()
 
     def reset(self) -> None:
         """Forget the line of travel."""
-        self._line = self._last = None
+        self._line: TravelLine | None = None
+        self._last: Floats | None = None
+        self._evading: Evading = None
 
     def plan(
         self,
@@ -58,30 +68,133 @@ class RootPlanner:
 
         It is walked at the share `pace`, above 0 and up to 1, of the speed that the command asks for.
         """
-        began = time.perf_counter_ns()
+        began = perf_counter_ns()
         query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
+        lost = 0.0
         if command.idle:
             self._line = None
-            states, kind, goal = query.stop(), RootPlanKind.STRAIGHT, (start.x, start.z)
-        elif command.turn != 0.0 and command.direction is None:
-            self._line = None
-            states, kind, goal = query.steered(pace * wanted_velocities(command, self.settings.motion))
+            answer = Answer(query.stop(), RootPlanKind.STRAIGHT, (start.x, start.z), False)
+        elif _turns(command):
+            self._line = self._evading = None
+            answer = query.steered(pace * wanted_velocities(command, self.settings.motion))
         else:
-            self._line = self._travel_line(start, command)
-            states, kind, goal = query.travelled(self._line, pace * wanted_speed(command, self.settings.motion))
-        self._last = states
-        path = RootPath(start_time, interval, states)
-        return RootPlan(path, kind, goal, query.checks, time.perf_counter_ns() - began)
+            self._line, speed = self._travel_line(start, command), wanted_speed(command, self.settings.motion)
+            answer = query.travelled(self._line, pace * speed)
+            lost = self._lost(self._line, speed, answer, interval)
+        self._last = answer.states
+        path = RootPath(start_time, interval, answer.states)
+        return RootPlan(path, answer.kind, answer.goal, query.checks, perf_counter_ns() - began, lost)
+
+    def candidates(
+        self,
+        start: RootState,
+        command: Command,
+        horizon: int,
+        interval: float,
+        start_time: float = 0.0,
+        paces: Sequence[float] = (),
+    ) -> Iterator[RootPlan]:
+        """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
+
+        The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Whoever
+        takes one asks for no more: the last one that was given is the one that is being followed.
+        """
+        commanded = self.plan(start, command, horizon, interval, start_time)
+        known = self._evading
+        line = None if command.idle or _turns(command) else self._line
+        self._evading = known if self._still_turned(start) else None
+        if commanded.lost < self.settings.untroubled:
+            yield commanded
+            others = []
+        else:
+            others = [(commanded, self._evading)]
+        if line is not None:
+            others += self._evaded(start, command, horizon, interval, start_time, line, known)
+        others.sort(key=lambda other: other[0].lost)
+        waiting = [(commanded.lost + horizon * interval * (1.0 - pace), pace) for pace in paces if pace < 1.0]
+        for cost, pace in waiting:
+            while others and others[0][0].lost <= cost:
+                yield self._taken(*others.pop(0))
+            self._evading = known if self._still_turned(start) else None
+            yield self.plan(start, command, horizon, interval, start_time, pace)
+        for other in others:
+            yield self._taken(*other)
+
+    def _taken(self, plan: RootPlan, evading: Evading) -> RootPlan:
+        self._last, self._evading = plan.path.states, evading
+        return plan
+
+    def _evaded(
+        self,
+        start: RootState,
+        command: Command,
+        horizon: int,
+        interval: float,
+        start_time: float,
+        line: TravelLine,
+        known: Evading,
+    ) -> list[Candidate]:
+        """Evasions from the line of travel, each once."""
+        began, speed = perf_counter_ns(), wanted_speed(command, self.settings.motion)
+        evasion = self.settings.evasion
+        speeds = (speed, min(speed, evasion.sideways))
+        grid = self._evasions.ahead_of(line, start, self.settings.sight, speeds)
+        kept = known[0] if known is not None and known[1] == line else None
+        found: list[Candidate] = []
+        profiles: list[Profile] = []
+        for bodies in evasion.bodies:
+            way = grid.cheapest(bodies, kept)
+            if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
+                continue
+            profiles.append(way.profile)
+            query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
+            answer = query.evaded(line, way, speed)
+            lost, path = self._lost(line, speed, answer, interval), RootPath(start_time, interval, answer.states)
+            plan = RootPlan(path, answer.kind, answer.goal, grid.cells + query.checks, perf_counter_ns() - began, lost)
+            found.append((plan, (way.profile, line)))
+        return found
+
+    def _lost(self, line: TravelLine, speed: float, answer: Answer, interval: float) -> float:
+        """Seconds that a path costs against a walk along the line of travel at the wanted speed."""
+        states = answer.states
+        s, turned = self.settings, np.abs(np.remainder(states[:, 2] - line.facing + np.pi, 2.0 * np.pi) - np.pi)
+        sine, cosine = np.sin(line.heading), np.cos(line.heading)
+        ahead = (states[:, 0] - line.x) * sine + (states[:, 1] - line.z) * cosine
+        aside = np.abs((states[:, 0] - line.x) * cosine - (states[:, 1] - line.z) * sine)
+        duration = interval * (len(states) - 1)
+        slower = max(speed - float(np.hypot(*states[0, 3:5])), 0.0)
+        behind = speed * duration - 0.5 * slower * slower / self.bounds.acceleration - float(ahead[-1] - ahead[0])
+        behind += speed * s.dead_end * answer.ends
+        return behind / speed + s.aside_cost * float(aside.mean()) + s.turned_cost * float(turned.mean())
 
     def _travel_line(self, start: RootState, command: Command) -> TravelLine:
-        """The line that is being followed, or a new one from here if the command or the place has changed."""
+        """The line that is being followed, or a new one from here if the command or the place has changed.
+
+        Who was turned aside by an evasion still means the way that it led from.
+        """
         line, asked = self._line, asked_direction(command)
         if line is not None and line.asked == asked and self._continues(start, line):
             return line
+        if self._evading is not None and command.direction is None and self._still_turned(start):
+            start = start._replace(heading=self._evading[1].facing, turn=0.0)
         return new_line(start, command, self.settings.motion)
+
+    def _still_turned(self, start: RootState) -> bool:
+        """Whether the body is turned away from where the user means it to face."""
+        if self._evading is None or not self._continues(start, self._evading[1]):
+            return False
+        return abs(math.remainder(start.heading - self._evading[1].facing, math.tau)) > _TURNED
 
     def _continues(self, start: RootState, line: TravelLine) -> bool:
         """Whether a start goes on from the last path, within the breadth of a way round."""
         if self._last is None or abs(line.coordinates(start.x, start.z)[1]) >= self.settings.widest_detour:
             return False
         return bool(np.min(np.hypot(self._last[:, 0] - start.x, self._last[:, 1] - start.z)) < 0.5)
+
+
+_TURNED = 0.05  # radians
+
+
+def _turns(command: Command) -> bool:
+    """Whether the user turns the body by hand."""
+    return command.turn != 0.0 and command.direction is None

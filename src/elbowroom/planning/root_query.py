@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_evasion import Evasion
 from elbowroom.planning.root_hull import strip_is_free, to_look_at
 from elbowroom.planning.root_line import TravelLine
 from elbowroom.planning.root_motion import (
@@ -20,6 +22,7 @@ from elbowroom.planning.root_motion import (
     stopping_states,
 )
 from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root_profile import Course, follow_profile
 from elbowroom.planning.root_route import find_route, route_points, shortened_route
 from elbowroom.world.walkable import WalkableMap, walkable_window
 
@@ -30,7 +33,14 @@ Indices = NDArray[np.int64]
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 _BEHIND = 0.64  # metres behind the start that a way round may use
 
-Answer = tuple[Floats, RootPlanKind, tuple[float, float]]
+
+class Answer(NamedTuple):
+    """What a path is going to be made of."""
+
+    states: Floats  # (n+1, 7)
+    kind: RootPlanKind
+    goal: tuple[float, float]  # x, z
+    ends: bool  # whether the way that was looked at ends before something
 
 
 class RootQuery:
@@ -141,7 +151,7 @@ class RootQuery:
             return states
 
         states, whole = self._best(candidate(share) for share in self.settings.slower)
-        return states, self._kind(states, whole, detour=False), _place(states[-1])
+        return Answer(states, self._kind(states, whole=whole, detour=False), _place(states[-1]), False)
 
     def travelled(self, line: TravelLine, speed: float) -> Answer:
         """Walk along the line of travel, or round what stands in it."""
@@ -154,9 +164,27 @@ class RootQuery:
             return states
 
         states, whole = self._best(candidate(share) for share in self.settings.slower)
-        return states, self._kind(states, whole, detour=detour), _place(route[-1])
+        return Answer(states, self._kind(states, whole=whole, detour=detour), _place(route[-1]), stops)
 
-    def _kind(self, states: Floats, whole: bool, *, detour: bool) -> RootPlanKind:
+    def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
+        """Walk along an evasion from the line of travel, or as much of it as is free."""
+        profile, s = evasion.profile, self.settings.evasion
+
+        def candidate(share: float) -> Floats:
+            states, ahead = self._blank(), share * speed
+            course = Course(
+                line.x, line.z, line.heading, line.facing, ahead, min(ahead, share * s.sideways), not evasion.whole
+            )
+            follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
+            return states
+
+        states, _ = self._best(candidate(share) for share in s.shares)
+        ahead = profile.first + profile.step * (len(profile.rows) - 1)
+        stands = self._kind(states, whole=True, detour=False) is RootPlanKind.STOPPED
+        kind = RootPlanKind.STOPPED if stands else RootPlanKind.EVASION
+        return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole)
+
+    def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
         if _length(states) < 0.02 and np.ptp(states[:, 2]) < 0.05:
             return RootPlanKind.STOPPED
         if not whole:

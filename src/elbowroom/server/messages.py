@@ -276,7 +276,7 @@ class Status:
     sim_time: float
     phase: PhaseName
     stuck: bool
-    root_kind: str  # "straight", "detour", "shortened", "stopped"; "" before the first plan
+    root_kind: str  # "straight", "evasion", "detour", "shortened", "stopped"; "" before the first plan
     plan_status: str  # "found", "exhausted", "out of budget"; "" before the first plan
     groups: list[GroupReport]
     plans: int  # local plans since the last reset

@@ -64,17 +64,19 @@ class ExactPlanner:
         horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
         first: tuple[RootPlan, UpperPlan] | None = None
         blocked_at = 0.0
-        for pace in self.settings.paces:
-            root = root_planner.plan(query.root, query.command, horizon, query.interval, query.time, pace)
-            if first is not None and _way(root.path, horizon) < blocked_at + _FARTHER:
-                break
+        at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
+        for root in root_planner.candidates(*at):
+            if (
+                first is not None
+                and root.kind is not RootPlanKind.EVASION
+                and _way(root.path, horizon) < blocked_at + _FARTHER
+            ):
+                continue
             upper = self._dress(root.path, query)
             if upper.reached == horizon:
                 return _Whole(root, upper.plan)
             if first is None:
                 first = root, upper
-                if upper.reached == 0:
-                    break
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         assert first is not None
         return self._stop(root_planner, query, *first)
