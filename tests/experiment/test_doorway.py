@@ -40,6 +40,6 @@ def test_the_exact_planner_turns_passes_and_turns_back_and_touches_nothing() -> 
 
 
 def test_the_papers_search_does_not_get_through() -> None:
-    straight, _, roots = cross("figure6", 8.0)
+    straight, _, roots = cross("figure6", 4.0)
     assert not straight
     assert roots[:, 1].max() < 2.2

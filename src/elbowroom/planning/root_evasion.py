@@ -42,6 +42,7 @@ class EvasionSettings:
     step: float = 0.1  # between rows
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
+    cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
     shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
     widest: float = 0.48  # from the line of travel, to either side
     turns: int = 4  # turned postures to either side
@@ -150,15 +151,18 @@ class EvasionGrid(NamedTuple):
         """The number of cells whose clearance was computed."""
         return int(self.room.shift.size)
 
-    def cheapest(self, bodies: tuple[float, float], kept: Profile | None) -> Evasion:
-        """The cheapest way, with `bodies` as in the settings; `kept` is the one being followed."""
+    def cheapest(self, bodies: tuple[float, float], kept: Profile | None, care: float = 0.0) -> Evasion:
+        """The cheapest way, with `bodies` as in the settings; `kept` is the one being followed.
+
+        Legs keep `care` metres more than the settings ask for.
+        """
         s, rows = self.settings, self.room.clear.shape[1]
         ways = s.angles + self.line.facing - self.line.heading
         seconds = np.array([1.0 / turned_speed(*self.speeds, way) for way in ways])
         standing = s.step * (seconds - seconds.min() + s.turned * s.angles**2)
         ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
         prices = _Prices(
-            s.margin, s.swerving, s.comfort, s.step * s.beside * s.aside**2, s.shifting, s.turning, s.spot,
+            s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, s.shifting, s.turning, s.spot,
             (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip
         favoured = np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.first, s.step, rows))
@@ -379,7 +383,7 @@ def _best_move(clear: Floats32, prices: _Prices, i: int, j: int, t: int, cost: F
         if not (0 <= j - dj < clear.shape[2] and 0 <= t - dt < clear.shape[3]):
             continue
         narrow = min(clear[0, i, j, t], clear[0, i - 1, j - dj, t - dt])
-        if dt != 0 and i > _LEAVING and narrow < prices.margin + prices.swerving:
+        if dt != 0 and narrow < prices.margin + prices.swerving:
             continue
         total = cost[i - 1, j - dj, t - dt] + prices.shifting * dj * dj + prices.turning * dt * dt
         if total < best:

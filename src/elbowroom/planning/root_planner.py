@@ -143,15 +143,18 @@ class RootPlanner:
         found: list[Candidate] = []
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
-            way = grid.cheapest(bodies, kept)
-            if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
-                continue
-            profiles.append(way.profile)
-            query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
-            answer = query.evaded(line, way, speed)
-            lost, path = self._lost(line, speed, answer, interval), RootPath(start_time, interval, answer.states)
-            plan = RootPlan(path, answer.kind, answer.goal, grid.cells + query.checks, perf_counter_ns() - began, lost)
-            found.append((plan, (way.profile, line)))
+            for care in evasion.cares:
+                way = grid.cheapest(bodies, kept, care)
+                if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
+                    break
+                profiles.append(way.profile)
+                query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
+                answer = query.evaded(line, way, speed)
+                lost, path = self._lost(line, speed, answer, interval), RootPath(start_time, interval, answer.states)
+                checks, spent = grid.cells + query.checks, perf_counter_ns() - began
+                found.append((RootPlan(path, answer.kind, answer.goal, checks, spent, lost), (way.profile, line)))
+                if answer.whole:
+                    break
         return found
 
     def _lost(self, line: TravelLine, speed: float, answer: Answer, interval: float) -> float:

@@ -41,6 +41,7 @@ class Answer(NamedTuple):
     kind: RootPlanKind
     goal: tuple[float, float]  # x, z
     ends: bool  # whether the way that was looked at ends before something
+    whole: bool = True  # whether it is walked as planned, to the end
 
 
 class RootQuery:
@@ -108,23 +109,23 @@ class RootQuery:
         touching = owner[self._clearance(shown) < self.skin]
         return int(touching[0] if len(touching) else never) - 1
 
-    def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, bool]:
+    def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, int]:
         """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
 
-        Also whether it is the first candidate and whole.
+        Also its number where it is whole, else -1.
         """
         best, farthest = None, 0.0
         for i, states in enumerate(candidates):
             kept = self._kept(states)
             if kept == self.horizon:
-                return states, i == 0
+                return states, i
             brake(states, kept, self.interval, self.bounds)
             if 2 * kept >= self.horizon:
-                return states, False
+                return states, -1
             progress = _length(states) + _TURN_WORTH * abs(float(states[-1, 2] - states[0, 2]))
             if kept > 0 and progress > farthest:
                 best, farthest = states, progress
-        return (best, False) if best is not None else (self.stop(), False)
+        return (best, -1) if best is not None else (self.stop(), -1)
 
     def stop(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
@@ -150,8 +151,8 @@ class RootQuery:
             steer(states, wanted * np.array([share, share, share if on_the_spot else 1.0]), self.interval, self.bounds)
             return states
 
-        states, whole = self._best(candidate(share) for share in self.settings.slower)
-        return Answer(states, self._kind(states, whole=whole, detour=False), _place(states[-1]), False)
+        states, number = self._best(candidate(share) for share in self.settings.slower)
+        return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
     def travelled(self, line: TravelLine, speed: float) -> Answer:
         """Walk along the line of travel, or round what stands in it."""
@@ -163,8 +164,8 @@ class RootQuery:
             follow(states, route, travel, self.interval, self.bounds)
             return states
 
-        states, whole = self._best(candidate(share) for share in self.settings.slower)
-        return Answer(states, self._kind(states, whole=whole, detour=detour), _place(route[-1]), stops)
+        states, number = self._best(candidate(share) for share in self.settings.slower)
+        return Answer(states, self._kind(states, whole=number == 0, detour=detour), _place(route[-1]), stops)
 
     def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
         """Walk along an evasion from the line of travel, or as much of it as is free."""
@@ -178,11 +179,11 @@ class RootQuery:
             follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
             return states
 
-        states, _ = self._best(candidate(share) for share in s.shares)
+        states, number = self._best(candidate(share) for share in s.shares)
         ahead = profile.first + profile.step * (len(profile.rows) - 1)
         stands = self._kind(states, whole=True, detour=False) is RootPlanKind.STOPPED
         kind = RootPlanKind.STOPPED if stands else RootPlanKind.EVASION
-        return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole)
+        return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole, number >= 0)
 
     def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
         if _length(states) < 0.02 and np.ptp(states[:, 2]) < 0.05:
