@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from avatar_builder import MIXAMO, SKELETON
@@ -30,10 +31,13 @@ class BvhRecipe:
     crlf: bool = False
 
 
-def random_motion(rng: np.random.Generator, frames: int = 12) -> BodyMotion:
-    """A figure that stands upright and moves every joint a little, at random."""
+def random_motion(rng: np.random.Generator, frames: int = 12, smooth: float = 0.0) -> BodyMotion:
+    """A figure that stands upright and moves every joint a little, at random; `smooth` over so many frames."""
     index = [SKELETON.index(bone) for bone in BONES]
-    local = quaternion.from_rotation_vector(0.4 * rng.standard_normal((frames, len(BONES), 3)))
+    vectors = 0.4 * rng.standard_normal((frames, len(BONES), 3))
+    if smooth:
+        vectors = gaussian_filter1d(vectors, smooth, axis=0) * np.sqrt(3.5 * smooth)
+    local = quaternion.from_rotation_vector(vectors)
     local[:, 0] = quaternion.multiply(quaternion.about_axis(1, 0.3 * rng.standard_normal(frames)), local[:, 0])
     turns = local.copy()
     for i, bone in enumerate(BONES):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid as Humanoid
     from elbowroom.body.root import RootState as RootState
+    from elbowroom.clips.clip import Clip as Clip
     from elbowroom.control.controller import Controller as Controller
     from elbowroom.control.frame import Frame as Frame
     from elbowroom.control.frame import Phase as Phase
@@ -23,6 +24,7 @@ __version__ = "0.1.0"
 
 # Where each public name lives; it is imported when it is first asked for, so that `import elbowroom` costs nothing.
 _HOMES = {
+    "Clip": "clips.clip",
     "Command": "planning.command",
     "Controller": "control.controller",
     "Frame": "control.frame",

@@ -7,8 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elbowroom.body.dof import LOWERING
+from bvh_builder import BvhRecipe, random_motion, write_bvh
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, clamp
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.clips.clip import motions_of
+from elbowroom.clips.files import parse_motion
+from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.control import recording as recordings
 from elbowroom.control.controller import Controller
 from elbowroom.control.recording import MAGIC, STEP, STEPS_PER_CHUNK, Recorder, Recording, command_of
@@ -204,3 +209,21 @@ def test_a_recording_without_a_lowering_is_read_and_replays(run: tuple[Path, obj
     assert replay(Recording(path), HUMANOID).identical
     record(path, 3)  # it is a recording, so it may be replaced
     assert Recording(path).path.read_bytes().startswith(MAGIC)
+
+
+def test_a_run_with_motions_of_its_own_replays_bit_for_bit(tmp_path: Path) -> None:
+    rng = np.random.default_rng(8)
+    clip = parse_motion(write_bvh(random_motion(rng, 40, smooth=8.0), BvhRecipe()), "dodge.bvh").clip()
+    keys = {group: np.tile(clamp(group, rng.uniform(-0.3, 0.3, group.size)), (KEYS + 1, 1)) for group in LOCAL_GROUPS}
+    motions = MotionSet(Swing("made", 1.0, keys), motions_of(dodge=(clip,)).dodges)
+    controller = Controller(HUMANOID, Scene.load("a"), seed=3, motions=motions)
+    path = tmp_path / "own.elbow"
+    with Recorder(path, controller) as recorder:
+        for _ in range(90):
+            frame = controller.step(Command(forward=1.0), 1 / 60)
+            recorder.append(Command(forward=1.0), 1 / 60, frame)
+    assert replay(Recording(path), HUMANOID).identical
+    stock = Controller(HUMANOID, Scene.load("a"), seed=3)
+    for _ in range(90):
+        other = stock.step(Command(forward=1.0), 1 / 60)
+    assert np.abs(frame.q[3:] - other.q[3:]).max() > 0.05

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli import clip_options
 from elbowroom.cli.output import PLANNER_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from elbowroom.experiment.crossing import CrossingResult, Listener
     from elbowroom.planning.command import Command
 
-EXAMPLES = "Examples:  elbowroom walk --scene c --queue 5  |  elbowroom walk --scene d --record run.elbow --json"
+EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --swing my_walk.bvh"
 FELL_SHORT = 1
 _FRAMES_PER_UPDATE = 30
 
@@ -29,6 +30,11 @@ def walk(
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
     limit: Annotated[float, typer.Option(help="Seconds that the user has for the crossing.")] = 30.0,
     record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    swing: clip_options.Swing = None,
+    dodge: clip_options.Dodge = None,
+    unit: clip_options.Unit = None,
+    up: clip_options.Up = None,
+    fps: clip_options.Fps = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
@@ -43,9 +49,10 @@ def walk(
 
     place = Scene.load(scene)
     settings = CrossingSettings(planner, queue, seed, limit)
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
     with progress_bar("Compiling kernels (the first run takes longest)", None, quiet):
         humanoid = Humanoid.default() if avatar is None else Humanoid.load(avatar)
-        controller = controller_for(humanoid, place, settings)
+        controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     with (
         progress_bar(f"Walking through {place.title}", limit, quiet) as bar,

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from elbowroom.clips.body_motion import BodyMotion, body_motion
+from elbowroom.clips.body_motion import body_motion
 from elbowroom.clips.bones import bvh_bones, gltf_bones
-from elbowroom.clips.figure import Figure, figure_of
+from elbowroom.clips.clip import Clip
+from elbowroom.clips.figure import figure_of
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations, take_of
@@ -18,30 +19,14 @@ from elbowroom.formats.vrm import read_vrm, read_vrm_animation
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedClip:
-    """One clip of a file, its figure recognised."""
-
-    name: str  # within its file
-    file: str
-    format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
-    figure: Figure
-    motion: BodyMotion
-
-    @property
-    def fps(self) -> float:
-        """Frames a second."""
-        return 1.0 / self.motion.frame_time
-
-
-@dataclass(frozen=True, eq=False)
 class MotionFile:
     """A file's clips by name; each is read when it is asked for."""
 
     name: str
     format: str
-    clips: dict[str, Callable[[], RecordedClip]]
+    clips: dict[str, Callable[[], Clip]]
 
-    def clip(self, name: str | None = None) -> RecordedClip:
+    def clip(self, name: str | None = None) -> Clip:
         """The clip of this name; without one the only clip. Raises `InputError`."""
         if name is None and len(self.clips) == 1:
             name = next(iter(self.clips))
@@ -69,6 +54,15 @@ def open_motion(path: Path, told: Told | None = None) -> MotionFile:
     return parse_motion(data, path.name, told, path.parent)
 
 
+def split_reference(reference: str | Path) -> tuple[Path, str | None]:
+    """`FILE#CLIP` as file and clip; a file whose own name has a # in it goes first."""
+    text = str(reference)
+    file, mark, name = text.rpartition("#")
+    if not mark or not file or Path(text).is_file():
+        return Path(text), None
+    return Path(file), name
+
+
 def parse_motion(data: bytes, name: str, told: Told | None = None, folder: Path | None = None) -> MotionFile:
     """Read the bytes of a motion file; `folder` is where a glTF may have its buffers. Raises `InputError`."""
     told = told or Told()
@@ -85,9 +79,9 @@ def _from_bvh(data: bytes, name: str, told: Told) -> MotionFile:
     if not len(take):
         raise InputError(f"{name} holds no frames: it is a skeleton without motion")
 
-    def clip() -> RecordedClip:
+    def clip() -> Clip:
         figure = figure_of(take, bvh_bones(take.tree, name), told, name)
-        return RecordedClip(take.name, name, "BVH", figure, body_motion(take, figure, floor_known=False))
+        return Clip(take.name, name, "BVH", len(take), figure, body_motion(take, figure, floor_known=False))
 
     return MotionFile(name, "BVH", {take.name: clip})
 
@@ -102,18 +96,18 @@ def _from_gltf(gltf: Gltf, told: Told) -> MotionFile:
     kind = "glTF 2.0" if vrma is None else "VRM animation 1.0"
     named = vrma or (vrm.bones if vrm else None)
 
-    def clip(index: int, name: str) -> RecordedClip:
+    def clip(index: int, name: str) -> Clip:
         place = f"{gltf.name}#{name}"
         whole, bones = gltf_bones(gltf, tree, named)
         take = _at_rate(take_of(animations[index], whole, place), told)
         figure = figure_of(take, bones, told, place, t_posed=vrma is not None, metric=True)
-        return RecordedClip(name, gltf.name, kind, figure, body_motion(take, figure, floor_known=True))
+        return Clip(name, gltf.name, kind, len(take), figure, body_motion(take, figure, floor_known=True))
 
     names = _distinct([animation.name for animation in animations])
     return MotionFile(gltf.name, kind, {name: _bound(clip, i, name) for i, name in enumerate(names)})
 
 
-def _bound(clip: Callable[[int, str], RecordedClip], index: int, name: str) -> Callable[[], RecordedClip]:
+def _bound(clip: Callable[[int, str], Clip], index: int, name: str) -> Callable[[], Clip]:
     return lambda: clip(index, name)
 
 

@@ -31,6 +31,7 @@ class Strides:
     phases: Floats  # (F,) gait phase in strides; constant where nobody walks
     speed: float  # m/s over the ground, by the standing foot; 0 where nobody walks
     on_the_spot: bool  # the hips stay while the feet walk
+    loop: int  # frames after which the motion begins anew; 0 for one that ends
 
     @property
     def walks(self) -> bool:
@@ -48,12 +49,12 @@ def strides_of(motion: BodyMotion, ground: Floats, heading: Floats) -> Strides:
     strikes = _alternating(sorted(marks))
     speed = _ground_speed(motion, ahead) if len(strikes) >= 3 else 0.0
     if speed < _SLOWEST or not _regular(strikes):
-        return Strides((), np.zeros(len(motion)), 0.0, False)
+        return Strides((), np.zeros(len(motion)), 0.0, False, closed)
     way = np.linalg.norm(np.diff(ground, axis=0), axis=1).sum()
     frames = np.array([frame for _, frame in strikes])
     steps = np.array([phase for phase, _ in strikes])
     on_the_spot = bool(way < _SPOT * speed * motion.duration)
-    return Strides(strikes, _phases(len(motion), frames, steps), speed, on_the_spot)
+    return Strides(strikes, _phases(len(motion), frames, steps), speed, on_the_spot, closed)
 
 
 def loop_frames(motion: BodyMotion) -> int:

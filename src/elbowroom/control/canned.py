@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -10,9 +11,9 @@ from elbowroom.planning.root_path import RootPath
 Floats = NDArray[np.float64]
 
 
-def canned_walk(path: RootPath, start: Floats) -> LocalPlan:
+def canned_walk(path: RootPath, start: Floats, motions: MotionSet = STOCK) -> LocalPlan:
     """The goal functions' upper-body motion along a root path, from `start` (LOCAL,) on, whatever it touches."""
-    goals = goal_configurations(natural_walk(), path)
+    goals = goal_configurations(natural_walk(motions), path)
     configurations = goals.copy()
     configurations[0] = start
     return LocalPlan(PlanStatus.FOUND, configurations, goals, ())

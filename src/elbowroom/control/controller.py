@@ -1,6 +1,7 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
+from elbowroom.clips.clip import Clip, motions_of
+from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.canned import standing_posture
@@ -69,8 +72,13 @@ class Controller:
         assist: bool = True,
         start: RootState | None = None,
         desk: PlanningDesk | None = None,
+        swing: Clip | None = None,
+        dodge: Sequence[Clip] = (),
+        motions: MotionSet | None = None,
     ) -> None:
         """Stand the humanoid at the scene's start, or at `start`.
+
+        It walks as in the clip `swing` and has learnt to do what the clips `dodge` show; `motions` stands for both.
 
         Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
         """
@@ -79,15 +87,16 @@ class Controller:
         self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
         self.start = scene.start if start is None else start
         self._check = BodyCheck(humanoid, scene)
+        self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
         self._desk: PlanningDesk = desk or ImmediateDesk()
-        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check)
+        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self.motions)
         self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
         if self._desk.busy:  # a plan in the making keeps its planners
             self._desk.forget()
-            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check)
+            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self.motions)
         else:
             self._wayfinder.reset()
         self._begin()

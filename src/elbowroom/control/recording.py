@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING
 from elbowroom.body.root import RootState
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
@@ -69,6 +70,7 @@ class RecordingHeader:
     settings: ControlSettings
     start: RootState
     machine: dict[str, str]  # what the last bits of floating-point results may depend on
+    motions: MotionSet = STOCK
 
     @classmethod
     def of(cls, controller: Controller) -> "RecordingHeader":
@@ -80,17 +82,19 @@ class RecordingHeader:
             settings=controller.settings,
             start=controller.start,
             machine=this_machine(),
+            motions=controller.motions,
         )
 
     def to_json(self) -> bytes:
         """The header as JSON text."""
-        document = asdict(self) | {"start": list(self.start)}
+        document = asdict(self) | {"start": list(self.start), "motions": self.motions.to_dict()}
         return json.dumps(document, separators=(",", ":")).encode()
 
     @classmethod
     def from_json(cls, data: bytes) -> "RecordingHeader":
         """Read what `to_json` wrote; raises ValueError, KeyError or TypeError where it is something else."""
         document = json.loads(data)
+        motions = document.get("motions")
         return cls(
             version=str(document["version"]),
             scene=dict(document["scene"]),
@@ -98,6 +102,7 @@ class RecordingHeader:
             settings=ControlSettings(**document["settings"]),
             start=RootState(*(float(value) for value in document["start"])),
             machine={str(key): str(value) for key, value in document["machine"].items()},
+            motions=STOCK if motions is None else MotionSet.from_dict(motions, "motions"),
         )
 
 

@@ -56,6 +56,7 @@ def controller_for(recording: Recording, humanoid: Humanoid) -> Controller:
         seed=settings.seed,
         assist=settings.assist,
         start=header.start,
+        motions=header.motions,
     )
 
 

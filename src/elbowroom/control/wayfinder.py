@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.canned import canned_walk
 from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
@@ -48,9 +49,12 @@ class Answer(NamedTuple):
 class Wayfinder:
     """The planners of one avatar in one scene, with what they remember; answers one question at a time."""
 
-    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, check: BodyCheck) -> None:
+    def __init__(
+        self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, check: BodyCheck, motions: MotionSet
+    ) -> None:
         """The planners are made with the first answer: that takes a while."""
         self._humanoid, self._scene, self._settings, self._check = humanoid, scene, settings, check
+        self._motions = motions
         self._rng = np.random.default_rng(settings.seed)
 
     @cached_property
@@ -59,7 +63,7 @@ class Wayfinder:
 
     @cached_property
     def _planner(self) -> Planner:
-        return make_planner(self._settings.planner, self._humanoid, self._scene)
+        return make_planner(self._settings.planner, self._humanoid, self._scene, self._motions)
 
     def reset(self) -> None:
         """Forget all that was planned."""
@@ -82,7 +86,7 @@ class Wayfinder:
             return self._planner.plan_motion(self._root_planner, far)
         root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
         if not question.assist:
-            return Motion(root, canned_walk(root.path, query.upper))
+            return Motion(root, canned_walk(root.path, query.upper, self._motions))
         return Motion(root, self._planner.plan(root.path, query.upper, self._rng))
 
     def _way_out(self, answer: Answer, question: Question) -> Answer:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
@@ -87,8 +88,10 @@ def start_for(scene: Scene, seed: int) -> RootState:
     )
 
 
-def controller_for(humanoid: Humanoid, scene: Scene, settings: CrossingSettings) -> Controller:
-    """The controller at the start of a trial."""
+def controller_for(
+    humanoid: Humanoid, scene: Scene, settings: CrossingSettings, motions: MotionSet = STOCK
+) -> Controller:
+    """The controller at the start of a trial, with the stock motions or others."""
     return Controller(
         humanoid,
         scene,
@@ -96,6 +99,7 @@ def controller_for(humanoid: Humanoid, scene: Scene, settings: CrossingSettings)
         queue_size=settings.queue_size,
         seed=settings.seed,
         start=start_for(scene, settings.seed),
+        motions=motions,
     )
 
 

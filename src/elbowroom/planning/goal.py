@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
-from elbowroom.body.stock_clips import arm_swing_goal
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -34,19 +34,21 @@ def fixed_goal(configuration: ArrayLike) -> GoalFunction:
     return goals
 
 
-def periodic_goal(group: DofGroup) -> GoalFunction:
-    """The arm swing of `group`, in time with the gait phase, as wide as the speed asks for; hanging at standstill."""
+def periodic_goal(group: DofGroup, motions: MotionSet = STOCK) -> GoalFunction:
+    """The swing of `group`, in time with the gait phase, as wide as the speed asks for; at rest at standstill."""
 
     def goals(path: RootPath) -> Floats:
-        return np.asarray(arm_swing_goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
+        return np.asarray(motions.goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
 
     return goals
 
 
-def natural_walk() -> Mapping[DofGroup, GoalFunction]:
-    """The goal functions of the paper's system: waist upright, arms swinging."""
+def natural_walk(motions: MotionSet = STOCK) -> Mapping[DofGroup, GoalFunction]:
+    """The goal functions of the paper's system: waist upright, arms swinging; or both as a recorded walk has them."""
     return {
-        group: fixed_goal(np.zeros(group.size)) if group is DofGroup.WAIST else periodic_goal(group)
+        group: fixed_goal(np.zeros(group.size))
+        if group is DofGroup.WAIST and motions.swing is None
+        else periodic_goal(group, motions)
         for group in LOCAL_GROUPS
     }
 

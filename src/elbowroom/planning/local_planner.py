@@ -1,6 +1,5 @@
 """The local planner: upper-body motion for a root path, group after group (paper, sections 3.1 and 5.1)."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,11 +9,11 @@ from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
-from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning import figure6
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.frames import compose
-from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
+from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import limb_of, pose
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus, SearchResult
 from elbowroom.planning.roadmap import PosedGraph, Roadmap
@@ -24,7 +23,6 @@ from elbowroom.world.boxes import tables_in_frames
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
-_SWING_SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
 _NEARLY = 0.5  # metres: more than any margin
 
 
@@ -70,10 +68,11 @@ class LocalPlanner:
         humanoid: Humanoid,
         scene: Scene,
         settings: LocalPlannerSettings | None = None,
-        goals: Mapping[DofGroup, GoalFunction] | None = None,
+        motions: MotionSet = STOCK,
     ) -> None:
         self.settings = settings or LocalPlannerSettings()
-        self.goals = goals or natural_walk()
+        self._motions = motions.upright()
+        self.goals = natural_walk(self._motions)
         self._model = body_model(humanoid)
         self._posed = {group: self._posed_graph(group) for group in LOCAL_GROUPS}
         self._reach = self._upper_body_reach()
@@ -147,7 +146,7 @@ class LocalPlanner:
         def accept(configurations: Floats) -> NDArray[np.bool_]:
             return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
-        clips, bounds = upright(group_clips(group)), limits(group)
+        clips, bounds = upright(self._motions.clips(group)), limits(group)
         if group is DofGroup.WAIST:
             bounds[LOWERING - group.value.start] = 0.0
         graph = ActivityGraph.from_clips(
@@ -169,15 +168,6 @@ def upright(clips: tuple[MotionClip, ...]) -> tuple[MotionClip, ...]:
         return clips
     column = LOWERING - DofGroup.WAIST.value.start
     return tuple(clip for clip in clips if not clip.configurations[:, column].any())
-
-
-def group_clips(group: DofGroup) -> tuple[MotionClip, ...]:
-    """The clips of a group's graph: the stock clips, and for an arm its swing at other speeds."""
-    if group is DofGroup.WAIST:
-        return stock_clips(group)
-    phases = np.linspace(0.0, 1.0, 33)
-    swings = (arm_swing_goal(group, phases, np.full(len(phases), speed)) for speed in _SWING_SPEEDS)
-    return stock_clips(group) + tuple(MotionClip("arm_swing", group, phases, swing, loop=True) for swing in swings)
 
 
 def _evidence(group: DofGroup, result: SearchResult) -> GroupEvidence:

@@ -1,12 +1,12 @@
 """The planners of upper-body motion by name: one registry for controller, experiments, command line and page."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.errors import InputError
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.local_planner import LocalPlanner
@@ -26,7 +26,12 @@ class Planner(Protocol):
         """Motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians."""
 
 
-PlannerFactory = Callable[[Humanoid, Scene], Planner]
+class PlannerFactory(Protocol):
+    """Makes a planner; both planners' classes are such."""
+
+    def __call__(self, humanoid: Humanoid, scene: Scene, *, motions: MotionSet = ...) -> Planner:
+        """A new planner for a humanoid in a scene that has learnt `motions`."""
+
 
 PLANNERS: dict[str, PlannerFactory] = {
     EXACT: ExactPlanner,
@@ -34,8 +39,8 @@ PLANNERS: dict[str, PlannerFactory] = {
 }
 
 
-def make_planner(name: str, humanoid: Humanoid, scene: Scene) -> Planner:
+def make_planner(name: str, humanoid: Humanoid, scene: Scene, motions: MotionSet = STOCK) -> Planner:
     """A new planner of this name for a humanoid in a scene. Raises `InputError` if there is none of this name."""
     if name not in PLANNERS:
         raise InputError(f"planner {name[:40]!r} is unknown; there are {', '.join(PLANNERS)}")
-    return PLANNERS[name](humanoid, scene)
+    return PLANNERS[name](humanoid, scene, motions=motions)

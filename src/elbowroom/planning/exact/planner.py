@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
 from elbowroom.planning.motion import Motion, MotionQuery, no_lead
@@ -40,9 +41,11 @@ class _Whole(NamedTuple):
 class ExactPlanner:
     """Plans motion for one humanoid in one scene; it remembers the last plan and keeps to it while it is good."""
 
-    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None) -> None:
+    def __init__(
+        self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None, motions: MotionSet = STOCK
+    ) -> None:
         self.settings = settings or ExactSettings()
-        self._body = UpperBody(humanoid, scene, self.settings)
+        self._body = UpperBody(humanoid, scene, self.settings, motions)
         self._last: _Whole | None = None
 
     def reset(self) -> None:

@@ -16,6 +16,7 @@ from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.group_search import KEPT, OWN, GroupTask, GroupWay, search_group
 from elbowroom.planning.exact.postures import Postures, postures_of
@@ -23,9 +24,8 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shown import Moments, moments_of
 from elbowroom.planning.exact.slices import any_free
 from elbowroom.planning.frames import compose
-from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
+from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
-from elbowroom.planning.local_planner import group_clips
 from elbowroom.planning.motion import Lead
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -62,13 +62,13 @@ class UpperBody:
         humanoid: Humanoid,
         scene: Scene,
         settings: ExactSettings,
-        goals: Mapping[DofGroup, GoalFunction] | None = None,
+        motions: MotionSet = STOCK,
     ) -> None:
         self.settings = settings
-        self.goals = goals or natural_walk()
+        self.goals = natural_walk(motions)
         self._model = body_model(humanoid)
         self._limbs = {group: limb_of(self._model, group) for group in LOCAL_GROUPS}
-        self._points = {group: _points(group, limb, settings) for group, limb in self._limbs.items()}
+        self._points = {group: _points(limb, motions.clips(group), settings) for group, limb in self._limbs.items()}
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
         self._boxes = scene.boxes.table
         self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
@@ -193,12 +193,11 @@ class _Ledger:
         return tuple(self._rows.values())
 
 
-def _points(group: DofGroup, limb: Limb, settings: ExactSettings) -> Floats:
+def _points(limb: Limb, clips: tuple[MotionClip, ...], settings: ExactSettings) -> Floats:
     """The postures of a group: those of its clips that keep clear of the trunk."""
-    samples = settings.waist_samples if group is DofGroup.WAIST else settings.arm_samples
+    samples = settings.waist_samples if clips[0].group is DofGroup.WAIST else settings.arm_samples
 
     def accept(configurations: Floats) -> NDArray[np.bool_]:
         return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
-    clips: tuple[MotionClip, ...] = group_clips(group)
     return ActivityGraph.from_clips(clips, samples, 1.0, 1024, accept).vertices.copy()

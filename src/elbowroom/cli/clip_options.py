@@ -1,0 +1,36 @@
+"""Options that name motion clips, the same in all commands that take some."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from elbowroom.clips.motion_set import MotionSet
+    from elbowroom.clips.told import Told
+
+Swing = Annotated[
+    str | None,
+    typer.Option("--swing", help="Walk as in this clip: FILE or FILE#CLIP (BVH, GLB, VRMA).", metavar="CLIP"),
+]
+Dodge = Annotated[
+    list[str] | None,
+    typer.Option("--dodge", help="Let the avatar learn this clip too; may be repeated.", metavar="CLIP"),
+]
+Unit = Annotated[str | None, typer.Option("--unit", help="Unit of the clips' files: m, cm, inch, cmu, or metres.")]
+Up = Annotated[str | None, typer.Option("--up", help="The axis that points up in the clips' files: y, z, -x, ...")]
+Fps = Annotated[float | None, typer.Option("--fps", help="Frames a second of the clips, whatever their files say.")]
+
+
+def told_by(unit: str | None, up: str | None, fps: float | None) -> "Told":
+    """What the options say about the files; raises `InputError`."""
+    from elbowroom.clips.told import Told
+
+    return Told(unit, up, fps)
+
+
+def motions_by(swing: str | None, dodge: list[str] | None, told: "Told") -> "MotionSet":
+    """The motions that the options ask for; raises `InputError`."""
+    from elbowroom.clips.clip import Clip, motions_of
+
+    clips = tuple(Clip.load(reference, told) for reference in dodge or ())
+    return motions_of(None if swing is None else Clip.load(swing, told), clips)

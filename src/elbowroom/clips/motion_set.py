@@ -1,0 +1,123 @@
+"""What an avatar has learnt beside the stock clips: a swing of its own, and motions for the activity graphs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.clip import MotionClip
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp
+from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
+from elbowroom.clips.swing import KEYS, Swing
+from elbowroom.errors import InputError
+
+Floats = NDArray[np.float64]
+
+_SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
+_MOST_CLIPS, _MOST_KEYS = 1_000, 10_000  # that are read from a recording
+_LOWERS = LOWERING - DofGroup.WAIST.value.start
+
+
+@dataclass(frozen=True, eq=False)
+class MotionSet:
+    """The goal functions' walk and the clips of the activity graphs; without arguments the stock ones."""
+
+    swing: Swing | None = None  # None: the stock arm swing, the waist upright
+    dodges: tuple[MotionClip, ...] = ()  # of any local group, beside the stock clips
+
+    def goal(self, group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
+        """What a local group would like to do at gait phases (n,) and forward speeds (n,): (n, size)."""
+        if self.swing is not None:
+            return self.swing.goal(group, phases, speeds)
+        if group is DofGroup.WAIST:
+            return np.zeros((len(np.atleast_1d(phases)), group.size))
+        return arm_swing_goal(group, phases, speeds)
+
+    def clips(self, group: DofGroup) -> tuple[MotionClip, ...]:
+        """The clips of a group's activity graph: the stock clips, the swing at several speeds, the dodges."""
+        phases = np.linspace(0.0, 1.0, KEYS + 1)
+        swings = (self.goal(group, phases, np.full(len(phases), speed)) for speed in _SPEEDS)
+        own = tuple(clip for clip in self.dodges if clip.group is group)
+        if self.swing is not None:
+            own = (self.swing.clips[group], *own)
+        elif group is DofGroup.WAIST:
+            return stock_clips(group) + own
+        return (
+            stock_clips(group) + tuple(MotionClip("swing", group, phases, swing, loop=True) for swing in swings) + own
+        )
+
+    def upright(self) -> "MotionSet":
+        """The same without lowering the pelvis."""
+        swing = self.swing
+        if swing is not None:
+            waist = _raised(swing.keys[DofGroup.WAIST])
+            swing = replace(swing, keys={**swing.keys, DofGroup.WAIST: waist})
+        dodges = (
+            replace(clip, configurations=_raised(clip.configurations)) if clip.group is DofGroup.WAIST else clip
+            for clip in self.dodges
+        )
+        return MotionSet(swing, tuple(dodges))
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it as JSON-ready values; numbers come back to the last bit."""
+        swing = self.swing
+        return {
+            "swing": None
+            if swing is None
+            else {
+                "name": swing.name,
+                "speed": swing.speed,
+                "keys": {group.name: keys.tolist() for group, keys in swing.keys.items()},
+            },
+            "dodges": [
+                {"name": c.name, "group": c.group.name, "times": c.times.tolist(), "keys": c.configurations.tolist()}
+                for c in self.dodges
+            ],
+        }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], place: str) -> "MotionSet":
+        """Read what `to_dict` wrote; raises `InputError`."""
+        try:
+            swing, dodges = data["swing"], data["dodges"]
+            if len(dodges) > _MOST_CLIPS:
+                raise InputError(f"{place}: {len(dodges)} clips, at most {_MOST_CLIPS} are read")
+            return cls(None if swing is None else _swing(swing), tuple(_clip(dodge) for dodge in dodges))
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise InputError(f"{place}: the motions are not as they were written ({error!r:.80})") from None
+
+
+STOCK = MotionSet()
+
+
+def _raised(configurations: Floats) -> Floats:
+    rows = configurations.copy()
+    rows[:, _LOWERS] = 0.0
+    return rows
+
+
+def _swing(data: Mapping[str, Any]) -> Swing:
+    keys = {group: _rows(data["keys"][group.name], group) for group in LOCAL_GROUPS}
+    speed = float(data["speed"])
+    if any(len(rows) != KEYS + 1 for rows in keys.values()) or not 0.0 < speed < 100.0:
+        raise ValueError("swing")
+    return Swing(str(data["name"]), speed, keys)
+
+
+def _clip(data: Mapping[str, Any]) -> MotionClip:
+    group = DofGroup[data["group"]]
+    times, keys = np.array(data["times"], np.float64), _rows(data["keys"], group)
+    if group not in LOCAL_GROUPS or times.shape != (len(keys),) or not (np.diff(times) > 0.0).all() or len(keys) < 2:
+        raise ValueError("clip")
+    return MotionClip(str(data["name"]), group, times, keys)
+
+
+def _rows(data: Any, group: DofGroup) -> Floats:
+    rows = np.array(data, np.float64)
+    if rows.ndim != 2 or rows.shape[1] != group.size or len(rows) > _MOST_KEYS or not np.isfinite(rows).all():
+        raise ValueError(group.name)
+    if np.abs(clamp(group, rows) - rows).max(initial=0.0) > 1e-9:
+        raise ValueError(f"{group.name} beyond its limits")
+    return rows
