@@ -59,7 +59,7 @@ def test_judge_and_planner_agree_pose_by_pose() -> None:
     poser, model = Poser(BODY), body_model(BODY)
     posed = poser.world(*poser.local(q, roots), roots[:, :3])
     first = DofGroup.WAIST.value.start
-    opinions = self_clearances(model, self_pairs(model), roots, q[:, first:DOF])
+    opinions = self_clearances(model, self_pairs(model), roots, q[:, first:DOF]).min(axis=0)
     agreed = 0
     for n in range(count):
         ledger = Ledger(0.0)

@@ -95,8 +95,9 @@ def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
             for j, b in enumerate(pairs.arms[1])
         )
         assert np.isclose(table[n, n], crossing, atol=1e-4) or min(table[n, n], crossing) < -0.1
-        whole = self_clearances(model, pairs, roots[n : n + 1], uppers[n : n + 1])[0]
-        assert np.isclose(whole, min(*least, crossing), atol=1e-4) or min(whole, *least, crossing) < -0.1
+        whole = self_clearances(model, pairs, roots[n : n + 1], uppers[n : n + 1])[:, 0]
+        for mine, theirs in zip(whole, (*least, crossing), strict=True):
+            assert np.isclose(mine, theirs, atol=1e-4) or min(mine, theirs) < -0.1
 
 
 def natural_clearance(humanoid: Humanoid) -> float:
@@ -134,7 +135,7 @@ def test_arms_through_body_and_through_each_other_are_found() -> None:
     uppers[:] = hanging
     uppers[0, start : start + arm] = np.deg2rad([20.0, -30.0, 70.0, 120.0])  # forearm through the belly
     uppers[1, start : start + 2 * arm] = np.deg2rad([80.0, -35.0, 0.0, 10.0] * 2)  # arms crossed straight ahead
-    found = self_clearances(model, pairs, np.zeros((3, 7)), uppers)
+    found = self_clearances(model, pairs, np.zeros((3, 7)), uppers).min(axis=0)
     assert found[0] < 0.0
     assert found[1] < 0.0
     assert found[2] > 0.0

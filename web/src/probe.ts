@@ -26,6 +26,7 @@ export interface AppState {
   readonly crossed: number;
   readonly stuck: number;
   readonly stuckNow: boolean;
+  readonly blocked: unknown;
   readonly touching: boolean;
   readonly touchingParts: readonly string[];
   readonly finished: boolean;
@@ -77,6 +78,7 @@ function snapshot(app: App): AppState {
     crossed: status?.crossed ?? 0,
     stuck: status?.stuckTimes ?? 0,
     stuckNow: flag(POSE_FLAGS.stuck),
+    blocked: status?.blocked ?? null,
     touching: flag(POSE_FLAGS.touching),
     touchingParts: picture.overlays.touching,
     finished: flag(POSE_FLAGS.finished),

@@ -15,6 +15,7 @@ from elbowroom.jit import inlined, kernel
 
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 _ZERO: Any = np.float32(0.0)  # single precision on purpose: a bare 0.0 would widen the whole loop
 _ONE: Any = np.float32(1.0)
@@ -41,7 +42,7 @@ def _distance(a: Vector, u: Vector, b: Vector, v: Vector) -> Any:
 
 
 @kernel
-def _lower_to_axis(lanes: Floats32, other: Floats32, allowed: float, out: Floats32) -> None:
+def lower_to_axis(lanes: Floats32, other: Floats32, allowed: float, out: Floats32) -> None:
     """out[i] = min(out[i], distance of lane i from the one other axis (6,) - allowed); lanes (6, n)."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
     b = (other[0], other[1], other[2])
@@ -61,7 +62,7 @@ def lower_to_body(segments: Floats32, body: Floats32, allowed: Floats32, chosen:
     for c in range(segments.shape[0]):
         for k in range(body.shape[0]):
             if chosen[k] and allowed[c, k] > -_ONE:
-                _lower_to_axis(segments[c], body[k], allowed[c, k], out)
+                lower_to_axis(segments[c], body[k], allowed[c, k], out)
 
 
 @kernel
@@ -74,6 +75,24 @@ def clear_pairs(first: Floats32, second: Floats32) -> Floats32:
         a, u = (ax[i], ay[i], az[i]), (bx[i] - ax[i], by[i] - ay[i], bz[i] - az[i])
         b, v = (cx[i], cy[i], cz[i]), (dx[i] - cx[i], dy[i] - cy[i], dz[i] - cz[i])
         out[i] = _distance(a, u, b, v)
+    return out
+
+
+@kernel
+def pair_clearances(
+    capsules: Floats32, first: Indices, second: Indices, kinds: Indices, allowed: Floats32, count: int
+) -> Floats32:
+    """The least distance beyond what is allowed (count, N) of the pairs of each kind.
+
+    Pair p are the axes `first[p]` and `second[p]` of `capsules` (C, 6, N), of kind `kinds[p]` below `count`; they may
+    come as near as `allowed[p]`.
+    """
+    out = np.full((count, capsules.shape[2]), _INFINITE, np.float32)
+    for p in range(first.shape[0]):
+        gaps = clear_pairs(capsules[first[p]], capsules[second[p]])
+        target, least = out[kinds[p]], allowed[p]
+        for n in range(np.uint64(gaps.shape[0])):
+            target[n] = min(target[n], gaps[n] - least)
     return out
 
 

@@ -42,6 +42,28 @@ class GroupEvidence:
     nanoseconds: int
 
 
+class BlockadeKind(Enum):
+    """Why there is no way on."""
+
+    NO_POSTURE = "no posture"  # obstacles close every posture at the place
+    OUT_OF_REACH = "out of reach"  # they close every posture that could be reached there in time
+    MOTION = "motion"  # postures are free, and every motion that was tried between them touches
+
+
+@dataclass(frozen=True)
+class Blockade:
+    """A certificate that the upper body has no way on: the slice that ends it and the obstacles that close it.
+
+    Each of the obstacles is needed: without it a posture there would be free.
+    """
+
+    kind: BlockadeKind
+    time: float  # seconds, the key time
+    place: tuple[float, float]  # x and z of the root then, metres
+    ahead: float  # metres that the root walks until there
+    boxes: tuple[int, ...]  # numbers of obstacles in the scene; none for MOTION
+
+
 @dataclass(frozen=True, eq=False)
 class LocalPlan:
     """Upper-body motion for a root path, or the status of the first group that found none."""
@@ -50,6 +72,7 @@ class LocalPlan:
     configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
     goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
+    blockade: Blockade | None = None  # why this is not the whole way that was asked for, if the planner can say it
     velocities: NDArray[np.float64] | None = None  # (n+1, 11) of the curve at the key times, if the planner chose them
 
     @property

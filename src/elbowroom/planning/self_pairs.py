@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
 from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.geometry import quaternion
-from elbowroom.planning.axis_gaps import clear_pairs
+from elbowroom.jit import kernel
+from elbowroom.planning.axis_gaps import clear_pairs, pair_clearances
 from elbowroom.planning.frames import compose
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.root_path import RootPath
@@ -39,6 +39,10 @@ class SelfPairs(NamedTuple):
     arms: tuple[Indices, Indices]  # (C,) left, right
     allowed: tuple[Floats32, Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
     between: Floats32  # (C, C) of left and right arm
+    first: Indices  # (P,) the same as a list of all pairs that are looked at: one capsule
+    second: Indices  # (P,) and the other
+    kinds: Indices  # (P,) 0: left arm and body, 1: right arm and body, 2: the arms
+    limits: Floats32  # (P,) metres
 
 
 def self_pairs(model: BodyModel) -> SelfPairs:
@@ -60,7 +64,18 @@ def self_pairs(model: BodyModel) -> SelfPairs:
     for limit in limits:
         limit[0, ~head] = EXEMPT
     carried = joints == model.spine[-1]
-    return SelfPairs(rest, carried, legs, arms, (limits[0], limits[1]), allowed(*arms))
+    between = allowed(*arms)
+    listed = [
+        (arm[c], rest[k], side, limit[c, k])
+        for side, (arm, limit) in enumerate(zip(arms, limits, strict=True))
+        for c, k in np.argwhere(limit > EXEMPT)
+    ]
+    listed += [(arms[0][c], arms[1][k], 2, between[c, k]) for c, k in np.ndindex(between.shape)]
+    first, second, kinds, least = zip(*listed, strict=True)
+    return SelfPairs(
+        rest, carried, legs, arms, (limits[0], limits[1]), between, np.array(first), np.array(second),
+        np.array(kinds), np.array(least, np.float32),
+    )  # fmt: skip
 
 
 def _natural_walk(model: BodyModel) -> Floats32:
@@ -84,26 +99,34 @@ def body_from_chest(model: BodyModel, pairs: SelfPairs, waists: Floats, roots: F
     here[:, :3] = 0.0
     uppers = np.zeros((len(waists), sum(group.size for group in LOCAL_GROUPS)))
     uppers[:, : DofGroup.WAIST.size] = waists
-    capsules = posture_capsules(model, _postures(uppers), here)[pairs.rest].astype(np.float64)
-    places, turns = compose(*pelvis_frames(model, here), *chest_frames(model, waists))
-    ends = capsules.reshape(len(capsules), 2, 3, -1).transpose(0, 1, 3, 2)
-    seen = quaternion.rotate(quaternion.conjugate(turns), ends - places)
-    return np.ascontiguousarray(seen.transpose(0, 1, 3, 2).reshape(capsules.shape), np.float32)
+    capsules = posture_capsules(model, _postures(uppers), here)[pairs.rest]
+    return _into_frames(capsules, *compose(*pelvis_frames(model, here), *chest_frames(model, waists)))
 
 
 def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: Floats) -> Floats32:
-    """How much nearer each pair of parts could come, the least of all, metres: shape (N,).
+    """How much nearer parts could come to each other, the nearest pair's, metres: shape (3, N).
 
-    For root states (N, 7) and upper bodies (N, DOF - 3): waist, left arm, right arm. Negative: in contact.
+    Of left arm and body, right arm and body, left arm and right arm, for root states (N, 7) and upper bodies
+    (N, DOF - 3): waist, left arm, right arm. Negative: in contact.
     """
     here = roots.copy()
     here[:, :3] = 0.0
     capsules = posture_capsules(model, _postures(uppers), here)
-    least = np.full(len(uppers), np.inf, np.float32)
-    for arm, limit in zip(pairs.arms, pairs.allowed, strict=True):
-        for c, k in np.argwhere(limit > EXEMPT):
-            np.minimum(least, clear_pairs(capsules[arm[c]], capsules[pairs.rest[k]]) - limit[c, k], out=least)
-    for c, k in np.ndindex(pairs.between.shape):
-        gaps = clear_pairs(capsules[pairs.arms[0][c]], capsules[pairs.arms[1][k]]) - pairs.between[c, k]
-        np.minimum(least, gaps, out=least)
-    return least
+    return pair_clearances(capsules, pairs.first, pairs.second, pairs.kinds, pairs.limits, 3)
+
+
+@kernel
+def _into_frames(segments: Floats32, places: Floats, turns: Floats) -> Floats32:
+    """Segments (K, 6, N) as seen from frames at `places` (N, 3) with unit quaternions `turns` (N, 4)."""
+    out = np.empty_like(segments)
+    for n in range(segments.shape[2]):
+        x, y, z, w = -turns[n, 0], -turns[n, 1], -turns[n, 2], turns[n, 3]
+        for k in range(segments.shape[0]):
+            for e in range(0, 6, 3):
+                a, b, c = segments[k, e, n] - places[n, 0], segments[k, e + 1, n] - places[n, 1], segments[k, e + 2, n]
+                c -= places[n, 2]
+                tx, ty, tz = 2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)
+                out[k, e, n] = a + w * tx + y * tz - z * ty
+                out[k, e + 1, n] = b + w * ty + z * tx - x * tz
+                out[k, e + 2, n] = c + w * tz + x * ty - y * tx
+    return out

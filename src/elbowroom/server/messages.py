@@ -39,6 +39,7 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 GroupName = Literal["root", "waist", "leftArm", "rightArm"]
 PhaseName = Literal["plan", "play", "reset"]
+Reason = Literal["noPosture", "outOfReach", "motion"]
 
 
 # --- from the client ---------------------------------------------------------------------------------------------
@@ -269,6 +270,16 @@ class Nearest:
 
 
 @dataclass(frozen=True)
+class Blocked:
+    """Why the upper body has no way on, proved by the planner."""
+
+    reason: Reason
+    boxes: list[str]  # names of the obstacles that together close it, each of them needed
+    ahead: float  # metres along the way
+    place: tuple[float, float]  # x, z
+
+
+@dataclass(frozen=True)
 class Status:
     """The state in numbers, about ten times a second."""
 
@@ -291,6 +302,7 @@ class Status:
     stuck_times: int
     clearance: float | None  # None: nothing near
     nearest: Nearest | None
+    blocked: Blocked | None  # None: there is a way on
 
 
 @dataclass(frozen=True)

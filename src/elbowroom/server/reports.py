@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup
 from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
+from elbowroom.planning.result import BlockadeKind
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.messages import (
     AvatarCapsule,
     AvatarMessage,
+    Blocked,
     Bone,
     Box,
     Gate,
@@ -20,6 +22,7 @@ from elbowroom.server.messages import (
     GroupReport,
     Place,
     Plan,
+    Reason,
     SceneMessage,
 )
 from elbowroom.server.pose import placement
@@ -32,6 +35,11 @@ _GROUPS: dict[DofGroup, GroupName] = {
     DofGroup.WAIST: "waist",
     DofGroup.LEFT_ARM: "leftArm",
     DofGroup.RIGHT_ARM: "rightArm",
+}
+_REASONS: dict[BlockadeKind, Reason] = {
+    BlockadeKind.NO_POSTURE: "noPosture",
+    BlockadeKind.OUT_OF_REACH: "outOfReach",
+    BlockadeKind.MOTION: "motion",
 }
 
 
@@ -86,6 +94,15 @@ def group_reports(plan: PlanReport | None) -> list[GroupReport]:
         GroupReport(_GROUPS[e.group], e.status.value, e.checks, e.nodes, e.enhanced, e.nanoseconds / 1e6)
         for e in evidence
     ]
+
+
+def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
+    """Why the last plan is not the whole way that was asked for."""
+    blockade = None if plan is None else plan.local.blockade
+    if blockade is None:
+        return None
+    names = [scene.box_names[box] for box in blockade.boxes if box < len(scene.box_names)]
+    return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 
 
 def plan_message(frame: Frame, avatar: StoredAvatar) -> Plan:

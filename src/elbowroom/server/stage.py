@@ -11,7 +11,7 @@ from elbowroom.server import pose_frame
 from elbowroom.server.messages import ClockMessage, Crossed, Input, Nearest, Overlays, Plan, Settings, Status
 from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
-from elbowroom.server.reports import finite, group_reports, plan_message
+from elbowroom.server.reports import blocked_message, finite, group_reports, plan_message
 from elbowroom.server.walk import Walk
 
 STEP = 1.0 / 60.0  # seconds of a single step
@@ -143,6 +143,7 @@ class Stage:
             stuck_times=walk.stuck_times,
             clearance=finite(frame.clearance),
             nearest=self._nearest(),
+            blocked=blocked_message(plan, walk.scene),
         )
 
     def plan(self) -> Plan:

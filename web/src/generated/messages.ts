@@ -231,6 +231,17 @@ export interface Nearest {
   distance: number;
 }
 
+/** Why the upper body has no way on, proved by the planner. */
+export interface Blocked {
+  reason: "noPosture" | "outOfReach" | "motion";
+  /** names of the obstacles that together close it, each of them needed */
+  boxes: string[];
+  /** metres along the way */
+  ahead: number;
+  /** x, z */
+  place: [number, number];
+}
+
 /** The state in numbers, about ten times a second. */
 export interface Status {
   type: "status";
@@ -262,6 +273,8 @@ export interface Status {
   /** null: nothing near */
   clearance: number | null;
   nearest: Nearest | null;
+  /** null: there is a way on */
+  blocked: Blocked | null;
 }
 
 /** What is planned ahead, ten times a second while the overlay is on. Segments: ax, ay, az, bx, by, bz a capsule. */

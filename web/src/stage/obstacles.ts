@@ -10,23 +10,45 @@ const BEVEL = 0.022;
 const BEVEL_SEGMENTS = 2;
 const SEE_THROUGH = 0.2;
 const FADE_HALFLIFE = 0.09;
+const GLOW = 0.5;
+
+type BoxMesh = Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
 
 export class Obstacles {
   readonly group = new Group();
+  private marked: ReadonlySet<number> = new Set();
+  private glow = 0;
 
   /** Replaces all boxes; `rich` ones have physically based surfaces. */
   build(boxes: readonly OrientedBox[], palette: Palette, rich: boolean): void {
     this.clear();
+    this.glow = palette.touching;
     boxes.forEach((box, i) => {
       const colour = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
       this.group.add(boxMesh(box, colour, rich));
+    });
+    this.glowMarked();
+  }
+
+  /** Lets some boxes glow, by number: those that close the way. */
+  mark(boxes: ReadonlySet<number>): void {
+    if (boxes.size === this.marked.size && [...boxes].every((i) => this.marked.has(i))) return;
+    this.marked = boxes;
+    this.glowMarked();
+  }
+
+  private glowMarked(): void {
+    this.group.children.forEach((child, i) => {
+      const { material } = child as BoxMesh;
+      material.emissive.setHex(this.marked.has(i) ? this.glow : 0x000000);
+      material.emissiveIntensity = GLOW;
     });
   }
 
   /** Moves each box towards see-through or solid; `hides` tells which box is in the way. */
   fade(hides: (i: number) => boolean, dt: number): void {
     this.group.children.forEach((child, i) => {
-      const { material } = child as Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+      const { material } = child as BoxMesh;
       const wanted = hides(i) ? SEE_THROUGH : 1;
       const opacity = Math.abs(material.opacity - wanted) < 0.01 ? wanted : damp(material.opacity, wanted, FADE_HALFLIFE, dt);
       if (opacity === material.opacity) return;
@@ -39,7 +61,7 @@ export class Obstacles {
 
   private clear(): void {
     for (const child of [...this.group.children]) {
-      const mesh = child as Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+      const mesh = child as BoxMesh;
       mesh.geometry.dispose();
       mesh.material.dispose();
       this.group.remove(mesh);

@@ -33,6 +33,13 @@ export class World {
     this.repaint(palette, rich);
   }
 
+  /** Lets the boxes of these names glow: they close the way. */
+  markBlocking(names: readonly string[]): void {
+    const wanted = new Set(names);
+    const numbers = (this.message?.boxes ?? []).flatMap((box, i) => (wanted.has(box.name) ? [i] : []));
+    this.obstacles.mark(new Set(numbers));
+  }
+
   /** Makes boxes see-through that stand between the camera and the avatar. */
   clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);

@@ -1,6 +1,7 @@
 /** One sentence about what is going on; screen readers hear it. */
 
 import { POSE_FLAGS, type Crossed, type PoseFrame, type Settings, type Status } from "../generated/messages";
+import { blockedSentence } from "./blocked_sentence";
 import { byId } from "./dom";
 
 type Tone = "" | "good" | "bad";
@@ -46,6 +47,7 @@ export class StatusLine {
     if (this.celebrated && now < this.celebrated.until) return [crossedText(this.celebrated.crossed), "good"];
     if (settings.paused) return ["Paused: . for one step, P to go on", ""];
     if (!settings.assist && (pose.flags & POSE_FLAGS.touching) !== 0) return ["Assist is off: the body passes through things", "bad"];
+    if (status?.blocked && settings.assist) return [blockedSentence(status.blocked), "bad"];
     if ((pose.flags & POSE_FLAGS.stuck) !== 0) return ["No room this way: back up with S and try another", "bad"];
     if (!this.everMoved) return [firstHint(), ""];
     if (status?.rootKind === "STOPPED") return ["The way ahead is closed", ""];

@@ -30,7 +30,6 @@ class Bounds(NamedTuple):
     """Lower bounds on the cost of whole ways, for waist, left and right arm: infinite where there is no such way."""
 
     through: tuple[Floats32, Floats32, Floats32]  # (n+1, V) of a way from start to end through the posture
-    ahead: tuple[Floats32, Floats32, Floats32]  # (n+1, V) of reaching the posture, for the group alone
 
 
 def bounds_of(problem: Problem) -> Bounds:
@@ -47,13 +46,17 @@ def bounds_of(problem: Problem) -> Bounds:
         beyond = _beyond(own, np.where(allowed, best, np.float32(np.inf)))
         prices.append(beyond)
     steps = problem.waist_steps, problem.left_steps, problem.right_steps
-    ahead = [_ahead(price, step) for price, step in zip(prices, steps, strict=True)]
-    behind = [_behind(price, step) for price, step in zip(prices, steps, strict=True)]
-    alone = [there + back for there, back in zip(ahead, behind, strict=True)]
+    alone = [way_costs(price, step) for price, step in zip(prices, steps, strict=True)]
     whole = [one[0].min() for one in alone]
     others = [np.float32(sum(whole[:g] + whole[g + 1 :])) for g in range(3)]
     through = [one + other for one, other in zip(alone, others, strict=True)]
-    return Bounds((through[0], through[1], through[2]), (ahead[0], ahead[1], ahead[2]))
+    return Bounds((through[0], through[1], through[2]))
+
+
+def way_costs(prices: Floats32, steps: Floats32) -> Floats32:
+    """The cost (n+1, V) of the cheapest way of one group alone through each of its postures."""
+    costs: Floats32 = _ahead(prices, steps) + _behind(prices, steps)
+    return costs
 
 
 @kernel

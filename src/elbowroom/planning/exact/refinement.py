@@ -1,0 +1,89 @@
+"""More postures, only where the search is blocked: sampled evenly, kept if they are free there and differ.
+
+A graph of clips reaches what the clips show. Where a slice leaves no way, postures are drawn in the limits of the
+joints, half of them all over and half near the goal, by an additive recurrence that fills space evenly (M. Roberts,
+"The unreasonable effectiveness of quasirandom sequences", 2018): no chance is left in it, the same slice gives the same
+postures. Those that are free there, of obstacles and of the body itself, are taken in, the ones nearest to the goal
+first, and none that is like another. They stay for the plans to come until newer ones need their place.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DofGroup, clamp, limits
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+
+class RefinementSettings(NamedTuple):
+    """How many postures are drawn and kept for a blocked slice."""
+
+    drawn: int = 512
+    taken: int = 24  # at most, of each group and slice
+    apart: float = 0.2  # radians between any two
+    near: float = 0.8  # radians to either side of the goal in which half of them are drawn
+    slices: int = 3  # that are looked at from the blocked one on
+    capacity: int = 64  # added postures that a group remembers
+
+
+def drawn_postures(group: DofGroup, around: Floats, count: int, spread: float) -> Floats:
+    """`count` postures (count, d) within the limits: one half all over, the other within `spread` of `around` (d,)."""
+    low, high = limits(group).T
+    even = _even(count, group.size)
+    half = count // 2
+    everywhere = low + even[:half] * (high - low)
+    nearby = around + spread * (2.0 * even[half:] - 1.0)
+    return clamp(group, np.concatenate([nearby, everywhere]))
+
+
+def _even(count: int, size: int) -> Floats:
+    """Points (count, size) of the additive recurrence with the powers of the generalised golden ratio."""
+    ratio = 2.0
+    for _ in range(60):
+        ratio = (1.0 + ratio) ** (1.0 / (size + 1.0))
+    steps = ratio ** -np.arange(1.0, size + 1.0)
+    points: Floats = (0.5 + np.arange(1.0, count + 1.0)[:, None] * steps) % 1.0
+    return points
+
+
+@exact_kernel
+def chosen(postures: Floats, prices: Floats, known: Floats, apart: float, most: int) -> Indices:
+    """Numbers of at most `most` postures (N, d), cheapest first, each `apart` from those before and from `known`."""
+    taken, count = np.empty(most, np.int64), 0
+    for n in np.argsort(prices, kind="mergesort"):
+        if count == most or prices[n] == np.inf:
+            break
+        differs = True
+        for k in range(count + known.shape[0]):
+            other, total = postures[taken[k]] if k < count else known[k - count], 0.0
+            for i in range(postures.shape[1]):
+                total += (postures[n, i] - other[i]) ** 2
+            if total < apart * apart:
+                differs = False
+                break
+        if differs:
+            taken[count] = n
+            count += 1
+    return taken[:count]
+
+
+class Pool:
+    """The postures that were added to one group, the newest last; of bounded size."""
+
+    def __init__(self, size: int, capacity: int) -> None:
+        self._capacity = capacity
+        self.postures: Floats = np.empty((0, size))
+        self.revision = 0  # grows with every change
+
+    def add(self, postures: Floats) -> bool:
+        """Take in postures (N, d), in place of the oldest where there is no room; whether any was new."""
+        if not len(postures):
+            return False
+        self.postures = np.concatenate([self.postures, postures[: self._capacity]])[-self._capacity :]
+        self.revision += 1
+        return True
