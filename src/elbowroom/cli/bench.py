@@ -1,12 +1,38 @@
 """`elbowroom bench`: what the parts cost that a frame waits for."""
 
+from typing import Annotated
+
 import typer
 
-from elbowroom.cli import bench_collision, bench_planners
+from elbowroom.cli import bench_collision, bench_plan, bench_planners
+from elbowroom.cli.output import print_json
 
-bench = typer.Typer(
-    help="Measure: `collision` the kernel beside other libraries, `planners` ours beside a general one.",
-    no_args_is_help=True,
-)
+EXAMPLES = "Examples:  elbowroom bench  |  elbowroom bench --json  |  elbowroom bench plan --scene d"
+
+bench = typer.Typer(help="Measure speeds; without a command, of the collision kernel and of planning.")
+
+
+@bench.callback(invoke_without_command=True, epilog=EXAMPLES)
+def both(
+    context: typer.Context,
+    *,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Measure speeds; without a command, of the collision kernel and of planning."""
+    if context.invoked_subcommand is not None:
+        return
+    from elbowroom.experiment.bench import collision, plan
+
+    sizes = collision.CollisionSettings()
+    of_collision, of_planning = collision.run(sizes), plan.run(plan.PlanSettings())
+    if json:
+        found = {"collision": bench_collision.as_json(of_collision, sizes.seed), "plan": of_planning.as_dict()}
+        print_json(found)
+        return
+    bench_collision.show(of_collision)
+    bench_plan.show(of_planning)
+
+
 bench.command("collision", epilog=bench_collision.EXAMPLES)(bench_collision.collision)
+bench.command("plan", epilog=bench_plan.EXAMPLES)(bench_plan.plan)
 bench.command("planners", epilog=bench_planners.EXAMPLES)(bench_planners.planners)

@@ -1,0 +1,124 @@
+"""What a planning call costs, and how that grows with how far it looks and with what stands near."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.errors import InputError
+from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
+from elbowroom.geometry import quaternion
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.scene import Scene
+
+_POST = 0.03  # metres, half the thickness of a post in the lane
+_ASIDE = (0.42, 0.60)  # metres from the middle of the lane to a post: within reach of a swinging hand, and beyond
+_LANE = (1.0, 4.5)  # metres along the lane in which posts stand
+
+
+@dataclass(frozen=True)
+class PlanSettings:
+    """What is measured."""
+
+    scene: str = "d"
+    key_frames: int = 12
+    rounds: int = 5  # crossings
+    horizons: tuple[int, ...] = (4, 8, 12, 16, 20, 24)
+    obstacles: tuple[int, ...] = (0, 8, 16, 24, 32, 40)
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.key_frames <= 100:
+            raise InputError(f"key frames {self.key_frames}: allowed are 2 to 100")
+        if not 1 <= self.rounds <= 1000:
+            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
+
+
+@dataclass(frozen=True)
+class CallCosts:
+    """The calls of some crossings together; milliseconds of processor time, and by the clock where it says so."""
+
+    calls: int
+    median_ms: float
+    p99_ms: float
+    worst_ms: float
+    median_clock_ms: float
+    worst_clock_ms: float
+    median_checks: float
+    worst_checks: int
+    found: float  # share of the calls
+
+    @property
+    def worst_to_median_checks(self) -> float:
+        """How much more collision work the worst call has than the usual one."""
+        return self.worst_checks / max(self.median_checks, 1.0)
+
+
+@dataclass(frozen=True)
+class PlanReport:
+    """All figures."""
+
+    settings: PlanSettings
+    calls: CallCosts
+    by_horizon: tuple[CallCosts, ...]
+    by_obstacles: tuple[CallCosts, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Settings and figures."""
+        return asdict(self) | {"worst_to_median_checks": self.calls.worst_to_median_checks}
+
+
+def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) -> PlanReport:
+    """Cross the scene `rounds` times, then once for each horizon, then the lane once for each number of posts."""
+    humanoid, scene = Humanoid.default(), Scene.load(settings.scene)
+    done = 0
+
+    def measured(where: Scene, key_frames: int, rounds: int) -> CallCosts:
+        nonlocal done
+        list(crossing_calls(humanoid, where, key_frames, most=4))  # load what is compiled, and forget it
+        calls: list[PlanCall] = []
+        for _ in range(rounds):
+            calls += crossing_calls(humanoid, where, key_frames)
+            done += 1
+            tick(done)
+        return _costs(calls)
+
+    return PlanReport(
+        settings,
+        measured(scene, settings.key_frames, settings.rounds),
+        tuple(measured(scene, horizon, 1) for horizon in settings.horizons),
+        tuple(measured(lane(posts), settings.key_frames, 1) for posts in settings.obstacles),
+    )
+
+
+def amount(settings: PlanSettings) -> int:
+    """How many crossings there will be."""
+    return settings.rounds + len(settings.horizons) + len(settings.obstacles)
+
+
+def lane(posts: int) -> Scene:
+    """The empty scene with posts on both sides of the way, evenly spread, as tall as a man."""
+    bare = Scene.load("empty")
+    left = np.where(np.arange(posts) % 2 == 0, 1.0, -1.0)
+    aside = np.where(np.arange(posts) % 4 < 2, *_ASIDE)
+    centers = np.stack([left * aside, np.full(posts, 0.9), np.linspace(*_LANE, posts)], axis=1)
+    boxes = Boxes(centers, np.tile(quaternion.IDENTITY, (posts, 1)), np.tile([_POST, 0.9, _POST], (posts, 1)))
+    names = tuple(f"post {i + 1}" for i in range(posts))
+    return replace(bare, name=f"lane of {posts}", boxes=boxes, box_names=names)
+
+
+def _costs(calls: Sequence[PlanCall]) -> CallCosts:
+    times, waits = np.array([call[:2] for call in calls]).T
+    checks = np.array([call.checks for call in calls])
+    return CallCosts(
+        calls=len(calls),
+        median_ms=float(np.median(times)),
+        p99_ms=float(np.percentile(times, 99)),
+        worst_ms=float(times.max()),
+        median_clock_ms=float(np.median(waits)),
+        worst_clock_ms=float(waits.max()),
+        median_checks=float(np.median(checks)),
+        worst_checks=int(checks.max()),
+        found=float(np.mean([call.found for call in calls])),
+    )

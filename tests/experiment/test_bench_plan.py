@@ -1,0 +1,54 @@
+"""The planning benchmark makes the calls that a walk makes, and says what they cost."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.cli.main import app
+from elbowroom.errors import InputError
+from elbowroom.experiment.bench.plan import CallCosts, PlanReport, PlanSettings, amount, lane
+from elbowroom.experiment.bench.plan_calls import crossing_calls
+from elbowroom.experiment.bench.plots import growth_plots
+from elbowroom.world.scene import Scene
+
+
+def test_calls_walk_to_the_finish() -> None:
+    humanoid, scene = Humanoid.default(), Scene.load("b")
+    calls = list(crossing_calls(humanoid, scene, 8))
+    assert 20 < len(calls) < 400, "the walk did not get to the finish"
+    assert all(call.found for call in calls)
+    assert all(call.milliseconds > 0.0 and call.waited > 0.0 for call in calls)
+    assert sum(call.checks for call in calls) > 0
+
+
+def test_equal_walks_do_equal_work() -> None:
+    humanoid, scene = Humanoid.default(), Scene.load("b")
+    first, second = ([call.checks for call in crossing_calls(humanoid, scene, 6, most=12)] for _ in range(2))
+    assert first == second
+
+
+def test_lane_has_its_posts_beside_the_way() -> None:
+    scene = lane(10)
+    assert len(scene.boxes) == len(scene.box_names) == 10
+    assert np.abs(scene.boxes.centers[:, 0]).min() > 0.3
+    assert len(lane(0).boxes) == 0
+
+
+def test_plots_are_svg_documents() -> None:
+    costs = CallCosts(3, 0.2, 0.4, 0.5, 0.2, 0.6, 100.0, 300, 1.0)
+    settings = PlanSettings(horizons=(4, 8), obstacles=(0, 8))
+    for picture in growth_plots(PlanReport(settings, costs, (costs,) * 2, (costs,) * 2)).values():
+        assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
+    assert costs.worst_to_median_checks == 3.0
+    assert amount(settings) == 9
+
+
+def test_command_refuses_nonsense() -> None:
+    with pytest.raises(InputError, match="key frames 1"):
+        PlanSettings(key_frames=1)
+    result = CliRunner().invoke(app, ["bench", "plan", "--scene", "nowhere", "--json"], standalone_mode=False)
+    assert result.return_value == 2
+    assert "nowhere" in result.output
