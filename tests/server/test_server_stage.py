@@ -42,7 +42,7 @@ def stage(walk: Walk) -> Stage:
 
 def test_simulated_time_follows_the_clock_whatever_the_ticks(stage: Stage) -> None:
     rng, now = np.random.default_rng(0), 0.0
-    stage.obey(Input(seq=1, forward=1.0))
+    stage.obey(Input(seq=1, forward=1.0), 0.0)
     for gap in rng.uniform(0.0, 0.03, 200):
         now += gap
         stage.advance(now)
@@ -52,7 +52,7 @@ def test_simulated_time_follows_the_clock_whatever_the_ticks(stage: Stage) -> No
 def test_the_pose_depends_on_time_and_not_on_how_often_it_is_asked_for(library: Library, stage: Stage) -> None:
     other = Stage(Walk(library.avatars.get("stock"), library.find_scene("empty"), WalkSettings()), 0.0)
     for one in (stage, other):
-        one.obey(Input(seq=1, forward=1.0))
+        one.obey(Input(seq=1, forward=1.0), 0.0)
     for i in range(60):
         stage.advance((i + 1) / 60)
     for i in range(240):
@@ -82,11 +82,11 @@ def test_speed_and_pause(stage: Stage) -> None:
 
 
 def test_inputs_are_acknowledged_and_only_changes_count(stage: Stage) -> None:
-    assert stage.obey(Input(seq=1, forward=1.0))
-    assert not stage.obey(Input(seq=2, forward=1.0))
+    assert stage.obey(Input(seq=1, forward=1.0), 0.0)
+    assert not stage.obey(Input(seq=2, forward=1.0), 0.0)
     assert parse(stage.frame(0.0)).acknowledged == 2
     stage.release()
-    assert stage.obey(Input(seq=3, forward=1.0))
+    assert stage.obey(Input(seq=3, forward=1.0), 0.0)
 
 
 def test_a_jump_changes_the_epoch_and_a_new_avatar_the_revision(library: Library, stage: Stage) -> None:
@@ -127,7 +127,7 @@ def test_crossing_counts_once_until_the_avatar_was_back_at_the_start(walk: Walk)
 
 def test_status_and_plan_tell_what_the_controller_did(stage: Stage) -> None:
     stage.overlays = Overlays(capsules=True, plan=True)
-    stage.obey(Input(seq=1, forward=1.0))
+    stage.obey(Input(seq=1, forward=1.0), 0.0)
     for i in range(30):
         stage.advance((i + 1) / 60)
         stage.frame((i + 1) / 60)

@@ -13,7 +13,7 @@ import typer
 
 from elbowroom.cli.output import print_json
 
-EXAMPLES = "Examples:  elbowroom doctor  |  elbowroom doctor --session --seconds 20 --json"
+EXAMPLES = "Examples:  elbowroom doctor  |  elbowroom doctor --session --scene d --sessions 4 --seconds 20 --json"
 
 _PACKAGES = ("numpy", "numba", "scipy", "starlette", "uvicorn", "websockets", "typer", "rich")
 WHEEL_BUDGET_MB = 5.0
@@ -22,6 +22,7 @@ WHEEL_BUDGET_MB = 5.0
 def doctor(
     *,
     session: Annotated[bool, typer.Option("--session", help="Measure the cost of one live session.")] = False,
+    sessions: Annotated[int, typer.Option(min=1, max=8, help="How many live sessions at once.")] = 1,
     seconds: Annotated[float, typer.Option(min=2.0, max=600.0, help="How long to measure.")] = 10.0,
     scene: Annotated[str, typer.Option(help="The scene of the measured session.")] = "a",
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -33,8 +34,8 @@ def doctor(
     if session:
         from elbowroom.cli.session_cost import measure_session
 
-        with Console(stderr=True).status(f"Measuring a live session for {seconds:g} s ..."):
-            facts["session"] = asdict(measure_session(seconds, scene))
+        with Console(stderr=True).status(f"Measuring live sessions for {seconds:g} s ..."):
+            facts["session"] = asdict(measure_session(seconds, scene, sessions))
     faults = _faults(facts)
     facts["faults"] = faults
     if json:
@@ -151,7 +152,10 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
     cpu = f"{cost['cpu_percent']:.1f} % of one core (budget {cost['cpu_budget_percent']:g})"
     memory = f"{cost['resident_megabytes']:.0f} MB (budget {cost['resident_budget_megabytes']:g})"
     rate = f"{cost['frames_per_second']:.1f} frames/s, computing one takes {cost['frame_ms_p50']:.2f} ms"
+    frames = f"99 % of the frames within {cost['late_ms_p99']:.1f} ms of their time"
+    answers = f"commands answered within {cost['answer_ms_p50']:.0f} ms (half), {cost['answer_ms_max']:.0f} ms (all)"
     return [
-        ("session", f"{cpu}, {memory}"),
+        ("session", f"{cost['sessions']} at once: {cpu} each, {memory}"),
         ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),
+        ("", f"{frames}; {answers}; {cost['late_plans']} plans too late"),
     ]

@@ -1,11 +1,15 @@
-"""What one live session costs: a real server in its own process, a real client that walks in circles."""
+"""What live sessions cost and how punctual they are: a real server in its own process, real clients that walk about."""
 
 import json
 import re
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
+from statistics import median
 from urllib.request import urlopen
 
 from websockets.sync.client import ClientConnection, connect
@@ -20,21 +24,27 @@ RESIDENT_BUDGET = 400.0  # MB
 _PATIENCE = 300.0  # seconds until the server answers, the first time with compiling
 _SETTLE = 2.0  # seconds of walking before the measurement
 _HEARTBEAT = 0.2  # seconds between inputs
+_CHANGE, _TURNED = 3.0, 0.5  # seconds between changes of direction, and until it is changed back
 _RESTART = 12.0  # seconds of walking between two resets: the scenes' obstacles, again and again
 
 
 @dataclass(frozen=True)
 class SessionCost:
-    """The server's side of one live session at 60 Hz."""
+    """The server's side of live sessions at 60 Hz."""
 
+    sessions: int
     seconds: float
-    cpu_percent: float  # of one core, all threads
+    cpu_percent: float  # of one core, all threads, for each session
     cpu_budget_percent: float
     resident_megabytes: float
     resident_budget_megabytes: float
-    frames_per_second: float
+    frames_per_second: float  # of each session
     frame_ms_p50: float
     frame_ms_p95: float
+    late_ms_p99: float  # how long after it was due a frame was ready; of the latest session
+    answer_ms_p50: float  # from a changed command until the motion is planned for it
+    answer_ms_max: float
+    late_plans: int
     ready_seconds: float  # from the start of the process until it serves
 
 
@@ -46,15 +56,15 @@ class _Tally:
     status: Status | None = None
 
 
-def measure_session(seconds: float, scene: str) -> SessionCost:
-    """Run a server and a client for `seconds`; raises `InputError` if the server does not start."""
+def measure_session(seconds: float, scene: str, sessions: int = 1) -> SessionCost:
+    """Run a server and clients for `seconds`; raises `InputError` if the server does not start."""
     began = time.perf_counter()
     command = "import sys; from elbowroom.cli import main; sys.argv[0] = 'elbowroom'; main()"
     arguments = ["play", "--port", "0", "--no-open", "--scene", scene]
     with subprocess.Popen([sys.executable, "-c", command, *arguments], stdout=subprocess.PIPE, text=True) as server:
         try:
             url = _url(server)
-            return _measured(url, seconds, time.perf_counter() - began)
+            return _measured(url, seconds, sessions, time.perf_counter() - began)
         finally:
             server.terminate()
 
@@ -68,32 +78,44 @@ def _url(server: "subprocess.Popen[str]") -> str:
     raise InputError("doctor: the server did not start; `elbowroom play --no-open` says why")
 
 
-def _measured(url: str, seconds: float, ready: float) -> SessionCost:
-    with connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE) as client:
-        _walk(client, _SETTLE)
+def _measured(url: str, seconds: float, sessions: int, ready: float) -> SessionCost:
+    with ExitStack() as stack, ThreadPoolExecutor(sessions) as threads:
+        clients = [stack.enter_context(_client(url)) for _ in range(sessions)]
+        list(threads.map(partial(_walk, seconds=_SETTLE), clients))
         before = _usage(url)
-        tally = _walk(client, seconds)
+        tallies = list(threads.map(partial(_walk, seconds=seconds), clients))
         after = _usage(url)
     wall = after["wallSeconds"] - before["wallSeconds"]
-    status = tally.status
+    told = [tally.status for tally in tallies if tally.status is not None]
+    answers = [status.answer_ms for status in told if status.answer_ms is not None]
     return SessionCost(
+        sessions=sessions,
         seconds=wall,
-        cpu_percent=100.0 * (after["cpuSeconds"] - before["cpuSeconds"]) / wall,
+        cpu_percent=100.0 * (after["cpuSeconds"] - before["cpuSeconds"]) / wall / sessions,
         cpu_budget_percent=CPU_BUDGET,
         resident_megabytes=after["residentBytes"] / 1e6,
         resident_budget_megabytes=RESIDENT_BUDGET,
-        frames_per_second=tally.frames / wall,
-        frame_ms_p50=status.frame_ms_p50 if status else 0.0,
-        frame_ms_p95=status.frame_ms_p95 if status else 0.0,
+        frames_per_second=sum(tally.frames for tally in tallies) / wall / sessions,
+        frame_ms_p50=median(status.frame_ms_p50 for status in told),
+        frame_ms_p95=max(status.frame_ms_p95 for status in told),
+        late_ms_p99=max(status.late_ms_p99 for status in told),
+        answer_ms_p50=median(half for half, _ in answers) if answers else 0.0,
+        answer_ms_max=max((longest for _, longest in answers), default=0.0),
+        late_plans=sum(status.late_plans for status in told),
         ready_seconds=ready,
     )
 
 
+def _client(url: str) -> ClientConnection:
+    return connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE)
+
+
 def _walk(client: ClientConnection, seconds: float) -> _Tally:
-    """Hold the forward key for `seconds`, going back to the start now and then."""
+    """Walk for `seconds`, mostly ahead, with a change of direction and a return to the start now and then."""
     tally = _Tally()
-    end = time.monotonic() + seconds
-    next_input, next_reset, seq = 0.0, time.monotonic() + _RESTART, 0
+    began = time.monotonic()
+    end = began + seconds
+    next_input, next_reset, seq = 0.0, began + _RESTART, 0
     while time.monotonic() < end:
         if time.monotonic() >= next_reset:
             next_reset += _RESTART
@@ -101,7 +123,8 @@ def _walk(client: ClientConnection, seconds: float) -> _Tally:
         if time.monotonic() >= next_input:
             next_input = time.monotonic() + _HEARTBEAT
             seq += 1
-            client.send(encode(Input(seq=seq, forward=1.0)))
+            turned = (time.monotonic() - began) % _CHANGE > _CHANGE - _TURNED
+            client.send(encode(Input(seq=seq, forward=1.0, strafe=1.0 if turned else 0.0)))
         message = client.recv(timeout=_PATIENCE)
         if isinstance(message, bytes):
             tally.frames += 1

@@ -241,8 +241,8 @@ class Controller:
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1
         root = replace(answer.root, path=replace(answer.root.path, start_time=start))
-        self._plan_report = PlanReport(number, self._queue.time, root, answer.local)
         found, command = answer.uppers is not None, question.query.command
+        self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
         self._halting = not found and (self._halting or steering.overturned(self._command, command))
         self._command, self._next, self._resting = command, Phase.PLAY, False
         self._blocked = not found and self._queue.empty

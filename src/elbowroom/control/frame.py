@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.control.key_frame_queue import KeyFrames
+from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_plan import RootPlan
 
@@ -26,7 +27,8 @@ class PlanReport:
     """One planning call: where it started, what it found, what it cost."""
 
     number: int  # 1 for the first
-    time: float  # seconds, when it was called
+    time: float  # seconds, when its result was taken over
+    command: Command  # what it was made for
     root: RootPlan
     local: LocalPlan
 

@@ -126,7 +126,7 @@ class Session:
 
     def _obey(self, message: ClientMessage) -> None:
         if isinstance(message, Input):
-            if self._stage.obey(message) and self._now() - self._answered >= _ANSWER_EVERY:
+            if self._stage.obey(message, self._now()) and self._now() - self._answered >= _ANSWER_EVERY:
                 self._answered = self._now()
                 self._show()
         elif isinstance(message, Ping):
@@ -159,6 +159,7 @@ class Session:
             seldom = self._now() - self._told >= _SELDOM
             if seldom or not self._stage.paused:
                 self._show()
+                self._stage.punctuality.shown(self._now() - due)
             if seldom:
                 self._report()
 

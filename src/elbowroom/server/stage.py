@@ -11,6 +11,7 @@ from elbowroom.server import pose_frame
 from elbowroom.server.messages import ClockMessage, Crossed, Input, Nearest, Overlays, Plan, Settings, Status
 from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.punctuality import Punctuality
 from elbowroom.server.reports import blocked_message, finite, group_reports, plan_message
 from elbowroom.server.walk import Walk
 
@@ -38,6 +39,7 @@ class Stage:
         self._advanced = now
         self._stepping = 0.0  # seconds of computing since the last frame was packed
         self._busy: deque[float] = deque(maxlen=_TIMED)
+        self.punctuality = Punctuality()
 
     def show(self, walk: Walk) -> None:
         """Go on with another walk; the counters of crossings go with the session, not with the walk."""
@@ -51,11 +53,13 @@ class Stage:
         self.walk.reset()
         self._jump()
 
-    def obey(self, message: Input) -> bool:
+    def obey(self, message: Input, now: float) -> bool:
         """Hold what an input asks for; whether that is something else than before."""
         command = Command(message.forward, message.strafe, message.turn, message.direction, message.run)
         changed = command != self.command
         self.command, self._acknowledged = command, message.seq
+        if changed and not self.walk.heeds(command):
+            self.punctuality.asked(now)
         return changed
 
     def release(self) -> None:
@@ -77,7 +81,12 @@ class Stage:
         """Go on to `now`, unless paused; what is worth telling."""
         elapsed = min(max(now - self._advanced, 0.0), _LONGEST_GAP)
         self._advanced = now
-        return [] if self.paused else self._step(elapsed * self.speed)
+        if self.paused:
+            return []
+        events = self._step(elapsed * self.speed)
+        if self.walk.heeds(self.command):
+            self.punctuality.answered(now)
+        return events
 
     def frame(self, now: float) -> bytes:
         """The pose shown now, as it travels."""
@@ -137,6 +146,10 @@ class Stage:
             planning_ms=sum(group.ms for group in groups),
             frame_ms_p50=float(median),
             frame_ms_p95=float(slow),
+            late_ms_p99=self.punctuality.late_ms,
+            answer_ms=self.punctuality.answer_ms,
+            late_plans=walk.late_plans,
+            look_ahead=0.0 if plan is None else plan.root.path.horizon * plan.root.path.interval,
             queue_fill=frame.fill,
             queue_size=walk.settings.queue_size,
             crossed=walk.crossed,

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
+from elbowroom.control import steering
 from elbowroom.control.controller import Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
@@ -112,6 +113,13 @@ class Walk:
             self._stuck_since_start += 1
         self._count_plans()
         return self._crossing()
+
+    def heeds(self, command: Command) -> bool:
+        """Whether the motion that is shown was planned for this command, or for nearly the same."""
+        plan = self.frame.plan
+        if plan is None or self.frame.time < plan.root.path.start_time:
+            return False
+        return not steering.changed(plan.command, at_speed(command, self.settings.walk_speed))
 
     @property
     def place(self) -> RootState:

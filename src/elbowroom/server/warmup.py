@@ -67,7 +67,7 @@ def _walk_a_moment(library: Library, planner: str) -> None:
     stage, now = Stage(walk, 0.0), 0.0
     stage.overlays = Overlays(capsules=True, plan=True)
     for frames, held in _WALK:
-        stage.obey(held)
+        stage.obey(held, now)
         for _ in range(frames):
             now += STEP
             stage.advance(now)

@@ -265,6 +265,14 @@ export interface Status {
   /** computing one frame, over the last seconds */
   frameMsP50: number;
   frameMsP95: number;
+  /** how long after it was due a frame was ready */
+  lateMsP99: number;
+  /** median and longest wait until the motion is what a new command wants */
+  answerMs: [number, number] | null;
+  /** plans since the last reset that came too late to be shown */
+  latePlans: number;
+  /** seconds of motion in the last plan */
+  lookAhead: number;
   queueFill: number;
   queueSize: number;
   /** times that the finish was passed */

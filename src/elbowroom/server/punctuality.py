@@ -1,0 +1,43 @@
+"""How punctual a session is: frames against the clock, answers to commands. Times are arguments, in seconds."""
+
+from collections import deque
+
+import numpy as np
+
+_FRAMES = 600  # that are remembered
+_ANSWERS = 100
+
+
+class Punctuality:
+    """Remembers how late the last frames were, and how long the last commands waited for a motion of their own."""
+
+    def __init__(self) -> None:
+        self._late: deque[float] = deque(maxlen=_FRAMES)
+        self._answers: deque[float] = deque(maxlen=_ANSWERS)
+        self._asked: float | None = None
+
+    def shown(self, late: float) -> None:
+        """A frame was ready so long after it was due."""
+        self._late.append(late)
+
+    def asked(self, now: float) -> None:
+        """A command wants something else than the motion that is shown."""
+        self._asked = now if self._asked is None else self._asked
+
+    def answered(self, now: float) -> None:
+        """The motion that is shown is what the command wants."""
+        if self._asked is not None:
+            self._answers.append(now - self._asked)
+            self._asked = None
+
+    @property
+    def late_ms(self) -> float:
+        """99th percentile of the frames' lateness, milliseconds."""
+        return 1e3 * float(np.percentile(self._late or [0.0], 99))
+
+    @property
+    def answer_ms(self) -> tuple[float, float] | None:
+        """Median and longest wait of the commands, milliseconds; None where there was none."""
+        if not self._answers:
+            return None
+        return 1e3 * float(np.median(self._answers)), 1e3 * max(self._answers)
