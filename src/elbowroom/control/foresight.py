@@ -4,7 +4,7 @@ import math
 
 _LIKELY = 0.03  # seconds that a plan takes until one has been waited for
 _SPARE = 0.02  # seconds
-_FORGET = 0.9  # of what is expected, with every plan that was quicker
+_FORGET = 0.7  # of what is expected, with every plan that was quicker
 _BRAKING = 0.4  # seconds in which playback slows down to a stand, or comes back to its full speed
 
 
