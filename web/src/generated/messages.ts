@@ -250,7 +250,7 @@ export interface Status {
   simTime: number;
   phase: "plan" | "play" | "reset";
   stuck: boolean;
-  /** "straight", "detour", "shortened", "stopped"; "" before the first plan */
+  /** "straight", "evasion", "detour", "shortened", "stopped"; "" before the first plan */
   rootKind: string;
   /** "found", "exhausted", "out of budget"; "" before the first plan */
   planStatus: string;
