@@ -96,3 +96,13 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
         limb.base, limb.parents, limb.offsets, limb.order, limb.spine[-1], limb.arm_joints, limb.mirror,
         limb.joints, limb.ends, configurations,
     )  # fmt: skip
+
+
+@exact_kernel
+def carried_frames(limb: Limb, configurations: Floats) -> tuple[Floats, Floats]:
+    """The frames (N, 3), (N, 4) that the waist's limb carries, the chest's, in the pelvis frame, for waists (N, d)."""
+    _, places, turns = posing.pose_trunk(
+        limb.base, limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights,
+        limb.gaze, limb.gaze_weights, limb.joints, limb.ends, limb.half_leg, configurations,
+    )  # fmt: skip
+    return places, turns

@@ -1,7 +1,7 @@
 """A root path and the upper-body motion on it: what control asks for, and who answers.
 
 The paper's planners dress the root path that they are given. A planner may also choose the path itself, look farther
-ahead than the queue holds, and mind what is shown at this moment: then it is a `MotionPlanner`.
+ahead than the queue holds, and choose how the curve passes its key frames: then it is a `MotionPlanner`.
 """
 
 from typing import NamedTuple, Protocol, runtime_checkable
@@ -16,20 +16,6 @@ from elbowroom.planning.root_plan import RootPlan
 from elbowroom.planning.root_planner import RootPlanner
 
 Floats = NDArray[np.float64]
-
-
-class Lead(NamedTuple):
-    """What is shown at the moment from which a new plan is played, and the way of the root from there to its start."""
-
-    duration: float  # seconds until the plan's first key frame, 0 or more
-    roots: Floats  # (L, 7) root states at equal steps of the duration, the first of them now; none for duration 0
-    upper: Floats  # (11,) waist, left arm, right arm now, radians
-    velocity: Floats  # (11,) their rate of change, rad/s
-
-
-def no_lead(upper: Floats) -> Lead:
-    """A plan that starts now, from rest, at `upper` (11,)."""
-    return Lead(0.0, np.empty((0, 7)), upper, np.zeros_like(upper))
 
 
 class MotionQuery(NamedTuple):

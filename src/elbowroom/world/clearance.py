@@ -126,7 +126,7 @@ def _turned(m: Matrix, x: float, y: float, z: float) -> Vector:
 
 
 @kernel
-def _lower_to_box(lanes: Floats32, box: Floats32, out: Floats32) -> None:
+def lower_to_box(lanes: Floats32, box: Floats32, out: Floats32) -> None:
     """out[i] = min(out[i], clearance of lane i from the box); lanes (7, n), n a multiple of the vector width."""
     ax, ay, az, bx, by, bz, radius = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5], lanes[6]
     cx, cy, cz = box[0], box[1], box[2]
@@ -170,7 +170,7 @@ def clearance_into(segments: Floats32, radii: Floats32, table: Floats32, out: Fl
         for c in range(segments.shape[0]):
             _fill_lanes(segments[c], radii[c], start, count, lanes)
             for b in range(table.shape[0]):
-                _lower_to_box(lanes, table[b], best)
+                lower_to_box(lanes, table[b], best)
         out[start : start + count] = best[:count]
 
 
@@ -187,7 +187,7 @@ def _pairwise_into(segments: Floats32, radii: Floats32, table: Floats32, out: Fl
             _fill_lanes(segments[c], radii[c], start, count, lanes)
             for b in range(table.shape[0]):
                 best[:] = _INFINITE
-                _lower_to_box(lanes, table[b], best)
+                lower_to_box(lanes, table[b], best)
                 out[c, b, start : start + count] = best[:count]
 
 
@@ -204,7 +204,7 @@ def _posture_clearance(rows: Floats32, radii: Floats32, table: Floats32) -> Any:
     lanes[6, count:] = radii[count - 1]
     best = np.full(lanes.shape[1], _INFINITE, np.float32)
     for b in range(table.shape[0]):
-        _lower_to_box(lanes, table[b], best)
+        lower_to_box(lanes, table[b], best)
     for i in range(count):
         least = min(least, best[i])
     return least

@@ -1,8 +1,8 @@
-"""The way of one group along a root path: cheapest through the lattice, then checked as it will be shown.
+"""The way of one group along a root path: cheapest through the lattice, then proven as it will be shown.
 
-A way that touches between its key frames is banned there, with the steps near it; where that happens, all steps of that
-key interval are looked at in one batch, and the next cheapest way is taken. So steps are swept only where the search is
-blocked, and every candidate is swept as a whole.
+A way that touches between its key frames is banned there, with the steps near it; where that happens, the steps of that
+key interval through which the next ways would lead are looked at in one batch, and the next cheapest way is taken. So
+steps are swept only where the search is blocked, and every candidate is swept as a whole. All of it is one compiled call.
 """
 
 from typing import NamedTuple
@@ -10,37 +10,77 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way, new_work
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.lattice import (
+    BACK,
+    GOAL,
+    HOLD,
+    KEPT,
+    OWN,
+    Lattice,
+    Work,
+    cheapest_way,
+    posture_of,
+    settle_backward,
+    squares_from,
+    traced,
+)
 from elbowroom.planning.exact.postures import Postures
-from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.shown import Moments, shown_motion
-from elbowroom.planning.exact.slices import closed_steps, motion_clearances, swept_clearances
+from elbowroom.planning.exact.proof import ENOUGH, limb_way
+from elbowroom.planning.exact.slots import begin_round
+from elbowroom.planning.exact.steps import ban_near, close_steps, promising
+from elbowroom.planning.exact.tables import EARLY, LATE, START, Tables, held_clearance, table_of
+from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
+from elbowroom.planning.interpolation import monotone_tangents
 from elbowroom.planning.limb import pose
 from elbowroom.planning.self_contact import clear_of_trunk
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-OWN = 4  # postures of a key time alone: goal, what the last plan had, the start, on the way from start to goal
-_GOAL, KEPT, _HOLD, _BACK = range(OWN)
-_STRIDE = 3  # every third shown moment is looked at around a key time
 _BAN_RADIUS = 0.1  # radians: steps so near to one that touches are banned with it
-_LIKE = 0.15  # radians: postures so near to each other are taken to touch in the same steps
+_FIRST_SLACK = 0.1  # squared radians: how much dearer ways are looked at where one touches; doubled each time
 _BACK_STEP = 0.8  # of the longest step
+_SAME = 1e-9  # radians
+_INFINITE = np.float32(np.inf)
+
+
+class Group(NamedTuple):
+    """One group for a key interval: what is known of it once and for all, and its shelves."""
+
+    postures: Postures
+    levers: Floats  # (C, 3) as `levers_of`
+    tables: Tables
+    ways: LimbWays
+
+
+class Weights(NamedTuple):
+    """What a search prefers and where it ends; see `ExactSettings`."""
+
+    step: float
+    near: float
+    comfort: float
+    keeping: float
+    rounds: int
 
 
 class GroupTask(NamedTuple):
     """What one group has to do."""
 
-    postures: Postures
-    tables: Floats32  # (M, B, 15) boxes in the limb's frame at the moments
     goals: Floats  # (n+1, d)
     kept: Floats  # (n+1, d) what the last plan had
-    start: Floats  # (d,) at the path's start
-    upper: Floats  # (d,) what is shown at this moment
-    velocity: Floats  # (d,)
+    start: Floats  # (d,)
+    velocity: Floats  # (d,) there
+    margins: Floats  # (n+1,) clearance of a node; less where the start has less, so that who stands close by can go
+    skins: Floats  # (n,) clearance of the motion at the looks; less where the start has less
+    extra: Floats32  # (n+1, W+OWN) added to the nodes' prices
+    roots: Longs  # (n,) slots of the root ways
+    carriers: Longs  # (n,) slots of the waist's ways, for an arm
+    boxes: Floats  # (B, 15) in the world
+    interval: float
 
 
 class GroupWay(NamedTuple):
@@ -48,133 +88,207 @@ class GroupWay(NamedTuple):
 
     reached: int  # n if there is a way, else the depth that none got beyond
     keys: Floats  # (reached+1, d)
-    shown: Floats  # (M, d) the motion shown, or (0, d)
-    free: NDArray[np.bool_]  # (n+1, V) the postures that are free around each key time
-    checks: int
+    velocities: Floats  # (reached+1, d) of the curve
+    slots: Longs  # (n,) of the ways through the intervals
+    price: Floats32  # (n+1, W+OWN) of the nodes, infinite where one is not free
+    checks: int  # capsules checked
     nodes: int
 
 
-def search_group(task: GroupTask, moments: Moments, settings: ExactSettings, extra: Floats | None = None) -> GroupWay:
-    """The cheapest way whose motion is free as shown; `extra` (n+1, V+OWN) is added to the nodes' prices.
+class Scratch(NamedTuple):
+    """Room that searches of one group use again and again."""
 
-    Margins are smaller where the start has less clearance, so that who stands close by can go.
-    """
-    limb, least = task.postures.limb, max(0.5 * _start_clearance(task, moments), 0.0)
-    shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * moments.times / settings.soon, 1.0)
-    margins = np.minimum(settings.margin * shares[moments.lead :: moments.samples], least)
-    skins = np.minimum(settings.skin * shares, least)
-    own = _own_postures(task)
-    capsules = _own_segments(task, own)
-    clear, checks = swept_clearances(
-        task.postures.segments, capsules, limb.radii, task.tables[moments.lead :], moments.samples, _STRIDE,
-        task.postures.reach,
-    )  # fmt: skip
-    price = _prices(task, own, capsules, clear, margins, settings)
-    free = np.isfinite(price[:, : len(task.postures.configurations)])
-    if extra is not None:
-        price = price + extra
-    closed = np.zeros((len(own) - 1, len(task.postures.targets)), np.bool_)
-    known = task.postures
-    likes = np.full((len(own), OWN), -1, np.int32)
-    lattice = Lattice(
-        known.configurations, known.first, known.targets, own, task.goals, task.start, price, closed, likes,
-        len(known.configurations) + KEPT, known.step, settings.step_weight,
-    )  # fmt: skip
-    horizon, nodes = len(own) - 1, 0
-    ban = Ban(np.empty(0, np.int32), np.empty((0, 2 * len(task.start))), _BAN_RADIUS)
-    looked_at = np.zeros(horizon, np.bool_)
-    work = new_work(lattice)
-    deepest, way = 0, cheapest_way(lattice, ban, work, 0)
-    for _ in range(settings.rounds):
-        nodes += way.nodes
-        if way.reached < horizon:
-            return GroupWay(way.reached, way.path, way.path[:0], free, checks, nodes)
-        shown = shown_motion(moments, task.upper, task.velocity, way.path)
-        found = motion_clearances(pose(limb, shown), limb.radii, task.tables, task.postures.reach)
-        checks += len(found)
-        touching = np.flatnonzero(found < skins)
-        if not len(touching):
-            return GroupWay(horizon, way.path, shown, free, checks, nodes)
-        depths = np.unique(np.maximum(touching - moments.lead - 1, 0) // moments.samples)
-        deepest = max(deepest, int(depths[0]))
-        ban = _banned_too(ban, way.path, depths)
-        if not looked_at.any():
-            likes[:] = _likes(task, own)
-        for depth in depths[~looked_at[depths]]:
-            at = moments.lead + int(depth) * moments.samples
-            tables = task.tables[at : at + moments.samples + 1]
-            sources, targets = _ends(lattice, int(depth))
-            checks += closed_steps(known, tables, skins[at], sources, targets, closed[depth])
-            looked_at[depth] = True
-        way = cheapest_way(lattice, ban, work, int(depths[0]))
-    return GroupWay(min(deepest, horizon - 1), way.path[: deepest + 1], way.path[:0], free, checks, nodes)
+    work: Work
+    shut: Bools  # (n,)
+    closed: Floats32  # (n, W+OWN, W+OWN)
+    seen: Bools  # (n, W+OWN, W+OWN)
 
 
-def _ends(lattice: Lattice, depth: int) -> tuple[Bools, Bools]:
-    """The known postures (V,) from which, and to which, steps at a depth may go, or steps of postures like them."""
-    size = len(lattice.postures)
-    sources, targets = np.zeros(size, np.bool_), np.zeros(size, np.bool_)
-    for ends, row in ((sources, depth), (targets, depth + 1)):
-        free = np.isfinite(lattice.price[row])
-        ends[:] = free[:size] & (row > 0)
-        like = lattice.like[row][free[size:]] if row > 0 else lattice.like[0]
-        ends[like[like >= 0]] = True
-    return sources, targets
+def new_scratch(horizon: int, nodes: int) -> Scratch:
+    """Room for `horizon` key intervals and rows of `nodes` nodes."""
+    from elbowroom.planning.exact.lattice import new_work
 
-
-def _likes(task: GroupTask, own: Floats) -> Ints:
-    """The known posture most like each of a key time's own (n+1, E), or -1 where none is near; row 0 for the start."""
-    postures = own.copy()
-    postures[0] = task.start
-    away = np.linalg.norm(postures[..., None, :] - task.postures.configurations, axis=-1)
-    nearest = np.argmin(away, axis=-1)
-    return np.where(away.min(axis=-1) < _LIKE, nearest, -1).astype(np.int32)
-
-
-def _start_clearance(task: GroupTask, moments: Moments) -> float:
-    limb = task.postures.limb
-    posture = pose(limb, np.stack([task.start, task.upper]))
-    at = [moments.lead, 0]
-    return float(motion_clearances(posture, limb.radii, task.tables[at], task.postures.reach).min())
-
-
-def _own_postures(task: GroupTask) -> Floats:
-    count, (size,) = len(task.goals), task.start.shape
-    own = np.empty((count, OWN, size))
-    way = task.goals - task.start
-    length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
-    part = np.minimum(_BACK_STEP * task.postures.step * np.arange(count) / length, 1.0)
-    own[:, _GOAL], own[:, KEPT], own[:, _HOLD] = task.goals, task.kept, task.start
-    own[:, _BACK] = task.start + part[:, None] * way
-    return own
-
-
-def _own_segments(task: GroupTask, own: Floats) -> Floats32:
-    depths, extra, size = own.shape
-    segments = pose(task.postures.limb, own.reshape(-1, size))
-    return np.ascontiguousarray(segments.reshape(*segments.shape[:2], depths, extra).transpose(2, 0, 1, 3))
-
-
-def _prices(
-    task: GroupTask, own: Floats, capsules: Floats32, clear: Floats32, margins: Floats, settings: ExactSettings
-) -> Floats:
-    """Squared distance from the goal, and the lack of comfort; infinite where a posture is not free."""
-    known = np.broadcast_to(task.postures.configurations, (len(own), *task.postures.configurations.shape))
-    away = np.concatenate([known, own], axis=1) - task.goals[:, None]
-    lack = np.maximum(settings.comfort - clear.astype(np.float64), 0.0)
-    price = np.einsum("tvi,tvi->tv", away, away) + settings.near_weight * lack * lack
-    first = len(task.postures.configurations)
-    price[:, first + KEPT] -= settings.keeping
-    price[clear < margins[:, None]] = np.inf
-    limb = task.postures.limb
-    folded = ~clear_of_trunk(
-        np.ascontiguousarray(capsules[:, :, :, _BACK].transpose(1, 2, 0)), limb.trunk, limb.allowed
+    square = (horizon, nodes, nodes)
+    return Scratch(
+        new_work(horizon + 1, nodes), np.zeros(horizon, np.bool_), np.zeros(square, np.float32), np.zeros(square, np.bool_)
     )
-    price[folded, first + _BACK] = np.inf
-    prices: Floats = price
-    return prices
 
 
-def _banned_too(ban: Ban, path: Floats, depths: NDArray[np.int64]) -> Ban:
-    steps = np.concatenate([path[depths], path[depths + 1]], axis=1)
-    return Ban(np.concatenate([ban.depths, depths.astype(np.int32)]), np.concatenate([ban.steps, steps]), ban.radius)
+@exact_kernel
+def _carrier(group: Group, roots: RootWays, waists: LimbWays, task: GroupTask, k: int) -> tuple[int, Floats, Floats]:
+    """Number and frames of what carries the limb in interval k."""
+    if group.postures.limb.is_waist:
+        at = task.roots[k]
+        return roots.slots.ids[at], roots.places[at], roots.turns[at]
+    at = task.carriers[k]
+    return waists.slots.ids[at], waists.places[at], waists.turns[at]
+
+
+@exact_kernel
+def _own_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Ints]:
+    """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
+
+    A posture that is among the others already needs no node of its own.
+    """
+    width = group.postures.moves.shape[1]
+    count, size = task.goals.shape
+    own, needed = np.empty((count, OWN, size)), np.ones((count, OWN), np.bool_)
+    kept = np.empty(count, np.int32)
+    length = np.sqrt(np.sum((task.goals[0] - task.start) ** 2))
+    pace = _BACK_STEP * group.postures.step
+    for t in range(count):
+        part = min(pace * t / max(np.sqrt(np.sum((task.goals[t] - task.start) ** 2)), 1e-9), 1.0)
+        own[t, GOAL], own[t, KEPT], own[t, HOLD] = task.goals[t], task.kept[t], task.start
+        own[t, BACK] = task.start + part * (task.goals[t] - task.start)
+        kept[t] = width + KEPT
+        if _near(task.kept[t], task.goals[t]):
+            kept[t] = width + GOAL
+        else:
+            at = _known(group.postures, task.kept[t])
+            kept[t] = at if at >= 0 else width + KEPT
+        needed[t, KEPT] = kept[t] == width + KEPT
+        needed[t, BACK] = part < 1.0 and length > _SAME
+        needed[t, HOLD] = not _near(task.start, task.goals[t])
+    if _known(group.postures, task.start) >= 0:
+        needed[:, HOLD] = False
+    return own, needed, kept
+
+
+@exact_kernel
+def _known(postures: Postures, posture: Floats) -> int:
+    """The number of a posture (d,), or -1."""
+    squares = np.empty(postures.columns.shape[1], np.float32)
+    squares_from(postures.columns, posture, squares)
+    at = np.argmin(squares)
+    return int(at) if at < len(postures.configurations) and _near(posture, postures.configurations[at]) else -1
+
+
+@exact_kernel
+def _near(a: Floats, b: Floats) -> bool:
+    for i in range(a.shape[0]):
+        if abs(a[i] - b[i]) > _SAME:
+            return False
+    return True
+
+
+@exact_kernel
+def _prices(
+    group: Group, roots: RootWays, waists: LimbWays, task: GroupTask, weights: Weights, own: Floats, needed: Bools,
+    kept: Ints, most: float,
+) -> tuple[Floats32, int]:  # fmt: skip
+    """The prices (n+1, W+OWN): squared distance from the goal and the lack of comfort; infinite where not free."""
+    postures = group.postures
+    known, width = postures.configurations, postures.moves.shape[1]
+    horizon = task.goals.shape[0] - 1
+    price = np.empty((horizon + 1, width + OWN), np.float32)
+    clear = np.full((horizon + 1, width + OWN), _INFINITE, np.float32)
+    checks = 0
+    for k in range(horizon):
+        carrier, places, turns = _carrier(group, roots, waists, task, k)
+        at, count = table_of(group.tables, postures, carrier, places, turns, task.goals[k : k + 2], task.boxes)
+        checks += count
+        clear[k, : width + 1] = np.minimum(clear[k, : width + 1], group.tables.early[at])
+        clear[k + 1, : width + 1] = np.minimum(clear[k + 1, : width + 1], group.tables.late[at])
+        for e in range(1, OWN):
+            for end in range(2):
+                if needed[k + end, e]:
+                    moments = EARLY if end == 0 else LATE
+                    found, count = held_clearance(postures, own[k + end, e], places, turns, task.boxes, moments)
+                    checks += count
+                    clear[k + end, width + e] = min(clear[k + end, width + e], found)
+    comfort, near = np.float32(weights.comfort), np.float32(weights.near)
+    for t in range(horizon + 1):
+        row, free, extra = price[t], clear[t], task.extra[t]
+        squares_from(postures.columns, task.goals[t], row[:width])
+        for e in range(OWN):
+            row[width + e] = np.sum((own[t, e] - task.goals[t]) ** 2)
+        margin = np.float32(min(task.margins[t], most))
+        for node in range(np.uint64(width + OWN)):
+            lack = max(comfort - free[node], np.float32(0.0))
+            cost = row[node] + near * lack * lack + extra[node]
+            row[node] = cost if free[node] >= margin else _INFINITE
+        price[t, known.shape[0] : width] = _INFINITE
+        price[t, kept[t]] -= weights.keeping
+        for e in range(1, OWN):
+            if not needed[t, e]:
+                price[t, width + e] = _INFINITE
+    _unfold(postures, own, needed, price)
+    return price, checks
+
+
+@exact_kernel
+def _unfold(postures: Postures, own: Floats, needed: Bools, price: Floats32) -> None:
+    """Rule out ways back that lead through the trunk."""
+    if postures.limb.is_waist:
+        return
+    width = postures.moves.shape[1]
+    for t in range(own.shape[0]):
+        if needed[t, BACK]:
+            segments = pose(postures.limb, own[t, BACK : BACK + 1])
+            if not clear_of_trunk(segments, postures.limb.trunk, postures.limb.allowed)[0]:
+                price[t, width + BACK] = _INFINITE
+
+
+@exact_kernel
+def search_group(
+    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, scratch: Scratch
+) -> GroupWay:
+    """The cheapest way whose motion is free as shown, at every moment."""
+    postures, horizon = group.postures, task.goals.shape[0] - 1
+    width = postures.moves.shape[1]
+    begin_round(group.tables.slots)
+    own, needed, kept = _own_postures(group, task)
+    _, places, turns = _carrier(group, roots, waists, task, 0)
+    clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes, START)
+    most = max(0.5 * clearance, 0.0)
+    price, count = _prices(group, roots, waists, task, weights, own, needed, kept, most)
+    checks += count
+    shut, closed, seen = scratch.shut[:horizon], scratch.closed, scratch.seen
+    shut[:] = False
+    lattice = Lattice(
+        postures.configurations, postures.columns, postures.moves, own, task.goals, price, shut, closed, kept,
+        postures.step, weights.step,
+    )  # fmt: skip
+    skins = np.minimum(task.skins, most)
+    slots, slack = np.empty(horizon, np.int64), np.zeros(horizon)
+    times = task.interval * np.arange(horizon + 1.0)
+    nodes, begin, deepest = 0, 0, 0
+    keys, tangents = np.empty_like(task.goals), np.empty_like(task.goals)
+    for _ in range(weights.rounds):
+        reached, count = cheapest_way(lattice, scratch.work, begin)
+        nodes += count
+        way = traced(lattice, scratch.work, reached)
+        for t in range(reached + 1):
+            keys[t] = posture_of(lattice, t, way[t])
+        if reached < horizon:
+            return GroupWay(reached, keys[: reached + 1], tangents[: reached + 1], slots, price, checks, nodes)
+        tangents[:] = monotone_tangents(times, keys, task.velocity)
+        begin_round(group.ways.slots)
+        first = horizon
+        for k in range(horizon - 1, -1, -1):
+            ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
+            carrier = task.carriers[k] if not postures.limb.is_waist else 0
+            slots[k], count = limb_way(
+                group.ways, postures, group.levers, chain, roots, task.roots[k], waists, carrier, ends, task.boxes,
+                skins[k],
+            )  # fmt: skip
+            checks += count
+            if group.ways.least[slots[k]] < skins[k] or group.ways.proven[slots[k]] < ENOUGH:
+                first = k
+                if not shut[k]:
+                    shut[k], closed[k], seen[k] = True, 0.0, False
+                ban_near(lattice, k, way[k], way[k + 1], _BAN_RADIUS)
+                slack[k] = max(2.0 * slack[k], _FIRST_SLACK)
+        if first == horizon:
+            return GroupWay(horizon, keys, tangents, slots, price, checks, nodes)
+        deepest = max(deepest, first)
+        best = scratch.work.costs[horizon].min()
+        settle_backward(lattice, scratch.work, first, best + slack.max())
+        for k in range(first, horizon):
+            if shut[k]:
+                steps = promising(lattice, scratch.work, k, best + slack[k], seen[k])
+                if len(steps):
+                    _, places, turns = _carrier(group, roots, waists, task, k)
+                    checks += close_steps(postures, lattice, k, steps, places, turns, task.boxes, skins[k])
+        begin = first
+    return GroupWay(deepest, keys[: deepest + 1], tangents[: deepest + 1], slots, price, checks, nodes)

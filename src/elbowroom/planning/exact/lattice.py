@@ -1,10 +1,14 @@
 """The cheapest way through a time lattice: dynamic programming, each (posture, key time) settled once.
 
-The nodes of a depth are the V postures of a group and E postures of that key time alone: the goal itself, what the last
-plan had there, and the like. A step leads from a node to a free node of the next depth at most `step` radians away. A
-node costs its own price, a step costs the squared change of the deviation from the goal: so a group that follows
-its goal pays nothing, and evading begins and ends gently. The least sum is found exactly in one sweep: no node is
-expanded twice, so the cost grows with the horizon and never explodes.
+The nodes of a depth are the V postures of a group, W with the lanes that fill up the last block, and OWN postures of that
+key time alone: the goal itself, what the last plan had there, and the like. A step leads from a node to a free node of the
+next depth at most `step` radians away. A node costs its own price, a step costs w |d - g|^2: the squared change of the
+deviation from the goal, d being the way of the posture and g that of the goal. So a group that follows its goal pays
+nothing, and evading begins and ends gently.
+
+Written out, |b - a - g|^2 = |b - a|^2 + 2 a.g + |g|^2 - 2 b.g: the first part is a table that never changes, the others
+belong to the source or to the target alone. What is left of a row is the (min, +) product of a vector with a constant
+matrix, in which every target is a lane.
 """
 
 from typing import NamedTuple
@@ -15,246 +19,311 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
-_WIDTH = 4  # components of the widest group: inner loops of a fixed length
-_ROUNDING = 1.0 + 1e-9
-_SAME = 1e-9  # radians
-_SLACK = 1e-9  # squared radians: more than the rounding of a sum
+OWN = 4  # postures of a key time alone
+GOAL, KEPT, HOLD, BACK = range(OWN)  # the goal, what the last plan had, the start, on the way from the start to the goal
+_ROUNDING = 1.0 + 1e-6
+_SLACK = 1e-3  # squared radians: more than the rounding of a sum
+_INFINITE = np.float32(np.inf)
 
 
 class Lattice(NamedTuple):
-    """One group's problem along one root path."""
+    """One group's problem along one root path. Nodes 0..W-1 are the postures, W..W+OWN-1 those of a key time alone."""
 
     postures: Floats  # (V, d) radians
-    first: Ints  # (V+1,) steps between the postures, as in `Postures`
-    targets: Ints
-    own: Floats  # (n+1, E, d) postures of one key time each
+    columns: Floats32  # (d, W) the same by components, the last repeated
+    moves: Floats32  # (V, W) squared length of each step, infinite where there is none
+    own: Floats  # (n+1, OWN, d); in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
-    start: Floats  # (d,) the posture at depth 0
-    price: Floats  # (n+1, V+E) of each node; infinite where it is not free; row 0 is not used
-    closed: Bools  # (n, steps) of `targets` that must not be taken at a depth
-    like: Ints  # (n+1, E) the posture most like each of `own`, or -1; in row 0 the one most like the start
-    kept: int  # the node of every depth that is the last plan's: its steps are banned only for themselves
+    price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
+    shut: Bools  # (n,) whether steps of an interval are closed
+    closed: Floats32  # (n, W+OWN, W+OWN) infinite where a step is closed, else 0; used where `shut`
+    kept: Ints  # (n+1,) the nodes that the last plan had
     step: float  # radians
-    step_weight: float
-
-
-class Ban(NamedTuple):
-    """Steps that must not be taken: those near to one that was found to touch."""
-
-    depths: Ints  # (K,) depth at which the step begins
-    steps: Floats  # (K, 2d) its two postures
-    radius: float  # radians
-
-
-class Way(NamedTuple):
-    """The outcome."""
-
-    reached: int  # greatest depth that has a way; n if the lattice is crossed
-    cost: float  # of the cheapest way to that depth
-    path: Floats  # (reached+1, d)
-    nodes: int  # nodes settled
-
-
-@exact_kernel
-def _banned(ban: Ban, depth: int, a: Floats, b: Floats, radius: float) -> bool:
-    size = ban.steps.shape[1] // 2
-    for k in range(ban.depths.shape[0]):
-        if ban.depths[k] != depth:
-            continue
-        total = 0.0
-        for i in range(size):
-            total += (ban.steps[k, i] - a[i]) ** 2 + (ban.steps[k, size + i] - b[i]) ** 2
-        if total <= radius * radius:
-            return True
-    return False
-
-
-@exact_kernel
-def _fill(lattice: Lattice, depth: int, rows: Floats) -> None:
-    """The configurations of a depth's nodes into rows (V+E, 4), without those that are the same at all depths."""
-    size = lattice.postures.shape[0]
-    for e in range(lattice.own.shape[1]):
-        for i in range(lattice.own.shape[2]):
-            rows[size + e, i] = lattice.own[depth, e, i]
-
-
-@exact_kernel
-def _set_gates(lattice: Lattice, depth: int, node: int, gates: Bools) -> None:
-    """Which steps from `node` to and from a key time's own postures are closed: as for the posture most like each.
-
-    Steps between two such postures, the goal's own motion among them, stay open until they are found to touch.
-    """
-    size = lattice.postures.shape[0]
-    gates[:] = False
-    listed = depth > 0 and node < size
-    twin = node
-    if not listed:
-        twin = lattice.like[depth, node - size] if depth > 0 else lattice.like[0, 0]
-    if twin < 0:
-        return
-    for k in range(lattice.first[twin], lattice.first[twin + 1]):
-        if not lattice.closed[depth, k]:
-            continue
-        target = lattice.targets[k]
-        gates[target] = True
-        for e in range(lattice.like.shape[1]):
-            gates[size + e] |= listed and lattice.like[depth + 1, e] == target
-
-
-@exact_kernel
-def _settle(
-    lattice: Lattice, ban: Ban, depth: int, before: Floats, after: Floats, costs: Floats, parents: Ints, most: float
-) -> int:
-    """From the costs of the nodes at `depth` those of the next; returns how many of those have a way.
-
-    Rows of `before` and `after` (V+E, 4) are the nodes' configurations; `costs` and `parents` are the next depth's in
-    row 1, row 0 is known. Cheap nodes go first, so that most dearer ways are dismissed by their price alone; nodes that
-    cost more than `most` are left out.
-    """
-    size, total = lattice.postures.shape[0], lattice.price.shape[1]
-    shift = np.zeros(_WIDTH)
-    for i in range(lattice.goals.shape[1]):
-        shift[i] = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
-    price, closed, gates = lattice.price[depth + 1], lattice.closed[depth], np.zeros(total, np.bool_)
-    first, targets, known, out, origins = lattice.first, lattice.targets, costs[0], costs[1], parents[1]
-    gated, bans = closed.any(), (ban.depths == depth).any()
-    longest, weight, kept = lattice.step * lattice.step * _ROUNDING, lattice.step_weight, lattice.kept
-    for node in np.argsort(known, kind="mergesort"):
-        cost = known[node]
-        if cost == np.inf or cost > most:
-            break
-        if gated:
-            _set_gates(lattice, depth, node, gates)
-        listed = depth > 0 and node < size  # its steps are listed; others may lead to any node
-        begin, own = (first[node], size) if listed else (0, 0)
-        steps = first[node + 1] - begin if listed else 0
-        for k in range(steps + total - own):
-            target = targets[begin + k] if k < steps else own + k - steps
-            bound = cost + price[target]
-            if bound >= out[target] or (closed[begin + k] if k < steps else gates[target]):
-                continue
-            moved, changed = 0.0, 0.0
-            for i in range(_WIDTH):
-                step = after[target, i] - before[node, i]
-                moved += step * step
-                changed += (step - shift[i]) * (step - shift[i])
-            if moved > longest or bound + weight * changed >= out[target]:
-                continue
-            if bans:
-                radius = _SAME if target == kept and (depth == 0 or node == kept) else ban.radius
-                if _banned(ban, depth, before[node], after[target], radius):
-                    continue
-            out[target] = bound + weight * changed
-            origins[target] = node
-    return int(np.sum(out < np.inf))
+    weight: float  # w
 
 
 class Work(NamedTuple):
-    """What is known of the cheapest ways, kept while bans are added."""
+    """What is known of the cheapest ways."""
 
-    costs: Floats  # (n+1, V+E) of the cheapest way to each node
-    parents: Ints  # (n+1, V+E) the node before it on that way
+    costs: Floats32  # (n+1, W+OWN) of the cheapest way from the start to each node
+    parents: Ints  # (n+1, W+OWN) the node before it on that way
+    left: Floats32  # (n+1, W+OWN) of the cheapest way from each node on to the end
+    squares: Floats32  # (n+1, OWN, W) squared distances of a key time's own postures from the others
     most: Floats  # (1,) dearer ways were left out
 
 
-def new_work(lattice: Lattice) -> Work:
-    """Nothing but the start: any node of depth 0 may stand for it."""
-    work = Work(np.full(lattice.price.shape, np.inf), np.full(lattice.price.shape, -1, np.int32), np.zeros(1))
-    work.costs[0, 0] = 0.0
-    return work
+def new_work(depths: int, nodes: int) -> Work:
+    """Room for a lattice with `depths` rows of `nodes` nodes."""
+    return Work(
+        np.empty((depths, nodes), np.float32),
+        np.empty((depths, nodes), np.int32),
+        np.empty((depths, nodes), np.float32),
+        np.empty((depths, OWN, nodes - OWN), np.float32),
+        np.zeros(1),
+    )
 
 
 @exact_kernel
-def _own_way(lattice: Lattice, ban: Ban) -> float:
-    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more."""
-    size, count, width = lattice.postures.shape[0], lattice.own.shape[1], lattice.start.shape[0]
-    known, found = np.full(count, np.inf), np.full(count, np.inf)
-    known[0] = 0.0
-    for depth in range(lattice.price.shape[0] - 1):
-        found[:] = np.inf
-        for e in range(count):
-            if known[e] == np.inf:
+def posture_of(lattice: Lattice, depth: int, node: int) -> Floats:
+    """The configuration (d,) of a node."""
+    width = lattice.moves.shape[1]
+    return lattice.postures[node] if node < width else lattice.own[depth, node - width]
+
+
+@exact_kernel
+def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
+    """The squared distances (W,) of the postures from one (d,)."""
+    out[:] = 0.0
+    for i in range(posture.shape[0]):
+        column, place = columns[i], np.float32(posture[i])
+        for v in range(np.uint64(out.shape[0])):
+            out[v] += (column[v] - place) * (column[v] - place)
+
+
+@exact_kernel
+def _measure(lattice: Lattice, work: Work) -> None:
+    """Distances of each key time's own postures from all others; too long a step is infinite."""
+    size, width = lattice.postures.shape[0], lattice.moves.shape[1]
+    longest = np.float32(lattice.step * lattice.step * _ROUNDING)
+    for depth in range(lattice.own.shape[0]):
+        for e in range(OWN):
+            if lattice.price[depth, width + e] == _INFINITE and (depth > 0 or e != HOLD):
                 continue
-            a = lattice.own[depth, e] if depth > 0 else lattice.start
-            for f in range(count):
-                b, moved, changed = lattice.own[depth + 1, f], 0.0, 0.0
-                for i in range(width):
-                    step = b[i] - a[i]
-                    moved += step * step
-                    changed += (step - lattice.goals[depth + 1, i] + lattice.goals[depth, i]) ** 2
-                total = known[e] + lattice.price[depth + 1, size + f] + lattice.step_weight * changed
-                if total >= found[f] or moved > lattice.step * lattice.step:
-                    continue
-                keeps = size + f == lattice.kept and (depth == 0 or size + e == lattice.kept)
-                if not _banned(ban, depth, a, b, _SAME if keeps else ban.radius):
-                    found[f] = total
-        known, found = found, known
+            row = work.squares[depth, e]
+            squares_from(lattice.columns, lattice.own[depth, e], row)
+            for v in range(np.uint64(width)):
+                row[v] = row[v] if row[v] <= longest else _INFINITE
+            row[size:] = _INFINITE
+
+
+@exact_kernel
+def _own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
+    """The squared length of the step between own postures of two successive depths; infinite if it is too long."""
+    total = 0.0
+    for i in range(lattice.own.shape[2]):
+        total += (lattice.own[depth + 1, f, i] - lattice.own[depth, e, i]) ** 2
+    return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
+
+
+@exact_kernel
+def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
+    """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
+    start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
+    for b in range(np.uint64(out.shape[0])):
+        cost = start + factor * row[b]
+        better = cost < out[b]
+        out[b] = cost if better else out[b]
+        origins[b] = origin if better else origins[b]
+
+
+@exact_kernel
+def _relax_open(
+    out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Floats32
+) -> None:
+    """`_relax` where some steps are closed."""
+    start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
+    for b in range(np.uint64(out.shape[0])):
+        cost = start + factor * row[b] + closed[b]
+        better = cost < out[b]
+        out[b] = cost if better else out[b]
+        origins[b] = origin if better else origins[b]
+
+
+@exact_kernel
+def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
+    """2 w q.g into `out` (W+OWN,) for the nodes q of `row`; returns w |g|^2; g is the goal's way from `depth` on."""
+    width, weight = lattice.moves.shape[1], lattice.weight
+    square, known = 0.0, out[:width]
+    out[:] = 0.0
+    for i in range(lattice.goals.shape[1]):
+        way = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
+        square += weight * way * way
+        if way == 0.0:
+            continue
+        factor, column = np.float32(2.0 * weight * way), lattice.columns[i]
+        for v in range(np.uint64(width)):
+            known[v] += factor * column[v]
+        for e in range(OWN):
+            out[width + e] += factor * np.float32(lattice.own[row, e, i])
+    return square
+
+
+@exact_kernel
+def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
+    """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
+    nodes have a way."""
+    size, width = lattice.postures.shape[0], lattice.moves.shape[1]
+    out, origins = work.costs[depth + 1], work.parents[depth + 1]
+    targets, target_origins = out[:width], origins[:width]
+    out[:] = _INFINITE
+    base, limit = np.empty(width + OWN, np.float32), np.float32(most)
+    square, known = np.float32(slopes_of(lattice, depth, depth, base)), work.costs[depth]
+    for node in range(np.uint64(width + OWN)):
+        base[node] = known[node] + base[node] + square if known[node] <= limit else _INFINITE
+    shut, closed = lattice.shut[depth], lattice.closed[depth]
+    for node in range(width + OWN):
+        if base[node] == _INFINITE:
+            continue
+        row = lattice.moves[node] if node < size else work.squares[depth, node - width]
+        if shut:
+            _relax_open(targets, target_origins, base[node], row, lattice.weight, node, closed[node, :width])
+        else:
+            _relax(targets, target_origins, base[node], row, lattice.weight, node)
+    for f in range(OWN):
+        if lattice.price[depth + 1, width + f] < _INFINITE:
+            out[width + f], origins[width + f] = _settle_own(lattice, work, depth, f, base)
+    slopes_of(lattice, depth, depth + 1, base)
+    price, count = lattice.price[depth + 1], 0
+    for node in range(np.uint64(width + OWN)):
+        out[node] += price[node] - base[node]
+        count += out[node] < _INFINITE
+    return count
+
+
+@exact_kernel
+def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[float, int]:
+    """The least cost of a step to an own posture of the next depth, and where it comes from."""
+    width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
+    best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
+    shut, closed = lattice.shut[depth], lattice.closed[depth]
+    for node in range(width + OWN):
+        if base[node] >= best:
+            continue
+        move = row[node] if node < width else np.float32(_own_move(lattice, depth, node - width, f))
+        cost = base[node] + weight * move
+        if shut:
+            cost += closed[node, width + f]
+        if cost < best:
+            best, origin = cost, node
+    return best, origin
+
+
+@exact_kernel
+def _own_way(lattice: Lattice) -> float:
+    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more."""
+    width = lattice.moves.shape[1]
+    known, found = np.full(OWN, np.inf), np.empty(OWN)
+    known[HOLD] = 0.0
+    for depth in range(lattice.goals.shape[0] - 1):
+        found[:] = np.inf
+        for f in range(OWN):
+            price = lattice.price[depth + 1, width + f]
+            if price == _INFINITE:
+                continue
+            for e in range(OWN):
+                if known[e] < np.inf:
+                    found[f] = min(found[f], known[e] + price + step_cost(lattice, depth, width + e, width + f))
+        known[:] = found
     return float(known.min())
 
 
 @exact_kernel
-def _least_left(lattice: Lattice) -> Floats:
-    """The least that the depths after each one cost, (n+1,): steps cost nothing or more."""
-    left = np.zeros(lattice.price.shape[0])
-    for depth in range(left.shape[0] - 2, -1, -1):
-        left[depth] = left[depth + 1] + lattice.price[depth + 1].min()
-    return left
-
-
-@exact_kernel
-def cheapest_way(lattice: Lattice, ban: Ban, work: Work, begin: int) -> Way:
-    """The cheapest way from the start to the last depth, or to the deepest that can be reached.
-
-    `work` is right up to depth `begin`, 0 at first: later it is the least depth at which steps were banned or closed.
-    Nodes from which even the least prices of the depths to come would cost more than a way that is known are left out.
-    """
-    size, total, width = lattice.postures.shape[0], lattice.price.shape[1], lattice.start.shape[0]
-    costs, parents = work.costs, work.parents
-    most = _own_way(lattice, ban) + _SLACK
-    if most > work.most[0]:
-        begin = 0  # what was left out may be needed
-    work.most[0] = most
-    before, after = np.zeros((total, _WIDTH)), np.zeros((total, _WIDTH))
-    before[:size, :width] = lattice.postures
-    after[:size, :width] = lattice.postures
-    _fill(lattice, begin, before)
-    if begin == 0:
-        before[0, :] = 0.0
-        before[0, :width] = lattice.start
-    reached, nodes = begin, 0
-    costs[begin + 1 :] = np.inf
-    left = _least_left(lattice)
-    for depth in range(begin, costs.shape[0] - 1):
-        _fill(lattice, depth + 1, after)
-        found = _settle(
-            lattice,
-            ban,
-            depth,
-            before,
-            after,
-            costs[depth : depth + 2],
-            parents[depth : depth + 2],
-            work.most[0] - left[depth],
-        )
-        if found == 0:
+def _kept_way(lattice: Lattice) -> float:
+    """The cost of the last plan's way, infinite where it is not free."""
+    width, total, before = lattice.moves.shape[1], 0.0, lattice.moves.shape[1] + HOLD
+    for depth in range(lattice.goals.shape[0] - 1):
+        node = lattice.kept[depth + 1]
+        total += lattice.price[depth + 1, node] + step_cost(lattice, depth, before, node)
+        if total == np.inf:
             break
-        reached, nodes = depth + 1, nodes + found
-        if depth == 0:
-            before[:size, :width] = lattice.postures
-        before, after = after, before
-    return Way(reached, costs[reached].min(), _traced(lattice, costs, parents, reached), nodes)
+        before = node
+    return total
 
 
 @exact_kernel
-def _traced(lattice: Lattice, costs: Floats, parents: Ints, reached: int) -> Floats:
-    """The configurations (reached+1, d) of the cheapest way to that depth."""
-    path, size = np.empty((reached + 1, lattice.start.shape[0])), lattice.postures.shape[0]
-    node = np.argmin(costs[reached])
+def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
+    """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
+    size = lattice.postures.shape[0]
+    if lattice.shut[depth] and lattice.closed[depth, source, target] == _INFINITE:
+        return np.inf
+    a, b, moved, changed = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target), 0.0, 0.0
+    for i in range(lattice.goals.shape[1]):
+        step = b[i] - a[i]
+        moved += step * step
+        changed += (step - lattice.goals[depth + 1, i] + lattice.goals[depth, i]) ** 2
+    listed = source >= size or target >= size or lattice.moves[source, target] < _INFINITE
+    return lattice.weight * changed if listed and moved <= lattice.step * lattice.step * _ROUNDING else np.inf
+
+
+@exact_kernel
+def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
+
+    Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
+    prices of the depths to come would cost more than a way that is known are left out.
+    """
+    depths, width = lattice.goals.shape[0], lattice.moves.shape[1]
+    if begin == 0:
+        _measure(lattice, work)
+    most = min(_own_way(lattice), _kept_way(lattice)) + _SLACK
+    if begin == 0 or most > work.most[0]:
+        begin = 0  # what was left out may be needed
+        work.costs[0] = _INFINITE
+        work.costs[0, width + HOLD] = 0.0
+    work.most[0] = most
+    least = np.zeros(depths)
+    for depth in range(depths - 2, -1, -1):
+        price = lattice.price[depth + 1].min()
+        least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
+    reached, nodes = begin, 0
+    for depth in range(begin, depths - 1):
+        count = _settle(lattice, work, depth, most - least[depth])
+        if count == 0:
+            break
+        reached, nodes = depth + 1, nodes + count
+    return reached, nodes
+
+
+@exact_kernel
+def traced(lattice: Lattice, work: Work, reached: int) -> Ints:
+    """The nodes (reached+1,) of the cheapest way to that depth; the first is HOLD, the start."""
+    way = np.empty(reached + 1, np.int32)
+    way[reached] = np.argmin(work.costs[reached])
     for depth in range(reached, 0, -1):
-        path[depth] = lattice.postures[node] if node < size else lattice.own[depth, node - size]
-        node = parents[depth, node]
-    path[0] = lattice.start
-    return path
+        way[depth - 1] = work.parents[depth, way[depth]]
+    way[0] = lattice.moves.shape[1] + HOLD
+    return way
+
+
+@exact_kernel
+def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
+    """The costs `left` of the nodes at the depths from the last down to `until`.
+
+    Nodes that no way of at most the cost `most` leads through are left out.
+    """
+    size, width, weight = lattice.postures.shape[0], lattice.moves.shape[1], lattice.weight
+    base, slopes = np.empty(width + OWN, np.float32), np.empty(width + OWN, np.float32)
+    origins, column, limit = np.empty(width, np.int32), np.empty(width, np.float32), np.float32(most)
+    work.left[lattice.goals.shape[0] - 1] = 0.0
+    for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
+        out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]
+        targets, price, closed = out[:width], lattice.price[depth + 1], lattice.closed[depth]
+        out[:] = _INFINITE
+        square = np.float32(slopes_of(lattice, depth, depth + 1, slopes))
+        for node in range(np.uint64(width + OWN)):
+            base[node] = after[node] + price[node] - slopes[node] + square
+            base[node] = base[node] if known[node] + after[node] <= limit else _INFINITE
+        for node in range(width + OWN):
+            if base[node] == _INFINITE:
+                continue
+            row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
+            if lattice.shut[depth]:
+                for source in range(width):
+                    column[source] = closed[source, node]
+                _relax_open(targets, origins, base[node], row, weight, node, column)
+            else:
+                _relax(targets, origins, base[node], row, weight, node)
+            for e in range(OWN):
+                if work.costs[depth, width + e] < _INFINITE:
+                    move = work.squares[depth, e, node] if node < size else _own_move(lattice, depth, e, node - width)
+                    cost = np.float32(base[node] + weight * move)
+                    if lattice.shut[depth]:
+                        cost += closed[width + e, node]
+                    out[width + e] = min(out[width + e], cost)
+        slopes_of(lattice, depth, depth, slopes)
+        for node in range(np.uint64(width + OWN)):
+            out[node] += slopes[node]

@@ -16,7 +16,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
-from elbowroom.planning.motion import Motion, MotionQuery, no_lead
+from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_motion import brake
 from elbowroom.planning.root_path import RootPath
@@ -55,7 +55,7 @@ class ExactPlanner:
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
-        return self._body.plan(path, start, no_lead(start)).plan
+        return self._body.plan(path, start, np.zeros_like(start)).plan
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
@@ -105,12 +105,11 @@ class ExactPlanner:
         if not 0 <= at < len(root.path.states) - 1 or not np.allclose(root.path.states[at], query.root, atol=1e-9):
             return None
         path = RootPath(query.time, query.interval, root.path.states[at:])
-        rest = replace(local, configurations=local.configurations[at:], goals=local.goals[at:])
+        rest = _part(local, slice(at, None))
         return _Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
 
     def _dress(self, path: RootPath, query: MotionQuery) -> UpperPlan:
-        lead = no_lead(query.upper)._replace(velocity=query.velocity)
-        return self._body.plan(path, query.upper, lead, self._kept(path))
+        return self._body.plan(path, query.upper, query.velocity, self._kept(path))
 
     def _kept(self, path: RootPath) -> Floats | None:
         """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""
@@ -140,5 +139,10 @@ def _first_part(whole: _Whole, horizon: int) -> Motion:
     """The first `horizon` key intervals."""
     path, local = whole.root.path, whole.local
     shown = replace(path, states=path.states[: horizon + 1])
-    part = replace(local, configurations=local.configurations[: horizon + 1], goals=local.goals[: horizon + 1])
-    return Motion(replace(whole.root, path=shown), part)
+    return Motion(replace(whole.root, path=shown), _part(local, slice(horizon + 1)))
+
+
+def _part(local: LocalPlan, rows: slice) -> LocalPlan:
+    """Some key times of a plan."""
+    velocities = None if local.velocities is None else local.velocities[rows]
+    return replace(local, configurations=local.configurations[rows], goals=local.goals[rows], velocities=velocities)

@@ -1,7 +1,7 @@
 """The postures of one local group, frozen: where their capsules are, and which follows which within a key interval.
 
-A step from one posture to another passes three postures between them. They are posed once, with the rest, so that all
-steps of a key interval can be checked in one batch.
+Lanes of the vector loops are postures, sixteen to a block. A block holds postures that are near to each other, and for
+each capsule a ball that holds it in all sixteen: what the ball is clear of, none of them touches.
 """
 
 from typing import NamedTuple
@@ -17,10 +17,10 @@ from elbowroom.planning.self_contact import clear_of_trunk
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
-_SPARE = 0.15  # metres: a posture between the known ones may reach so much farther
+BLOCK = 16  # lanes of the widest vector register
 BETWEEN = 3  # postures between two, at equal parts of the way
+_SPARE = 0.15  # metres: a posture between the known ones may reach so much farther
 
 
 class Postures(NamedTuple):
@@ -28,32 +28,65 @@ class Postures(NamedTuple):
 
     limb: Limb
     configurations: Floats  # (V, d) radians
+    columns: Floats32  # (d, W) the same by components; W = 16 B, the last repeated
     segments: Floats32  # (C, 6, V) capsules in the limb's frame, metres
-    first: Ints  # (V+1,) where the steps from a posture begin in `targets`
-    targets: Ints  # (E,) where each step leads, ascending for each posture
-    pairs: Ints  # (E,) the unordered pair of postures that a step joins; -1 for staying
-    low: Ints  # (P,) the lower number of each pair
-    high: Ints  # (P,)
-    upward: Bools  # (E,) whether it goes from the lower number to the higher
-    between: Floats32  # (BETWEEN, C, 6, P) capsules of the postures on the way from the lower number to the higher
+    lanes: Floats32  # (B, C, 7, 16) the same by blocks, with radii; the last block repeats the last posture
+    balls: Floats  # (B, C, 4) centre and radius
+    moves: Floats32  # (V, W) squared length of each step, infinite where there is none
+    pairs: Ints  # (V, V) number of the pair that a step joins; -1 for none and for staying
+    between: Floats32  # (P, BETWEEN, C, 6) capsules on the way from the lower number of a pair to the higher
     step: float  # radians
     reach: float  # metres: no capsule gets farther from the limb's frame
 
 
 def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
     """Link `configurations` (V, d) that are at most `step` apart, unless the way leads through the trunk."""
-    points = np.ascontiguousarray(configurations, np.float64)
+    known = np.ascontiguousarray(configurations, np.float64)
+    points = known[_neighbourly(pose(limb, known))]
     segments = pose(limb, points)
     ends = segments.transpose(0, 2, 1).reshape(-1, 3)
     reach = float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE
+    lanes, balls = blocks_of(segments, limb.radii)
     low, high = _near_pairs(points, step * step)
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1.0)
     ways = [pose(limb, points[low] + part * (points[high] - points[low])) for part in parts]
     clear = np.all([clear_of_trunk(way, limb.trunk, limb.allowed) for way in ways], axis=0)
-    between = np.ascontiguousarray(np.stack(ways)[..., clear])
+    between = np.ascontiguousarray(np.stack(ways)[..., clear].transpose(3, 0, 1, 2))
     low, high = low[clear], high[clear]
-    first, targets, pairs, upward = _steps(len(points), low, high)
-    return Postures(limb, points, segments, first, targets, pairs, low, high, upward, between, float(step), reach)
+    moves, pairs = _steps(points, low, high, len(lanes) * BLOCK)
+    filled = np.minimum(np.arange(len(lanes) * BLOCK), len(points) - 1)
+    columns = np.ascontiguousarray(points[filled].T, np.float32)
+    return Postures(limb, points, columns, segments, lanes, balls, moves, pairs, between, float(step), reach)
+
+
+def _neighbourly(segments: Floats32) -> NDArray[np.int64]:
+    """An order (V,) in which blocks of sixteen hold postures with capsules near to each other: halved again and again
+    where they spread most."""
+    places = segments.transpose(2, 0, 1).reshape(segments.shape[2], -1)
+
+    def order(members: NDArray[np.int64]) -> list[int]:
+        if len(members) <= BLOCK:
+            return [int(member) for member in members]
+        widest = int(np.argmax(np.ptp(places[members], axis=0)))
+        ranked = members[np.argsort(places[members, widest], kind="stable")]
+        half = (len(ranked) // 2 + BLOCK - 1) // BLOCK * BLOCK
+        return order(ranked[:half]) + order(ranked[half:])
+
+    return np.array(order(np.arange(len(places))), np.int64)
+
+
+def blocks_of(segments: Floats32, radii: Floats32) -> tuple[Floats32, Floats]:
+    """Capsules (C, 6, V) as `lanes` (B, C, 7, 16) and their `balls` (B, C, 4)."""
+    count, _, size = segments.shape
+    blocks = (size + BLOCK - 1) // BLOCK
+    at = np.minimum(np.arange(blocks * BLOCK), size - 1).reshape(blocks, BLOCK)
+    lanes = np.empty((blocks, count, 7, BLOCK), np.float32)
+    lanes[:, :, :6] = segments[:, :, at].transpose(2, 0, 1, 3)
+    lanes[:, :, 6] = radii[:, None]
+    ends = lanes[:, :, :6].astype(np.float64).reshape(blocks, count, 2, 3, BLOCK)
+    centers = 0.5 * (ends.max(axis=(2, 4)) + ends.min(axis=(2, 4)))
+    apart = np.linalg.norm(ends - centers[:, :, None, :, None], axis=3).max(axis=(2, 3))
+    return lanes, np.concatenate([centers, (apart + radii)[..., None]], axis=2)
 
 
 @exact_kernel
@@ -69,13 +102,12 @@ def _near_pairs(points: Floats, reach: float) -> tuple[Ints, Ints]:
     return low[:count].copy(), high[:count].copy()
 
 
-def _steps(size: int, low: Ints, high: Ints) -> tuple[Ints, Ints, Ints, Bools]:
-    """Both directions of every pair, and staying, sorted by source and target."""
-    stay, pairs = np.arange(size), np.arange(len(low))
-    sources = np.concatenate([stay, low, high])
-    targets = np.concatenate([stay, high, low])
-    numbers = np.concatenate([np.full(size, -1), pairs, pairs])
-    order = np.lexsort((targets, sources))
-    first = np.searchsorted(sources[order], np.arange(size + 1))
-    ascending = sources[order] < targets[order]
-    return first.astype(np.int32), targets[order].astype(np.int32), numbers[order].astype(np.int32), ascending
+def _steps(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32, Ints]:
+    moves = np.full((len(points), width), np.inf, np.float32)
+    pairs = np.full((len(points), len(points)), -1, np.int32)
+    squares = np.sum((points[high] - points[low]) ** 2, axis=1)
+    stay = np.arange(len(points))
+    moves[stay, stay] = 0.0
+    moves[low, high], moves[high, low] = squares, squares
+    pairs[low, high], pairs[high, low] = np.arange(len(low)), np.arange(len(low))
+    return moves, pairs

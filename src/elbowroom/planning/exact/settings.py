@@ -17,7 +17,6 @@ class ExactSettings:
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
     soon_share: float = 0.5  # of margin and skin, at this moment
     comfort: float = 0.05  # postures with less clearance cost more
-    samples: int = 12  # shown poses checked in each key interval; a multiple of 12
     rounds: int = 16  # motions that may turn out to touch before a group gives up
     waist_rounds: int = 5  # waist motions that are tried for the arms' sake
     step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself

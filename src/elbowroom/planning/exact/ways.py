@@ -1,0 +1,267 @@
+"""How frames and limbs go through one key interval, and how far any point of them can get between two looks.
+
+A **root way** is the pelvis frame at the looks, SWEEP parts of the interval; a **limb way** is what a limb does there.
+`sway` is a length: no point that is carried, within `span` of the frame, moves farther in that part.
+
+Points on rigid links: a point at distance r from the axis of a joint that turns at the rate w moves at most at r w;
+speeds of joints along a chain add up; a frame's own speed is added. Rates are bounded over a part from those at its
+ends: a cubic's rate is a parabola, which leaves the chord of its ends by at most |jerk| h^2 / 8.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate
+from elbowroom.body.kinematics import BodyModel
+from elbowroom.body.posing import place_pelvis
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
+from elbowroom.planning.frames import compose
+from elbowroom.planning.limb import Limb, carried_frames
+from elbowroom.planning.root_path import interpolate_root
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+
+SWEEP = 12  # parts of a key interval between two looks
+_BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is smaller
+_ROTATION = 1.15  # a rotation vector of up to 1.7 rad changes at most so much faster than the rotation turns
+
+
+class Chain(NamedTuple):
+    """What carries the limbs: legs, hips and spine."""
+
+    legs: Floats  # (2, 10) of the gait
+    scale: float
+    hips: Floats  # (3,) in the root frame
+    half_leg: float  # metres, the unit of the lowering
+    waist: Limb
+    span: float  # metres: no point of the upper body gets farther from the root's axis
+    lever: float  # metres: what a rad/s of bend and twist adds at most to the speed of an arm's points, in m/s
+    lift: float  # metres: what a unit of lowering moves everything
+
+
+class RootWays(NamedTuple):
+    """Pelvis frames in the world at the looks of key intervals; the key is the interval and both root states."""
+
+    slots: Slots
+    places: Floats  # (S, SWEEP+1, 3)
+    turns: Floats  # (S, SWEEP+1, 4)
+    sway: Floats  # (S, SWEEP) metres
+
+
+class LimbWays(NamedTuple):
+    """What limbs did in key intervals; the key is the carrier's way, then posture and velocity at both ends."""
+
+    slots: Slots
+    least: Floats  # (S,) clearance at the looks
+    proven: Floats  # (S,) clearance between them; -inf where it was not looked into
+    places: Floats  # (S, SWEEP+1, 3) of the chest in the world, for the waist; else none
+    turns: Floats  # (S, SWEEP+1, 4)
+    sway: Floats  # (S, SWEEP) metres, of what the chest carries
+
+
+def new_root_ways(count: int) -> RootWays:
+    """Room for the ways of `count` key intervals."""
+    return RootWays(
+        new_slots(count, 15),
+        np.empty((count, SWEEP + 1, 3)),
+        np.empty((count, SWEEP + 1, 4)),
+        np.empty((count, SWEEP)),
+    )
+
+
+def new_limb_ways(count: int, size: int, *, carries: bool) -> LimbWays:
+    """Room for `count` ways of a limb with `size` components."""
+    frames = count if carries else 0
+    return LimbWays(
+        new_slots(count, 1 + 4 * size), np.empty(count), np.empty(count), np.empty((frames, SWEEP + 1, 3)),
+        np.empty((frames, SWEEP + 1, 4)), np.empty((frames, SWEEP)),
+    )  # fmt: skip
+
+
+def chain_of(model: BodyModel, waist: Limb, arm_reach: float) -> Chain:
+    """The chain of a body whose arms reach `arm_reach` from the chest frame."""
+    stem = sum(float(np.linalg.norm(model.offsets[joint])) for joint in model.spine)
+    lever = _ROTATION * sum(
+        float(weight) * (_stretch(model.offsets, model.spine[i + 1 :]) + arm_reach)
+        for i, weight in enumerate(model.spine_weights)
+    )
+    span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + arm_reach
+    gait = model.gait
+    return Chain(gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, _lift(model))
+
+
+def _lift(model: BodyModel) -> float:
+    """How far the hips move, down and back, for a unit of lowering, metres."""
+    return float(np.linalg.norm(hips_sinks(model.gait.half_leg, np.zeros(1), np.ones(1))))
+
+
+def _stretch(offsets: Floats, joints: NDArray[np.int64]) -> float:
+    return sum(float(np.linalg.norm(offsets[joint])) for joint in joints)
+
+
+def levers_of(model: BodyModel, limb: Limb) -> Floats:
+    """Bounds (C, 3) on the speed of any point of a capsule's axis in the carrier's frame, m/s for each unit of rate.
+
+    The columns belong to the rate of the first two components together, of the third and of the fourth. Waist: bend
+    and twist turn each spine joint by its part, neck and head back by theirs; the third lowers all. Arm: the
+    swing turns it about the shoulder, the third component about the upper arm's own axis, the fourth about the elbow.
+    """
+    return _trunk_levers(model, limb) if limb.is_waist else _arm_levers(model, limb)
+
+
+def _trunk_levers(model: BodyModel, limb: Limb) -> Floats:
+    levers = np.zeros((len(limb.joints), 3))
+    levers[:, 1] = _lift(model)
+    turning = dict(zip(model.spine.tolist(), np.abs(model.spine_weights).tolist(), strict=True))
+    turning |= dict(zip(model.gaze.tolist(), np.abs(model.gaze_weights).tolist(), strict=True))
+    for c, joint in enumerate(limb.joints):
+        ends = limb.ends[c].reshape(2, 3)
+        far, speed, at = float(np.linalg.norm(ends, axis=1).max()), 0.0, int(joint)
+        while at > 0:
+            speed += turning.get(at, 0.0) * far
+            far += float(np.linalg.norm(model.offsets[at]))
+            at = int(model.parents[at])
+        levers[c, 0] = _ROTATION * speed
+    return levers
+
+
+def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
+    levers = np.zeros((len(limb.joints), 3))
+    shoulder, elbow = int(limb.arm_joints[0]), int(limb.arm_joints[1])
+    forearm = model.offsets[elbow]
+    for c, joint in enumerate(limb.joints):
+        ends = limb.ends[c].reshape(2, 3)
+        far, at = float(np.linalg.norm(ends, axis=1).max()), int(joint)
+        if at == shoulder:
+            levers[c] = far, float(np.hypot(ends[:, 1], ends[:, 2]).max()), 0.0
+            continue
+        while at != elbow:
+            far += float(np.linalg.norm(model.offsets[at]))
+            at = int(model.parents[at])
+        levers[c] = np.linalg.norm(forearm) + far, np.hypot(forearm[1], forearm[2]) + far, far
+    return levers
+
+
+@exact_kernel
+def pelvis_at(chain: Chain, states: Floats) -> tuple[Floats, Floats]:
+    """Pelvis frames (N, 3), (N, 4) in the world for root states (N, 7)."""
+    _, drops = foot_poses(chain.legs, chain.scale, states)
+    sinks = hips_sinks(chain.half_leg, drops, np.zeros(states.shape[0]))
+    frames: tuple[Floats, Floats] = place_pelvis(chain.hips, states, sinks)
+    return frames
+
+
+@exact_kernel
+def states_between(a: Floats, b: Floats, interval: float, first: float, last: float, count: int) -> Floats:
+    """Root states (count+1, 7) at equal steps from the part `first` to the part `last` of a key interval."""
+    out = np.empty((count + 1, 7))
+    for i in range(count + 1):
+        out[i] = interpolate_root(a, b, first + (last - first) * i / count, interval)
+    return out
+
+
+@exact_kernel
+def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
+    """The third derivative of the cubic with these values and slopes at its ends."""
+    return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
+
+
+@exact_kernel
+def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float) -> int:
+    """The slot of the root way from state `a` to `b`."""
+    key = np.empty(15)
+    key[0], key[1:8], key[8:15] = interval, a, b
+    known = find(ways.slots, key)
+    if known >= 0:
+        return int(known)
+    at = admit(ways.slots, key)
+    states = states_between(a, b, interval, 0.0, 1.0, SWEEP)
+    places, turns = pelvis_at(chain, states)
+    ways.places[at], ways.turns[at] = places, turns
+    _root_sway(chain, states, places, interval, ways.sway[at])
+    return int(at)
+
+
+@exact_kernel
+def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
+    a, b = states[0], states[SWEEP]
+    part = interval / SWEEP
+    ends = np.empty((2, 2))
+    for i in range(2):
+        state = states[i * SWEEP]
+        sine, cosine = np.sin(state[2]), np.cos(state[2])
+        ends[i, 0], ends[i, 1] = state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
+    jerk_x = _jerk(a[0], ends[0, 0], b[0], ends[1, 0], interval)
+    jerk_z = _jerk(a[1], ends[0, 1], b[1], ends[1, 1], interval)
+    jerk_turn = _jerk(a[2], a[5], b[2], b[5], interval)
+    stride = max(phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5]))
+    bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2
+    for i in range(SWEEP):
+        one, two = states[i], states[i + 1]
+        ground = max(np.hypot(one[3], one[4]), np.hypot(two[3], two[4])) + np.hypot(jerk_x, jerk_z) * part**2 / 8.0
+        turn = max(abs(one[5]), abs(two[5])) + abs(jerk_turn) * part**2 / 8.0
+        lift = abs(places[i + 1, 1] - places[i, 1]) / part + 0.5 * bob * part
+        sway[i] = part * (ground + turn * chain.span + lift)
+
+
+@exact_kernel
+def rates_between(
+    keys: tuple[Floats, Floats, Floats, Floats], interval: float, first: float, last: float, count: int
+) -> tuple[Floats, Floats]:
+    """Configurations (count+1, d) of a limb at equal steps from one part of a key interval to another, and what its
+    components move at most between them, (count, 3): the first two together, the third, the fourth.
+
+    `keys` are posture, velocity, posture, velocity at the interval's ends.
+    """
+    q, m, p, n = keys
+    size = q.shape[0]
+    out, rates, jerks = np.empty((count + 1, size)), np.zeros((count + 1, 4)), np.zeros(4)
+    for j in range(size):
+        jerks[j] = _jerk(q[j], m[j], p[j], n[j], interval)
+    for i in range(count + 1):
+        u = first + (last - first) * i / count
+        rest = 1.0 - u
+        for j in range(size):
+            ta, tb = m[j] * interval, n[j] * interval
+            out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * ta) + u * u * (
+                (3.0 - 2.0 * u) * p[j] - rest * tb
+            )
+            rates[i, j] = (
+                6.0 * u * rest * (p[j] - q[j]) + rest * (rest - 2.0 * u) * ta + u * (u - 2.0 * rest) * tb
+            ) / interval
+    part = interval * (last - first) / count
+    bend = part * part / 8.0
+    moved = np.empty((count, 3))
+    for i in range(count):
+        swing = max(np.hypot(rates[i, 0], rates[i, 1]), np.hypot(rates[i + 1, 0], rates[i + 1, 1]))
+        moved[i, 0] = part * (swing + np.hypot(jerks[0], jerks[1]) * bend)
+        for j in range(2, 4):
+            moved[i, j - 1] = part * (max(abs(rates[i, j]), abs(rates[i + 1, j])) + abs(jerks[j]) * bend)
+    return out, moved
+
+
+@exact_kernel
+def carry(
+    chain: Chain, waists: Floats, moved: Floats, places: Floats, turns: Floats, sway: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """The chest's frames in the world and its sway, for waists (N, d) on pelvis frames and their sway (N-1,)."""
+    inner, inner_turns = carried_frames(chain.waist, waists)
+    out, out_turns = compose(places, turns, inner, inner_turns)
+    more = np.empty(sway.shape[0])
+    for i in range(sway.shape[0]):
+        more[i] = sway[i] + chain.lever * moved[i, 0] + chain.lift * moved[i, 1]
+    return out, out_turns, more
+
+
+@exact_kernel
+def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float) -> Longs:
+    """The slots (n,) of the root ways between the key states (n+1, 7)."""
+    begin_round(ways.slots)
+    out = np.empty(states.shape[0] - 1, np.int64)
+    for k in range(out.shape[0]):
+        out[k] = root_way(ways, chain, states[k], states[k + 1], interval)
+    return out
