@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
@@ -16,10 +16,8 @@ from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.slices import closed_steps, motion_clearances, swept_clearances
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
-from elbowroom.planning.limb import pose
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.boxes import Boxes
@@ -110,36 +108,6 @@ def test_a_plan_that_is_still_good_is_kept(humanoid: Humanoid) -> None:
     again = body.plan(walk(), hanging(), np.zeros(LOCAL), kept=first).plan.configurations
     assert len(first)
     assert np.allclose(first, again)
-
-
-def test_batch_tables_equal_one_check_after_the_other(humanoid: Humanoid) -> None:
-    body, rng = UpperBody(humanoid, course(2), ExactSettings()), np.random.default_rng(5)
-    arm = body.postures(DofGroup.LEFT_ARM, 0.15)
-    limb, samples, depths = arm.limb, 8, 2
-    centers = rng.uniform(-0.6, 0.6, (depths * samples + 1, 3, 3))
-    tables = np.zeros((*centers.shape[:2], 15), np.float32)
-    tables[..., :3], tables[..., 3:12], tables[..., 12:] = centers, np.eye(3).ravel(), 0.08
-    own = np.ascontiguousarray(rng.permutation(arm.segments.transpose(2, 0, 1))[: 3 * (depths + 1)])
-    own = np.ascontiguousarray(own.reshape(depths + 1, 3, *own.shape[1:]).transpose(0, 2, 3, 1))
-    swept, _ = swept_clearances(arm.segments, own, limb.radii, tables, samples, 2, arm.reach)
-    for depth in range(depths + 1):
-        near = [at for at in range(0, len(tables), 2) if abs(at - depth * samples) <= samples // 2]
-        each = [clearance(np.concatenate([arm.segments, own[depth]], axis=2), limb.radii, tables[at]) for at in near]
-        expected = np.min(each, axis=0)
-        close = expected < 0.05  # boxes out of reach are not looked at
-        assert np.allclose(swept[depth][close], expected[close], atol=1e-6)
-        assert np.all(swept[depth] >= expected - 1e-6)
-    everyone, closed = np.ones(len(arm.configurations), np.bool_), np.zeros(len(arm.targets), np.bool_)
-    closed_steps(arm, tables[: samples + 1], 0.004, everyone, everyone, closed)
-    sources = np.repeat(np.arange(len(arm.configurations)), np.diff(arm.first))
-    for k in rng.choice(len(arm.targets), 200):
-        a, b = arm.configurations[sources[k]], arm.configurations[arm.targets[k]]
-        parts = [(part, at) for part in (2, 4, 6) for at in (part - 1, part, part + 1)]
-        row = np.array([a + part / samples * (b - a) for part, _ in parts])
-        found = motion_clearances(pose(limb, row), limb.radii, tables[[at for _, at in parts]], arm.reach)
-        assert (
-            closed[k] == (sources[k] != arm.targets[k] and bool(found.min() < 0.004)) or abs(found.min() - 0.004) < 1e-5
-        )
 
 
 def low_beam() -> Scene:

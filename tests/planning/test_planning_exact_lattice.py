@@ -3,137 +3,143 @@
 from itertools import pairwise, product
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.planning.exact.lattice import Ban, Lattice, cheapest_way, new_work
+from elbowroom.planning.exact.lattice import (
+    BACK,
+    HOLD,
+    OWN,
+    Lattice,
+    Work,
+    cheapest_way,
+    new_work,
+    posture_of,
+    settle_backward,
+    traced,
+)
+from elbowroom.planning.exact.postures import BLOCK
 
-STEP, OWN, HORIZON = 0.8, 2, 4
+STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
+INF = np.float32(np.inf)
 
 
-def random_lattice(seed: int, size: int = 3) -> Lattice:
+def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZON) -> Lattice:
+    """`size` postures in one block of lanes and, at most, `own` more at each key time."""
     rng = np.random.default_rng(seed)
     width = int(rng.integers(2, 5))
     postures = rng.uniform(-0.5, 0.5, (size, width))
-    near = np.linalg.norm(postures[:, None] - postures, axis=2) <= STEP
-    price = rng.uniform(0.0, 1.0, (HORIZON + 1, size + OWN))
-    price[rng.random(price.shape) < rng.uniform(0.0, 0.6)] = np.inf
+    squares = np.sum((postures[:, None] - postures) ** 2, axis=2)
+    moves = np.full((size, BLOCK), INF)
+    moves[:, :size] = np.where(squares <= STEP**2, squares, np.inf)
+    price = rng.uniform(0.0, 1.0, (horizon + 1, BLOCK + OWN)).astype(np.float32)
+    price[rng.random(price.shape) < rng.uniform(0.0, 0.6)] = INF
+    price[:, size:BLOCK], price[:, BLOCK + own :] = INF, INF
+    closed = np.zeros((horizon, BLOCK + OWN, BLOCK + OWN), np.float32)
+    closed[rng.random(closed.shape) < rng.choice([0.0, 0.4])] = INF
+    columns = np.ascontiguousarray(postures[np.minimum(np.arange(BLOCK), size - 1)].T, np.float32)
     return Lattice(
         postures=postures,
-        first=np.concatenate([[0], np.cumsum(near.sum(axis=1))]).astype(np.int32),
-        targets=np.nonzero(near)[1].astype(np.int32),
-        own=rng.uniform(-0.5, 0.5, (HORIZON + 1, OWN, width)),
-        goals=rng.uniform(-0.3, 0.3, (HORIZON + 1, width)),
-        start=rng.uniform(-0.5, 0.5, width),
+        columns=columns,
+        moves=moves.astype(np.float32),
+        own=rng.uniform(-0.5, 0.5, (horizon + 1, OWN, width)),
+        goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
         price=price,
-        closed=rng.random((HORIZON, int(near.sum()))) < rng.choice([0.0, 0.4]),
-        like=rng.integers(-1, size, (HORIZON + 1, OWN)).astype(np.int32),
-        kept=size,
+        shut=rng.random(horizon) < 0.6,
+        closed=closed,
+        kept=rng.integers(0, size, horizon + 1).astype(np.int32),
         step=STEP,
-        step_weight=1.5,
+        weight=WEIGHT,
     )
 
 
-def random_ban(seed: int, lattice: Lattice, count: int) -> Ban:
-    rng = np.random.default_rng([seed, 1])
-    width = len(lattice.start)
-    return Ban(
-        rng.integers(0, HORIZON, count).astype(np.int32), rng.uniform(-0.5, 0.5, (count, 2 * width)), width * 0.25
-    )
+def work_for(lattice: Lattice) -> Work:
+    return new_work(*lattice.price.shape)
 
 
-def posture(lattice: Lattice, depth: int, node: int) -> np.ndarray:
-    size = len(lattice.postures)
-    if depth == 0:
-        return lattice.start
-    row: np.ndarray = lattice.postures[node] if node < size else lattice.own[depth, node - size]
-    return row
-
-
-def is_closed(lattice: Lattice, depth: int, source: int, target: int) -> bool:
-    """Whether the step is closed: known as such, or as that between the postures most like its ends."""
-    size = len(lattice.postures)
-    special = depth == 0 or source >= size
-    if special and target >= size:
-        return False
-    twin = source
-    if special:
-        twin = int(lattice.like[0, 0]) if depth == 0 else int(lattice.like[depth, source - size])
-    aim = int(lattice.like[depth + 1, target - size]) if target >= size else target
-    if twin < 0:
-        return False
-    row = slice(lattice.first[twin], lattice.first[twin + 1])
-    return any(lattice.closed[depth, row][lattice.targets[row] == aim])
-
-
-def step_cost(lattice: Lattice, ban: Ban, depth: int, source: int, target: int) -> float:
-    a, b = posture(lattice, depth, source), posture(lattice, depth + 1, target)
-    if np.linalg.norm(b - a) > STEP or is_closed(lattice, depth, source, target):
+def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
+    """What going from a node to one of the next depth costs, its own price included."""
+    a, b = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target)
+    if np.linalg.norm(b - a) > STEP or (lattice.shut[depth] and lattice.closed[depth, source, target] > 0):
         return np.inf
-    keeps = target == lattice.kept and (depth == 0 or source == lattice.kept)
-    for at, banned in zip(ban.depths, ban.steps, strict=True):
-        if at == depth and np.linalg.norm(banned - np.concatenate([a, b])) <= (1e-9 if keeps else ban.radius):
-            return np.inf
     change = (b - lattice.goals[depth + 1]) - (a - lattice.goals[depth])
-    return float(lattice.price[depth + 1, target] + lattice.step_weight * change @ change)
+    return float(lattice.price[depth + 1, target] + WEIGHT * change @ change)
 
 
-def every_way(lattice: Lattice, ban: Ban) -> tuple[int, float]:
+def every_way(lattice: Lattice) -> tuple[int, float]:
     """The deepest depth that has a way, and the least cost of a way to it."""
-    total = lattice.price.shape[1]
+    horizon, size = len(lattice.goals) - 1, len(lattice.postures)
+    nodes = [*range(size), *range(BLOCK, BLOCK + OWN)]
+    start = BLOCK + HOLD
     costs = {
-        (depth, a, b): step_cost(lattice, ban, depth, a, b)
-        for depth in range(HORIZON)
-        for a in (range(total) if depth else [0])
-        for b in range(total)
+        (depth, a, b): step_price(lattice, depth, a, b)
+        for depth in range(horizon)
+        for a in (nodes if depth else [start])
+        for b in nodes
     }
-    for length in range(HORIZON, 0, -1):
-        ways = (
-            sum(costs[depth, a, b] for depth, (a, b) in enumerate(pairwise((0, *way))))
-            for way in product(range(total), repeat=length)
-        )
-        best = min(ways)
+    for length in range(horizon, 0, -1):
+        ways = product(nodes, repeat=length)
+        best = min(sum(costs[t, a, b] for t, (a, b) in enumerate(pairwise((start, *way)))) for way in ways)
         if np.isfinite(best):
             return length, best
     return 0, 0.0
 
 
 @settings(deadline=None, max_examples=40)
-@given(st.integers(0, 10_000), st.integers(0, 6))
-def test_same_feasibility_and_optimum_as_trying_every_way(seed: int, bans: int) -> None:
+@given(st.integers(0, 10_000))
+def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
     lattice = random_lattice(seed)
-    ban = random_ban(seed, lattice, bans)
-    way = cheapest_way(lattice, ban, new_work(lattice), 0)
-    reached, cost = every_way(lattice, ban)
-    assert way.reached == reached
-    assert np.isclose(way.cost, cost, atol=1e-12)
-    assert len(way.path) == reached + 1
-    assert np.array_equal(way.path[0], lattice.start)
-    assert np.all(np.linalg.norm(np.diff(way.path, axis=0), axis=1) <= STEP + 1e-6)
+    work = work_for(lattice)
+    reached, _ = cheapest_way(lattice, work, 0)
+    expected, cost = every_way(lattice)
+    assert reached == expected
+    way = traced(lattice, work, reached)
+    if reached:
+        assert work.costs[reached].min() == pytest.approx(cost, abs=1e-5)
+        paid = sum(step_price(lattice, t, a, b) for t, (a, b) in enumerate(pairwise(way.tolist())))
+        assert paid == pytest.approx(cost, abs=1e-5)
 
 
 @settings(deadline=None, max_examples=40)
-@given(st.integers(0, 10_000), st.integers(1, 6))
-def test_going_on_after_new_bans_equals_beginning_anew(seed: int, bans: int) -> None:
+@given(st.integers(0, 10_000))
+def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> None:
     lattice = random_lattice(seed, size=12)
-    ban = random_ban(seed, lattice, bans)
-    work = new_work(lattice)
-    cheapest_way(lattice, Ban(ban.depths[:0], ban.steps[:0], ban.radius), work, 0)
-    resumed = cheapest_way(lattice, ban, work, int(ban.depths.min()))
-    anew = cheapest_way(lattice, ban, new_work(lattice), 0)
-    if anew.reached >= ban.depths.min():
-        assert resumed.reached == anew.reached
-        assert resumed.cost == anew.cost
-        assert np.array_equal(resumed.path, anew.path)
+    work = work_for(lattice)
+    if cheapest_way(lattice, work, 0)[0] < HORIZON:
+        return
+    lattice.shut[1] = True
+    lattice.closed[1] = np.where(np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5, INF, 0.0)
+    resumed, _ = cheapest_way(lattice, work, 1)
+    fresh = work_for(lattice)
+    anew, _ = cheapest_way(lattice, fresh, 0)
+    assert resumed == anew
+    assert np.array_equal(traced(lattice, work, anew), traced(lattice, fresh, anew))
+    assert work.costs[anew].min() == fresh.costs[anew].min()
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(0, 10_000))
+def test_costs_from_both_ends_meet(seed: int) -> None:
+    lattice = random_lattice(seed, size=12, own=OWN, horizon=6)
+    work = work_for(lattice)
+    reached, _ = cheapest_way(lattice, work, 0)
+    if reached < 6:
+        return
+    best = float(work.costs[6].min())
+    settle_backward(lattice, work, 0, best + 1e-3)
+    for depth in range(6):
+        assert np.min(work.costs[depth] + work.left[depth]) == pytest.approx(best, abs=2e-5)
 
 
 def test_who_follows_the_goal_pays_nothing() -> None:
     lattice = random_lattice(3)
-    own = lattice.own.copy()
-    own[:, 1] = lattice.goals
-    price = np.ones_like(lattice.price)
-    price[:, -1] = 0.0
-    lattice = lattice._replace(own=own, price=price, start=lattice.goals[0], closed=np.zeros_like(lattice.closed))
-    way = cheapest_way(lattice, random_ban(0, lattice, 0), new_work(lattice), 0)
-    assert way.cost < 1e-12
-    assert np.allclose(way.path, lattice.goals)
+    own, price = lattice.own.copy(), np.ones_like(lattice.price)
+    own[:, BACK], own[0, HOLD] = lattice.goals, lattice.goals[0]
+    price[:, BLOCK + BACK] = 0.0
+    lattice = lattice._replace(own=own, price=price, shut=np.zeros(HORIZON, np.bool_))
+    work = work_for(lattice)
+    reached, _ = cheapest_way(lattice, work, 0)
+    assert reached == HORIZON
+    assert work.costs[HORIZON].min() < 1e-6
+    assert np.all(traced(lattice, work, reached)[1:] == BLOCK + BACK)

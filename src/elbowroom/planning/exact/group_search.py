@@ -1,8 +1,8 @@
 """The way of one group along a root path: cheapest through the lattice, then proven as it will be shown.
 
-A way that touches between its key frames is banned there, with the steps near it; where that happens, the steps of that
-key interval through which the next ways would lead are looked at in one batch, and the next cheapest way is taken. So
-steps are swept only where the search is blocked, and every candidate is swept as a whole. All of it is one compiled call.
+A way that touches between its key frames is banned there, with the steps near it; where that happens, the steps of
+that key interval through which the next ways would lead are looked at in one batch, and the next cheapest way is taken.
+So steps are swept only where the search is blocked, and every candidate is swept as a whole. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -110,7 +110,10 @@ def new_scratch(horizon: int, nodes: int) -> Scratch:
 
     square = (horizon, nodes, nodes)
     return Scratch(
-        new_work(horizon + 1, nodes), np.zeros(horizon, np.bool_), np.zeros(square, np.float32), np.zeros(square, np.bool_)
+        new_work(horizon + 1, nodes),
+        np.zeros(horizon, np.bool_),
+        np.zeros(square, np.float32),
+        np.zeros(square, np.bool_),
     )
 
 
@@ -165,10 +168,7 @@ def _known(postures: Postures, posture: Floats) -> int:
 
 @exact_kernel
 def _near(a: Floats, b: Floats) -> bool:
-    for i in range(a.shape[0]):
-        if abs(a[i] - b[i]) > _SAME:
-            return False
-    return True
+    return bool(np.all(np.abs(a - b) <= _SAME))
 
 
 @exact_kernel
@@ -235,7 +235,6 @@ def search_group(
 ) -> GroupWay:
     """The cheapest way whose motion is free as shown, at every moment."""
     postures, horizon = group.postures, task.goals.shape[0] - 1
-    width = postures.moves.shape[1]
     begin_round(group.tables.slots)
     own, needed, kept = _own_postures(group, task)
     _, places, turns = _carrier(group, roots, waists, task, 0)

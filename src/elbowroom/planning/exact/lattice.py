@@ -1,17 +1,17 @@
 """The cheapest way through a time lattice: dynamic programming, each (posture, key time) settled once.
 
-The nodes of a depth are the V postures of a group, W with the lanes that fill up the last block, and OWN postures of that
-key time alone: the goal itself, what the last plan had there, and the like. A step leads from a node to a free node of the
-next depth at most `step` radians away. A node costs its own price, a step costs w |d - g|^2: the squared change of the
-deviation from the goal, d being the way of the posture and g that of the goal. So a group that follows its goal pays
-nothing, and evading begins and ends gently.
+The nodes of a depth are the V postures of a group, W with the lanes that fill up the last block, and OWN postures of
+that key time alone: the goal itself, what the last plan had there, and the like. A step leads from a node to a free
+node of the next depth at most `step` radians away. A node costs its own price, a step costs w |d - g|^2: the squared
+change of the deviation from the goal, d being the way of the posture and g that of the goal. So a group that follows
+its goal pays nothing, and evading begins and ends gently.
 
 Written out, |b - a - g|^2 = |b - a|^2 + 2 a.g + |g|^2 - 2 b.g: the first part is a table that never changes, the others
 belong to the source or to the target alone. What is left of a row is the (min, +) product of a vector with a constant
 matrix, in which every target is a lane.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,9 @@ Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
 OWN = 4  # postures of a key time alone
-GOAL, KEPT, HOLD, BACK = range(OWN)  # the goal, what the last plan had, the start, on the way from the start to the goal
+GOAL, KEPT, HOLD, BACK = range(
+    OWN
+)  # the goal, what the last plan had, the start, on the way from the start to the goal
 _ROUNDING = 1.0 + 1e-6
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
@@ -71,7 +73,8 @@ def new_work(depths: int, nodes: int) -> Work:
 def posture_of(lattice: Lattice, depth: int, node: int) -> Floats:
     """The configuration (d,) of a node."""
     width = lattice.moves.shape[1]
-    return lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    posture: Floats = lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    return posture
 
 
 @exact_kernel
@@ -185,7 +188,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
 
 
 @exact_kernel
-def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[float, int]:
+def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of a step to an own posture of the next depth, and where it comes from."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
     best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
@@ -224,7 +227,7 @@ def _own_way(lattice: Lattice) -> float:
 @exact_kernel
 def _kept_way(lattice: Lattice) -> float:
     """The cost of the last plan's way, infinite where it is not free."""
-    width, total, before = lattice.moves.shape[1], 0.0, lattice.moves.shape[1] + HOLD
+    total, before = 0.0, lattice.moves.shape[1] + HOLD
     for depth in range(lattice.goals.shape[0] - 1):
         node = lattice.kept[depth + 1]
         total += lattice.price[depth + 1, node] + step_cost(lattice, depth, before, node)

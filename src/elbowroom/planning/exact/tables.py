@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.clearances import (
-    boxes_around,
     box_in_frame,
+    boxes_around,
     capsule_clearances,
     lower_blocks,
     place_capsules,

@@ -18,7 +18,15 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, chest_frames
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.exact.group_search import Group, GroupTask, GroupWay, Scratch, Weights, new_scratch, search_group
+from elbowroom.planning.exact.group_search import (
+    Group,
+    GroupTask,
+    GroupWay,
+    Scratch,
+    Weights,
+    new_scratch,
+    search_group,
+)
 from elbowroom.planning.exact.lattice import KEPT, OWN
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.settings import ExactSettings
@@ -114,9 +122,7 @@ class UpperBody:
         deepest = 0
         for attempt in range(self.settings.waist_rounds):
             keeping = attempt == 1 and kept is not None
-            waist = ledger.search(
-                DofGroup.WAIST, task(DofGroup.WAIST, roots, _only_kept(extra) if keeping else extra)
-            )
+            waist = ledger.search(DofGroup.WAIST, task(DofGroup.WAIST, roots, _only_kept(extra) if keeping else extra))
             if waist.reached < path.horizon:
                 deepest = max(deepest, waist.reached)
                 if keeping:
@@ -152,7 +158,8 @@ class UpperBody:
         low, high = path.states[:, :2].min(axis=0), path.states[:, :2].max(axis=0)
         places = self._boxes[:, [0, 2]]
         gaps = np.linalg.norm(places - np.clip(places, low, high), axis=1)
-        return self._boxes[gaps - self._box_radii < chain.span + _NEARLY]
+        near: Floats = self._boxes[gaps - self._box_radii < chain.span + _NEARLY]
+        return near
 
     def _shelves_for(self, path: RootPath) -> _Shelves:
         key = (path.interval, path.horizon)

@@ -227,9 +227,7 @@ def rates_between(
         rest = 1.0 - u
         for j in range(size):
             ta, tb = m[j] * interval, n[j] * interval
-            out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * ta) + u * u * (
-                (3.0 - 2.0 * u) * p[j] - rest * tb
-            )
+            out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * ta) + u * u * ((3.0 - 2.0 * u) * p[j] - rest * tb)
             rates[i, j] = (
                 6.0 * u * rest * (p[j] - q[j]) + rest * (rest - 2.0 * u) * ta + u * (u - 2.0 * rest) * tb
             ) / interval
