@@ -137,7 +137,7 @@ class UpperBody:
             else:
                 keys = np.concatenate([way.keys for way in ways], axis=1)
                 velocities = np.concatenate([way.velocities for way in ways], axis=1)
-                plan = LocalPlan(PlanStatus.FOUND, keys, goals, ledger.evidence(), velocities)
+                plan = LocalPlan(PlanStatus.FOUND, keys, goals, ledger.evidence(), velocities=velocities)
                 return UpperPlan(plan, path.horizon)
             deepest = max(deepest, way.reached)
             if not keeping:
