@@ -5,7 +5,9 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.lowered_legs import LoweredLegs
+from elbowroom.planning.root_path import RootPath, sample_states
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
 
@@ -28,6 +30,13 @@ def random_states(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]
     roots = rng.uniform([-1.5, -1.5, -4, -0.6, -0.5, -1, -3], [1.5, 1.5, 4, 2.0, 0.5, 1, 3], (count, 7))
     roots[:, :2] += [300.0, -200.0]
     return roots, rng.choice([0.0, 1.0], count) * rng.uniform(0.0, DEEPEST, count)
+
+
+def walk(horizon: int) -> RootPath:
+    states = np.zeros((horizon + 1, 7))
+    t = 0.15 * np.arange(horizon + 1)
+    states[:, 0], states[:, 1], states[:, 3], states[:, 6] = 300.0, -200.5 + 1.1 * t, 1.1, 0.9 * t
+    return RootPath(0.0, 0.15, states)
 
 
 def naive(boxes: Boxes, root: Floats, lowering: float) -> float:
@@ -65,20 +74,37 @@ def test_far_and_high_boxes_are_left_out_and_nothing_else() -> None:
             assert found[k] == pytest.approx(expected, abs=1e-4) or (expected > 0.05 and found[k] > 0.05)
 
 
-def test_a_lowering_touches_if_it_does_at_any_moment_of_its_row() -> None:
+def test_a_node_is_blocked_by_what_its_legs_touch_around_its_key_time() -> None:
     rng = np.random.default_rng(3)
-    boxes = random_boxes(rng, 25)
-    roots, _ = random_states(rng, 24)
-    roots = roots.reshape(6, 4, 7)
-    lowerings = np.array([0.0, 0.4, 0.2, 0.4, 0.6])
+    boxes, path = random_boxes(rng, 80), walk(6)
+    lowerings = rng.choice([0.0, 0.4], (7, 5)) * rng.uniform(0.5, 1.5, (7, 5))
     legs = LoweredLegs(MODEL, boxes)
-    found = legs.touching(roots, lowerings, 0.02)
-    for t in range(6):
-        for v, lowering in enumerate(lowerings):
-            each = legs.clearances(roots[t], np.full(4, lowering))
-            assert found[t, v] == (each.min() < 0.02)
+    found = legs.blocked_nodes(path, lowerings, 0.02)
+    for t, v in np.ndindex(7, 5):
+        times = np.clip(t + np.array([-0.5, -0.25, 0.0, 0.25, 0.5]), 0.0, 6.0) * path.interval
+        each = legs.clearances(sample_states(path.states, path.interval, times), np.full(5, lowerings[t, v]))
+        assert found[t, v] == (each.min() < 0.02)
     assert found.any()
-    assert not found[:, 0].any()
+    assert not found[lowerings == 0.0].any()
+
+
+def test_an_interval_is_blocked_by_what_is_shown_in_it() -> None:
+    rng = np.random.default_rng(5)
+    seen = set()
+    for _ in range(30):
+        boxes, path = random_boxes(rng, 8), walk(6)
+        legs = LoweredLegs(MODEL, boxes)
+        keys = np.clip(rng.uniform(-0.3, 0.6, 7), 0.0, None)
+        times = path.interval * np.arange(7.0)
+        tangents = monotone_tangents(times, keys[:, None], np.zeros(1))
+        found = legs.blocked_intervals(path, keys, tangents[:, 0], 0.01)
+        for k in range(6):
+            at = times[k] + path.interval * np.arange(12) / 12
+            shown = np.array([hermite(times, keys[:, None], tangents, float(time))[0][0] for time in at])
+            each = legs.clearances(sample_states(path.states, path.interval, at), shown)
+            assert found[k] == (each.min() < 0.01)
+            seen.add(bool(found[k]))
+    assert seen == {True, False}
 
 
 def test_no_boxes_no_contact() -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, leg_capsules
+from elbowroom.planning.root_path import RootPath, sample_states
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 
@@ -20,6 +21,8 @@ _LEAST = 1e-3  # of a lowering that is looked at: less than a millimetre
 _SPEED = 2.2  # m/s: a run, in which legs reach farthest
 _DEEP = float(limits(DofGroup.WAIST)[2, 1])
 _SPARE = 0.1  # metres beyond the reach of the legs
+_AROUND = 5  # moments that are looked at around a key time
+_SHOWN = 12  # shown moments of a key interval
 
 
 class LoweredLegs:
@@ -54,14 +57,37 @@ class LoweredLegs:
         )
         return out
 
-    def touching(self, roots: Floats, lowerings: Floats, margin: float) -> Bools:
-        """Whether lowerings (V,) come within `margin` of a box at any of the root states (T, m, 7) of a row: (T, V)."""
-        levels, place = np.unique(lowerings, return_inverse=True)
-        rows, moments = roots.shape[:2]
-        states = np.repeat(roots.reshape(-1, 7), len(levels), axis=0)
-        found = self.clearances(states, np.tile(levels, rows * moments)).reshape(rows, moments, len(levels))
-        touching: Bools = (found.min(axis=1) < margin)[:, place]
-        return touching
+    def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
+        """Which of the lowerings (n+1, V) bring the legs within `margin` of a box around their key time: (n+1, V)."""
+        around = np.linspace(-0.5, 0.5, _AROUND) * path.interval
+        times = np.arange(len(path.states))[:, None] * path.interval + around
+        times = np.clip(times, 0.0, path.horizon * path.interval)
+        roots = sample_states(path.states, path.interval, times.ravel())
+        states = np.repeat(roots, lowerings.shape[1], axis=0)
+        each = np.repeat(lowerings[:, None], _AROUND, axis=1).ravel()
+        found = self.clearances(states, each).reshape(len(times), _AROUND, -1)
+        blocked: Bools = found.min(axis=1) < margin
+        return blocked
+
+    def blocked_intervals(self, path: RootPath, keys: Floats, velocities: Floats, margin: float) -> Bools:
+        """In which key intervals (n,) the curve of lowerings brings the legs within `margin` of a box.
+
+        It leads through `keys` (n+1,) with `velocities` (n+1,), as playback shows it.
+        """
+        share = np.arange(_SHOWN) / _SHOWN
+        times = (np.arange(path.horizon)[:, None] + share) * path.interval
+        roots = sample_states(path.states, path.interval, times.ravel())
+        lowerings = np.clip(_curve(keys, path.interval * velocities, share), 0.0, None)
+        found = self.clearances(roots, lowerings.ravel()).reshape(path.horizon, _SHOWN)
+        blocked: Bools = found.min(axis=1) < margin
+        return blocked
+
+
+def _curve(keys: Floats, slopes: Floats, u: Floats) -> Floats:
+    """Cubic Hermite curves (n, S) through `keys` (n+1,) with `slopes` (n+1,) for each interval, at shares `u` (S,)."""
+    a, b, m, n = keys[:-1, None], keys[1:, None], slopes[:-1, None], slopes[1:, None]
+    curve: Floats = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
+    return curve
 
 
 def _extent(model: BodyModel) -> tuple[float, float]:
