@@ -18,6 +18,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, chest_frames
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
+from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.group_search import (
     Group,
     GroupTask,
@@ -45,6 +46,7 @@ from elbowroom.planning.exact.ways import (
 from elbowroom.planning.frames import compose
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
+from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import clear_of_trunk
@@ -98,6 +100,7 @@ class UpperBody:
         self._shelves: dict[tuple[float, int], _Shelves] = {}
         self._boxes = scene.boxes.table
         self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
+        self._legs = LoweredLegs(self._model, scene.boxes)
 
     def plan(self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None = None) -> UpperPlan:
         """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's."""
@@ -119,10 +122,20 @@ class UpperBody:
         waist_group = shelves.groups[DofGroup.WAIST]
         none = {group: _no_extra(shelves.groups[group], len(goals)) for group in LOCAL_GROUPS}
         extra = none[DofGroup.WAIST].copy()
+        crouch = self._crouch(path, waist_group, goals, before, start)
+
+        def waist_way(keeping: bool) -> GroupWay:
+            for _ in range(ROUNDS):
+                prices = _only_kept(extra) if keeping else extra
+                way = ledger.search(DofGroup.WAIST, task(DofGroup.WAIST, roots, prices))
+                if way.reached < path.horizon or not crouch.rules_out(way.keys, way.velocities, extra):
+                    return way
+            return way._replace(reached=0)
+
         deepest = 0
         for attempt in range(self.settings.waist_rounds):
             keeping = attempt == 1 and kept is not None
-            waist = ledger.search(DofGroup.WAIST, task(DofGroup.WAIST, roots, _only_kept(extra) if keeping else extra))
+            waist = waist_way(keeping)
             if waist.reached < path.horizon:
                 deepest = max(deepest, waist.reached)
                 if keeping:
@@ -146,6 +159,13 @@ class UpperBody:
                     self._model, extra, waist_group, waist, shelves.groups[group], way.reached + 1, frames, boxes
                 )
         return UpperPlan(LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence()), deepest)
+
+    def _crouch(self, path: RootPath, group: Group, goals: Floats, kept: Floats, start: Floats) -> Crouch:
+        """What the legs say to the lowerings of the waist's nodes, in the order of their prices."""
+        at, postures = columns_of(DofGroup.WAIST), group.postures
+        lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
+        lanes[: len(postures.configurations)] = postures.configurations
+        return Crouch(self._legs, path, node_lowerings(lanes, goals[:, at], kept[:, at], start[at]))
 
     def _margins(self, path: RootPath) -> tuple[Floats, Floats]:
         """Clearances of nodes (n+1,) and of the motion in each interval (n,): less is asked for soon than later."""
@@ -231,7 +251,8 @@ def _no_extra(group: Group, depths: int) -> Floats32:
 def _only_kept(extra: Floats32) -> Floats32:
     """Prices that hold the waist to the last plan's way while there is one."""
     prices = extra + np.float32(_DEARER)
-    prices[:, extra.shape[1] - OWN + KEPT] = 0.0
+    kept = extra.shape[1] - OWN + KEPT
+    prices[:, kept] = np.where(np.isinf(extra[:, kept]), np.inf, 0.0)
     return prices
 
 

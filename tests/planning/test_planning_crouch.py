@@ -1,0 +1,153 @@
+"""Under a beam among low boxes: what the exact planner finds leaves room for the bent knees too."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
+from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.control.key_frame_queue import KeyFrameQueue
+from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.lowered_legs import LoweredLegs
+from elbowroom.planning.result import PlanStatus
+from elbowroom.planning.root_path import RootPath
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.clearance import clearance
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+HUMANOID = proportional_humanoid(1.72)
+MODEL = body_model(HUMANOID)
+COLUMN = LOWERING - DofGroup.WAIST.value.start
+
+
+def walk(horizon: int = 16, speed: float = 0.9) -> RootPath:
+    states = np.zeros((horizon + 1, 7))
+    time = 0.15 * np.arange(horizon + 1)
+    states[:, 1], states[:, 3], states[:, 6] = speed * time, speed, 0.8 * time
+    return RootPath(0.0, 0.15, states)
+
+
+def scene(seed: int) -> Scene:
+    """A low beam across the way, and boxes beside and before the knees that leave upright legs alone."""
+    rng = np.random.default_rng(seed)
+    count = 2
+    side = rng.choice([-1.0, 1.0], count)
+    halves = rng.uniform([0.02, 0.03, 0.05], [0.06, 0.1, 0.2], (count, 3))
+    aside, up, ahead = rng.uniform([0.18, 0.4, 0.9], [0.27, 0.6, 1.7], (count, 3)).T
+    centers = np.stack([side * (aside + halves[:, 0]), up, ahead], axis=1)
+    boxes = Boxes(
+        np.concatenate([[[0.0, 1.5, 1.35]], centers]),
+        np.tile([0.0, 0.0, 0.0, 1.0], (count + 1, 1)),
+        np.concatenate([[[1.5, 0.1, 0.06]], halves]),
+    )
+    names = tuple(f"box {i}" for i in range(count + 1))
+    return replace(Scene.load("empty"), boxes=boxes, box_names=names)
+
+
+def leaves_upright_legs_alone(made: Scene) -> bool:
+    fine = np.linspace(0.0, 16.0, 200)
+    states = np.stack([np.interp(fine, np.arange(17.0), column) for column in walk().states.T], axis=1)
+    gaps = clearance(leg_capsules(MODEL, states), MODEL.roots.radii, made.boxes.table)
+    return bool(gaps.min() > 0.005)
+
+
+def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, float]:
+    """The least clearance of legs and pelvis as the queue plays it at 240 poses a second, and the deepest lowering."""
+    queue = KeyFrameQueue(path.horizon, path.interval)
+    queue.splice(path, uppers, np.zeros(LOCAL))
+    roots, postures = [], []
+    while not queue.empty:
+        playback = queue.sample()
+        roots.append(playback.root)
+        postures.append(np.concatenate([playback.root[:3], playback.upper]))
+        queue.advance(1 / 240)
+    q = np.array(postures)
+    capsules = posture_capsules(MODEL, q, np.array(roots))[MODEL.roots.indices]
+    return float(clearance(capsules, MODEL.roots.radii, made.boxes.table).min()), float(q[:, LOWERING].max())
+
+
+def planned(made: Scene, body: UpperBody) -> tuple[float, float] | None:
+    start = goal_configurations(natural_walk(), walk(speed=0.0))[0]
+    plan = body.plan(walk(), start, np.zeros(LOCAL)).plan
+    return shown_legs(made, walk(), plan.configurations) if plan.status is PlanStatus.FOUND else None
+
+
+def test_bent_knees_touch_nothing_and_would_if_nobody_looked() -> None:
+    crouched = touching = 0
+    for seed in range(16):
+        made = scene(seed)
+        if not leaves_upright_legs_alone(made):
+            continue
+        body = UpperBody(HUMANOID, made, ExactSettings())
+        found = planned(made, body)
+        if found is not None:
+            assert found[0] > 0.0, seed
+            crouched += found[1] > 0.15
+        body._legs = LoweredLegs(MODEL, Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3))))
+        blind = planned(made, body)
+        touching += blind is not None and blind[0] < 0.0
+    assert crouched >= 3
+    assert touching >= 2
+
+
+def wall_before_the_knees() -> LoweredLegs:
+    """A step before the feet that upright legs do not reach, and bent knees do."""
+    boxes = Boxes(np.array([[0.0, 0.45, 0.31]]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[0.5, 0.06, 0.05]]))
+    return LoweredLegs(MODEL, boxes)
+
+
+def standing(horizon: int = 6) -> RootPath:
+    return RootPath(0.0, 0.15, np.zeros((horizon + 1, 7)))
+
+
+def way(depth: float) -> tuple[Floats, Floats]:
+    keys = np.zeros((7, DofGroup.WAIST.size))
+    keys[3:5, COLUMN] = depth
+    return keys, np.zeros_like(keys)
+
+
+def test_who_stays_upright_is_not_looked_at() -> None:
+    extra = np.zeros((7, 9), np.float32)
+    crouch = Crouch(wall_before_the_knees(), standing(), np.tile(np.linspace(0.0, 0.7, 9), (7, 1)))
+    assert not crouch.rules_out(*way(0.0), extra)
+    assert not extra.any()
+
+
+def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
+    legs, lowerings = wall_before_the_knees(), np.linspace(0.0, 0.7, 9)
+    extra = np.zeros((7, 9), np.float32)
+    crouch = Crouch(legs, standing(), np.tile(lowerings, (7, 1)))
+    assert crouch.rules_out(*way(0.7), extra)
+    touching = legs.clearances(np.zeros((9, 7)), lowerings) < 0.01
+    assert 0 < touching.sum() < 8
+    np.testing.assert_array_equal(np.isinf(extra), np.tile(touching, (7, 1)))
+    assert not crouch.rules_out(*way(float(lowerings[~touching].max())), extra)
+
+
+def test_in_the_end_nobody_crouches() -> None:
+    lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
+    extra = np.zeros((7, 9), np.float32)
+    crouch = Crouch(wall_before_the_knees(), standing(), lowerings)
+    closed = []
+    for _ in range(ROUNDS - 1):
+        assert crouch.rules_out(*way(0.7), extra)
+        closed.append(int(np.isinf(extra).sum()))
+    assert closed == sorted(closed)
+    np.testing.assert_array_equal(np.isinf(extra[1:]), lowerings[1:] > 0.0)
+
+
+def test_every_node_has_its_lowering() -> None:
+    rng = np.random.default_rng(0)
+    postures, goals, kept, start = (rng.uniform(size=shape) for shape in ((5, 3), (4, 3), (4, 3), (3,)))
+    found = node_lowerings(postures, goals, kept, start)
+    assert found.shape == (4, 9)
+    for t in range(4):
+        np.testing.assert_array_equal(found[t, :5], postures[:, 2])
+        assert found[t, 5:].tolist() == [goals[t, 2], kept[t, 2], start[2], max(start[2], goals[t, 2])]
