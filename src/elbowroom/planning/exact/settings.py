@@ -10,7 +10,7 @@ class ExactSettings:
     look_ahead: float = 2.4  # seconds, whatever the size of the queue
     waist_samples: int = 6  # postures taken from each clip
     arm_samples: int = 10
-    waist_speed: float = 2.7  # rad/s, over both components together: a quick bend or turn
+    waist_speed: float = 2.7  # rad/s, over its components together: a quick bend, turn or crouch
     arm_speed: float = 5.0  # rad/s, over the four components together: a reach at ease is half as fast
     margin: float = 0.01  # clearance of a posture around its key time
     skin: float = 0.006  # clearance of the motion that is shown
