@@ -6,6 +6,7 @@ So the natural walk is free for every avatar. Not looked at is what a joint hold
 parts of the trunk, and an upper arm against the trunk below the neck, where its shoulder is rooted.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
 from elbowroom.planning.axis_gaps import clear_pairs, pair_clearances
 from elbowroom.planning.frames import compose
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -45,13 +46,13 @@ class SelfPairs(NamedTuple):
     limits: Floats32  # (P,) metres
 
 
-def self_pairs(model: BodyModel) -> SelfPairs:
-    """Measure the natural walk of a body."""
+def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None = None) -> SelfPairs:
+    """Measure the natural walk of a body, or what `goals` make of it."""
     rest = np.concatenate([model.roots.indices, model.trunk.indices])
     joints = np.concatenate([model.roots.joints, model.trunk.joints])
     legs = np.concatenate([model.roots.joints != 0, np.zeros(len(model.trunk.joints), np.bool_)])
     arms = model.left_arm.indices, model.right_arm.indices
-    natural = _natural_walk(model)
+    natural = _natural_walk(model, goals or natural_walk())
     head = np.isin(joints, model.gaze)
 
     def allowed(one: Indices, other: Indices) -> Floats32:
@@ -78,12 +79,12 @@ def self_pairs(model: BodyModel) -> SelfPairs:
     )  # fmt: skip
 
 
-def _natural_walk(model: BodyModel) -> Floats32:
+def _natural_walk(model: BodyModel, goals: Mapping[DofGroup, GoalFunction]) -> Floats32:
     """All capsules (C, 6, N) over strides at several speeds."""
     states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
     states[:, 3] = np.repeat(_SPEEDS, _PHASES)
     states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
-    return posture_capsules(model, _postures(goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))), states)
+    return posture_capsules(model, _postures(goal_configurations(goals, RootPath(0.0, 1.0, states))), states)
 
 
 def _postures(uppers: Floats) -> Floats:

@@ -128,7 +128,7 @@ def _carrier(group: Group, roots: RootWays, waists: LimbWays, task: GroupTask, k
 
 
 @exact_kernel
-def _own_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Ints]:
+def own_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Ints]:
     """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
 
     A posture that is among the others already needs no node of its own.
@@ -236,7 +236,7 @@ def search_group(
     """The cheapest way whose motion is free as shown, at every moment."""
     postures, horizon = group.postures, task.goals.shape[0] - 1
     begin_round(group.tables.slots)
-    own, needed, kept = _own_postures(group, task)
+    own, needed, kept = own_postures(group, task)
     _, places, turns = _carrier(group, roots, waists, task, 0)
     clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes, START)
     most = max(0.5 * clearance, 0.0)

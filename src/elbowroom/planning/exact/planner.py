@@ -5,6 +5,7 @@ and taken if it gets beyond the place where the faster one failed; else the root
 comes to a stand there: a posture that is free stays free when the root stands.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -17,7 +18,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan, RootPlanKind
@@ -28,6 +29,7 @@ Floats = NDArray[np.float64]
 
 _EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that has no way, at which braking is tried
 _FARTHER = 0.05  # metres that a slower way must get beyond the place where a faster one failed
+_SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _STANDING = 0.02  # metres: a path that is shorter stands
 
 
@@ -47,10 +49,12 @@ class ExactPlanner:
         self.settings = settings or ExactSettings()
         self._body = UpperBody(humanoid, scene, self.settings, motions)
         self._last: _Whole | None = None
+        self._blockade: Blockade | None = None
 
     def reset(self) -> None:
-        """Forget the last plan."""
-        self._last = None
+        """Forget the last plan and the postures that were added."""
+        self._last = self._blockade = None
+        self._body.reset()
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
@@ -75,7 +79,7 @@ class ExactPlanner:
                 and _way(root.path, horizon) < blocked_at + _FARTHER
             ):
                 continue
-            upper = self._dress(root.path, query)
+            upper = self._dress(root.path, query, refine=first is None)
             if upper.reached == horizon:
                 return _Whole(root, upper.plan)
             if first is None:
@@ -85,7 +89,8 @@ class ExactPlanner:
         return self._stop(root_planner, query, *first)
 
     def _stop(self, root_planner: RootPlanner, query: MotionQuery, root: RootPlan, upper: UpperPlan) -> _Whole:
-        """Walk on while there is a way, then brake; or do what the last plan had in mind."""
+        """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind."""
+        why = self._why(upper)
         for moving in _moving(upper.reached):
             states = root.path.states.copy()
             brake(states, moving, query.interval, root_planner.bounds)
@@ -93,8 +98,9 @@ class ExactPlanner:
             stopping = self._dress(path, query)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                return _Whole(replace(root, path=path, kind=kind), stopping.plan)
-        return self._continued(query) or _Whole(root, upper.plan)
+                return _Whole(replace(root, path=path, kind=kind), replace(stopping.plan, blockade=why))
+        whole = self._continued(query) or _Whole(root, upper.plan)
+        return whole._replace(local=replace(whole.local, blockade=why))
 
     def _continued(self, query: MotionQuery) -> _Whole | None:
         """What is left of the last plan, if it led to where this one starts."""
@@ -108,8 +114,19 @@ class ExactPlanner:
         rest = _part(local, slice(at, None))
         return _Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
 
-    def _dress(self, path: RootPath, query: MotionQuery) -> UpperPlan:
-        return self._body.plan(path, query.upper, query.velocity, self._kept(path))
+    def _why(self, upper: UpperPlan) -> Blockade:
+        """Why there is no way; an earlier answer for the same place where this one names no obstacles.
+
+        Near the end of a way it is now and then only the motion between free postures that touches.
+        """
+        why, last = upper.dressing.blockade(), self._blockade
+        if why.kind is BlockadeKind.MOTION and last is not None and math.dist(why.place, last.place) < _SAME_PLACE:
+            why = replace(last, ahead=why.ahead)
+        self._blockade = why
+        return why
+
+    def _dress(self, path: RootPath, query: MotionQuery, *, refine: bool = False) -> UpperPlan:
+        return self._body.plan(path, query.upper, query.velocity, self._kept(path), refine=refine)
 
     def _kept(self, path: RootPath) -> Floats | None:
         """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""

@@ -78,12 +78,15 @@ class Pool:
     def __init__(self, size: int, capacity: int) -> None:
         self._capacity = capacity
         self.postures: Floats = np.empty((0, size))
-        self.revision = 0  # grows with every change
+
+    def clear(self) -> bool:
+        """Forget all; whether there were any."""
+        held, self.postures = len(self.postures) > 0, self.postures[:0]
+        return held
 
     def add(self, postures: Floats) -> bool:
         """Take in postures (N, d), in place of the oldest where there is no room; whether any was new."""
         if not len(postures):
             return False
         self.postures = np.concatenate([self.postures, postures[: self._capacity]])[-self._capacity :]
-        self.revision += 1
         return True

@@ -1,12 +1,10 @@
-"""Waist, left arm and right arm along a root path, each by its own cheapest way.
+"""A humanoid's upper body in a scene: its posture sets, what was computed of late, and what is tried for a root path.
 
-The arms hang on the waist. Where the waist's way leaves an arm none, the waist yields: postures under which that arm
-has no free posture at all are ruled out there, and the posture that failed becomes dearer; then all is planned anew.
-Before that the waist's way of the last plan is tried, under which the arms had theirs.
+Each group by itself, then the waist held to the last plan's way, then all groups together (`dressing`). If there is no
+way then, postures are added where it was blocked, and it is tried again.
 """
 
-from collections.abc import Mapping
-from time import perf_counter_ns
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -15,51 +13,33 @@ from numpy.typing import NDArray
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model, chest_frames
+from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
-from elbowroom.planning.exact.group_search import (
-    Group,
-    GroupTask,
-    GroupWay,
-    Scratch,
-    Weights,
-    new_scratch,
-    search_group,
-)
-from elbowroom.planning.exact.lattice import KEPT, OWN
+from elbowroom.planning.exact.dressing import Dressing, Shelves
+from elbowroom.planning.exact.group_search import Group, Scratch, Weights, new_scratch
+from elbowroom.planning.exact.lattice import OWN
+from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import Postures, postures_of
+from elbowroom.planning.exact.reaching import arms_for, waists_for
+from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.tables import any_free, new_tables
-from elbowroom.planning.exact.ways import (
-    SWEEP,
-    Chain,
-    LimbWays,
-    RootWays,
-    chain_of,
-    levers_of,
-    new_limb_ways,
-    new_root_ways,
-    root_ways,
-)
-from elbowroom.planning.frames import compose
+from elbowroom.planning.exact.tables import new_tables
+from elbowroom.planning.exact.ways import Chain, chain_of, levers_of, new_limb_ways, new_root_ways, root_ways
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
 from elbowroom.planning.lowered_legs import LoweredLegs
-from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import clear_of_trunk
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
 _NEARLY = 0.5  # metres: more than any margin
-_DEARER = 0.5  # squared radians: what a waist posture costs more where an arm found no way under it
-_ALIKE = 0.2  # radians: waist postures that are made dearer with it
 _SHELVES = 8  # times the horizon: results of key intervals that are kept
+_SPARE = 0.05  # metres
 
 
 class UpperPlan(NamedTuple):
@@ -67,15 +47,7 @@ class UpperPlan(NamedTuple):
 
     plan: LocalPlan
     reached: int  # n if found, else the deepest key time with a way for every group
-
-
-class _Shelves(NamedTuple):
-    """All that depends on the interval and the horizon."""
-
-    groups: Mapping[DofGroup, Group]
-    scratch: Mapping[DofGroup, Scratch]
-    roots: RootWays
-    chain: Chain
+    dressing: Dressing  # the last attempt, which can say why there is no way
 
 
 class UpperBody:
@@ -97,75 +69,84 @@ class UpperBody:
             settings.step_weight, settings.near_weight, settings.comfort, settings.keeping, settings.rounds
         )
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
-        self._shelves: dict[tuple[float, int], _Shelves] = {}
+        self._shelves: dict[tuple[float, int], Shelves] = {}
+        self._own_body = OwnBody(self._model, self.goals)
+        self._refinement = RefinementSettings()
+        self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
+        self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
         self._boxes = scene.boxes.table
         self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
         self._legs = LoweredLegs(self._model, scene.boxes)
 
-    def plan(self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None = None) -> UpperPlan:
-        """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's."""
+    def plan(
+        self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None = None, *, refine: bool = True
+    ) -> UpperPlan:
+        """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's.
+
+        Postures are added where it is blocked if `refine`.
+        """
+        for attempt in range(self.settings.refinements + 1):
+            dressing = self._dressing(path, start, velocity, kept)
+            found = dressing.motion(held=kept is not None)
+            if found is not None:
+                return UpperPlan(found, path.horizon, dressing)
+            if not refine or attempt == self.settings.refinements or not self._refine(dressing):
+                break
+        plan = LocalPlan(PlanStatus.EXHAUSTED, dressing.goals[:0], dressing.goals, dressing.ledger.evidence())
+        return UpperPlan(plan, dressing.deepest, dressing)
+
+    def reset(self) -> None:
+        """Forget the postures that were added."""
+        for group, pool in self._pools.items():
+            if pool.clear():
+                self._take_in(group)
+
+    def _dressing(self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
-        before = goals if kept is None else kept
-        ledger = _Ledger(shelves, self._weights)
         roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval)
-        boxes = self._near(path, shelves.chain)
+        boxes, rows = self._near(path, shelves.chain)
         margins, skins = self._margins(path)
+        return Dressing(
+            shelves, self._weights, self.settings, self._own_body, self._legs, path, goals, goals if kept is None else kept,
+            start, velocity, roots, boxes, rows, margins, skins,
+        )  # fmt: skip
 
-        def task(group: DofGroup, carriers: Longs, extra: Floats32) -> GroupTask:
-            at = columns_of(group)
-            return GroupTask(
-                np.ascontiguousarray(goals[:, at]), np.ascontiguousarray(before[:, at]), start[at], velocity[at],
-                margins, skins, extra, roots, carriers, boxes, path.interval,
-            )  # fmt: skip
+    def _refine(self, dressing: Dressing) -> bool:
+        """Take in postures that are free where a group was blocked; whether there are any that were not known."""
+        changed = {group for group, found in self._reaching(dressing) if self._pools[group].add(found)}
+        for group in changed:
+            self._take_in(group)
+        return bool(changed)
 
-        waist_group = shelves.groups[DofGroup.WAIST]
-        none = {group: _no_extra(shelves.groups[group], len(goals)) for group in LOCAL_GROUPS}
-        extra = none[DofGroup.WAIST].copy()
-        crouch = self._crouch(path, waist_group, goals, before, start)
+    def _reaching(self, dressing: Dressing) -> Iterator[tuple[DofGroup, Floats]]:
+        """Postures for the slices from the blocked one on: of the waist, and of the arm that was blocked."""
+        blocked, failed = dressing.blocked_slice(), dressing.blocked[0]
+        last = min(blocked.depth + self._refinement.slices, dressing.path.horizon + 1)
+        for depth in range(blocked.depth, last):
+            for number in sorted({0, failed}):
+                group = LOCAL_GROUPS[number]
+                here = blocked._replace(depth=depth, goal=dressing.goals[depth, columns_of(group)])
+                limb, known = self._limbs[group], np.concatenate([self._points[group], self._pools[group].postures])
+                if number == 0:
+                    yield group, waists_for(limb, self._reaches[group], known, here, self._refinement)
+                else:
+                    reach = self._reaches[group]
+                    yield group, arms_for(self._own_body, number - 1, limb, reach, known, here, self._refinement)
 
-        def waist_way(keeping: bool) -> GroupWay:
-            for _ in range(ROUNDS):
-                prices = _only_kept(extra) if keeping else extra
-                way = ledger.search(DofGroup.WAIST, task(DofGroup.WAIST, roots, prices))
-                if way.reached < path.horizon or not crouch.rules_out(way.keys, way.velocities, extra):
-                    return way
-            return way._replace(reached=0)
+    def _take_in(self, group: DofGroup) -> None:
+        """Link a group's postures anew; what was computed for its old set is forgotten."""
+        for key in [key for key in self._postures if key[0] is group]:
+            del self._postures[key]
+        for (interval, horizon), shelves in self._shelves.items():
+            self._shelves[interval, horizon] = shelves.with_group(group, *self._shelf(group, interval, horizon))
 
-        deepest = 0
-        for attempt in range(self.settings.waist_rounds):
-            keeping = attempt == 1 and kept is not None
-            waist = waist_way(keeping)
-            if waist.reached < path.horizon:
-                deepest = max(deepest, waist.reached)
-                if keeping:
-                    continue
-                break
-            ways = [waist]
-            for group in LOCAL_GROUPS[1:]:
-                way = ledger.search(group, task(group, waist.slots, none[group]))
-                if way.reached < path.horizon:
-                    break
-                ways.append(way)
-            else:
-                keys = np.concatenate([way.keys for way in ways], axis=1)
-                velocities = np.concatenate([way.velocities for way in ways], axis=1)
-                plan = LocalPlan(PlanStatus.FOUND, keys, goals, ledger.evidence(), velocities=velocities)
-                return UpperPlan(plan, path.horizon)
-            deepest = max(deepest, way.reached)
-            if not keeping:
-                frames = _frames_at(shelves.roots, roots, way.reached + 1)
-                _make_waist_yield(
-                    self._model, extra, waist_group, waist, shelves.groups[group], way.reached + 1, frames, boxes
-                )
-        return UpperPlan(LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence()), deepest)
-
-    def _crouch(self, path: RootPath, group: Group, goals: Floats, kept: Floats, start: Floats) -> Crouch:
-        """What the legs say to the lowerings of the waist's nodes, in the order of their prices."""
-        at, postures = columns_of(DofGroup.WAIST), group.postures
-        lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
-        lanes[: len(postures.configurations)] = postures.configurations
-        return Crouch(self._legs, path, node_lowerings(lanes, goals[:, at], kept[:, at], start[at]))
+    def _shelf(self, group: DofGroup, interval: float, horizon: int) -> tuple[Group, Scratch]:
+        count, postures = _SHELVES * (horizon + 1), self.postures(group, interval)
+        width, size = postures.moves.shape[1], group.size
+        tables, ways = new_tables(count, size, width), new_limb_ways(count, size, carries=group is DofGroup.WAIST)
+        made = Group(postures, levers_of(self._model, postures.limb), tables, ways)
+        return made, new_scratch(horizon, width + OWN)
 
     def _margins(self, path: RootPath) -> tuple[Floats, Floats]:
         """Clearances of nodes (n+1,) and of the motion in each interval (n,): less is asked for soon than later."""
@@ -173,114 +154,42 @@ class UpperBody:
         shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * times / settings.soon, 1.0)
         return settings.margin * shares, settings.skin * shares[:-1]
 
-    def _near(self, path: RootPath, chain: Chain) -> Floats:
-        """The boxes that the upper body could reach, or nearly."""
+    def _near(self, path: RootPath, chain: Chain) -> tuple[Floats, Longs]:
+        """The boxes that the upper body could reach, or nearly, and their numbers in the scene."""
         low, high = path.states[:, :2].min(axis=0), path.states[:, :2].max(axis=0)
         places = self._boxes[:, [0, 2]]
         gaps = np.linalg.norm(places - np.clip(places, low, high), axis=1)
-        near: Floats = self._boxes[gaps - self._box_radii < chain.span + _NEARLY]
-        return near
+        rows = np.flatnonzero(gaps - self._box_radii < chain.span + _NEARLY)
+        return self._boxes[rows], rows
 
-    def _shelves_for(self, path: RootPath) -> _Shelves:
+    def _shelves_for(self, path: RootPath) -> Shelves:
         key = (path.interval, path.horizon)
         if key not in self._shelves:
             self._shelves[key] = self._new_shelves(*key)
         return self._shelves[key]
 
-    def _new_shelves(self, interval: float, horizon: int) -> _Shelves:
-        count = _SHELVES * (horizon + 1)
-        groups, scratch = {}, {}
-        for group in LOCAL_GROUPS:
-            postures = self.postures(group, interval)
-            width, size = postures.moves.shape[1], group.size
-            groups[group] = Group(
-                postures,
-                levers_of(self._model, postures.limb),
-                new_tables(count, size, width),
-                new_limb_ways(count, size, carries=group is DofGroup.WAIST),
-            )
-            scratch[group] = new_scratch(horizon, width + OWN)
+    def _new_shelves(self, interval: float, horizon: int) -> Shelves:
+        made = {group: self._shelf(group, interval, horizon) for group in LOCAL_GROUPS}
+        groups = {group: shelf for group, (shelf, _) in made.items()}
+        scratch = {group: room for group, (_, room) in made.items()}
         reach = max(groups[arm].postures.reach for arm in LOCAL_GROUPS[1:])
-        return _Shelves(
-            groups, scratch, new_root_ways(count), chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
-        )
+        chain = chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
+        return Shelves(groups, scratch, new_root_ways(_SHELVES * (horizon + 1)), chain)
 
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""
         if (group, interval) not in self._postures:
             speed = self.settings.waist_speed if group is DofGroup.WAIST else self.settings.arm_speed
-            self._postures[group, interval] = postures_of(self._limbs[group], self._points[group], speed * interval)
+            points = np.concatenate([self._points[group], self._pools[group].postures])
+            postures = postures_of(self._limbs[group], points, speed * interval)
+            self._postures[group, interval] = postures._replace(reach=self._reaches[group])
         return self._postures[group, interval]
 
 
-def _frames_at(ways: RootWays, roots: Longs, depth: int) -> tuple[Floats, Floats]:
-    """The pelvis frame (3,), (4,) at a key time after the first."""
-    at = roots[depth - 1]
-    return ways.places[at, SWEEP], ways.turns[at, SWEEP]
-
-
-def _make_waist_yield(
-    model: BodyModel,
-    extra: Floats32,
-    group: Group,
-    waist: GroupWay,
-    arm: Group,
-    depth: int,
-    frame: tuple[Floats, Floats],
-    boxes: Floats,
-) -> None:
-    """Make waist postures dearer where an arm had no way, and rule out those that leave it none at all."""
-    points = group.postures.configurations
-    width = extra.shape[1] - OWN
-    for near in range(max(depth - 1, 1), min(depth + 2, len(extra))):
-        alike = np.flatnonzero(np.linalg.norm(points - waist.keys[near], axis=1) < _ALIKE)
-        extra[near, alike] += _DEARER
-        extra[near, width:] += _DEARER
-    candidates = np.flatnonzero(np.isfinite(waist.price[depth, : len(points)]))
-    places, turns = chest_frames(model, points[candidates])
-    count = len(candidates)
-    chests = compose(np.tile(frame[0], (count, 1)), np.tile(frame[1], (count, 1)), places, turns)
-    free = any_free(arm.postures, *chests, boxes)
-    extra[depth, candidates[~free]] = np.inf
-
-
-def _no_extra(group: Group, depths: int) -> Floats32:
-    return np.zeros((depths, group.postures.moves.shape[1] + OWN), np.float32)
-
-
-def _only_kept(extra: Floats32) -> Floats32:
-    """Prices that hold the waist to the last plan's way while there is one."""
-    prices = extra + np.float32(_DEARER)
-    kept = extra.shape[1] - OWN + KEPT
-    prices[:, kept] = np.where(np.isinf(extra[:, kept]), np.inf, 0.0)
-    return prices
-
-
-class _Ledger:
-    """Searches one group after the other and keeps what each group's searches cost together."""
-
-    def __init__(self, shelves: _Shelves, weights: Weights) -> None:
-        self._shelves, self._weights = shelves, weights
-        self._rows: dict[DofGroup, GroupEvidence] = {}
-
-    def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
-        """`search_group`, entered under `group`."""
-        began = perf_counter_ns()
-        shelves = self._shelves
-        waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
-        way: GroupWay = search_group(
-            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.scratch[group]
-        )
-        spent = perf_counter_ns() - began
-        status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
-        old = self._rows.get(group, GroupEvidence(group, status, 0, 0, 0, 0))
-        checks, nodes, nanoseconds = old.checks + way.checks, old.nodes + way.nodes, old.nanoseconds + spent
-        self._rows[group] = GroupEvidence(group, status, checks, nodes, 0, nanoseconds)
-        return way
-
-    def evidence(self) -> tuple[GroupEvidence, ...]:
-        """A row for each group that was searched, in order."""
-        return tuple(self._rows.values())
+def _reach(group: DofGroup, limb: Limb) -> float:
+    """Farther from the limb's frame than any posture within the limits gets, metres."""
+    ends = pose(limb, drawn_postures(group, np.zeros(group.size), 2048, 3.0)).transpose(0, 2, 1).reshape(-1, 3)
+    return float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE
 
 
 def _points(limb: Limb, clips: tuple[MotionClip, ...], settings: ExactSettings) -> Floats:

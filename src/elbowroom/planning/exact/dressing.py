@@ -1,0 +1,336 @@
+"""One plan of the upper body along one root path: group after group, and all together where that fails.
+
+The groups are searched in the order of the paper, each arm under the waist's way and clear of the body, the right arm
+of the left one too. Where an arm has no way, the waist's last way is tried, under which the arms had theirs; then the
+joint step decides.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import perf_counter_ns
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.group_search import (
+    Group,
+    GroupTask,
+    GroupWay,
+    Scratch,
+    Weights,
+    own_postures,
+    search_group,
+)
+from elbowroom.planning.exact.joint_step import JointSettings, JointStep
+from elbowroom.planning.exact.lattice import KEPT, OWN
+from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.reaching import Blocked
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.tables import START, held_clearance
+from elbowroom.planning.exact.together import Guide, arm_nodes, guide, surroundings, waist_nodes
+from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
+from elbowroom.planning.exact.why_not import blockade
+from elbowroom.planning.interpolation import hermite
+from elbowroom.planning.lowered_legs import LoweredLegs
+from elbowroom.planning.result import Blockade, GroupEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.root_path import RootPath, sample_states
+from elbowroom.planning.self_pairs import self_clearances
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Longs = NDArray[np.int64]
+
+_DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
+_NATURAL = 1e-6  # radians from the goal
+_LOOKS = 6  # of a key interval at which the body is held against itself
+_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
+
+
+class Shelves(NamedTuple):
+    """All that depends on the interval and the horizon."""
+
+    groups: Mapping[DofGroup, Group]
+    scratch: Mapping[DofGroup, Scratch]
+    roots: RootWays
+    chain: Chain
+
+    def with_group(self, group: DofGroup, made: Group, room: Scratch) -> "Shelves":
+        """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
+        kept = made._replace(ways=self.groups[group].ways)
+        return self._replace(groups={**self.groups, group: kept}, scratch={**self.scratch, group: room})
+
+
+class Ways(NamedTuple):
+    """The ways of the groups, in order, as far as they were found; and the one that ended it."""
+
+    ways: tuple[GroupWay, ...]
+    failed: GroupWay | None
+
+
+@dataclass(eq=False)
+class Dressing:
+    """One root path to be dressed."""
+
+    shelves: Shelves
+    weights: Weights
+    settings: ExactSettings
+    own_body: OwnBody
+    legs: LoweredLegs
+    path: RootPath
+    goals: Floats  # (n+1, 10)
+    kept: Floats  # (n+1, 10)
+    start: Floats  # (10,)
+    velocity: Floats  # (10,)
+    roots: Longs  # (n,)
+    boxes: Floats  # (B, 15)
+    rows: Longs  # (B,) their numbers in the scene
+    margins: Floats  # (n+1,)
+    skins: Floats  # (n,)
+
+    def __post_init__(self) -> None:
+        self.ledger = Ledger(self.shelves, self.weights)
+        self.deepest = 0  # key time that all groups reached in the best attempt
+        self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
+        self._waist: GroupWay | None = None
+        self._crouching = self._none(DofGroup.WAIST)  # infinite where the legs have no room to crouch as a node does
+
+    def motion(self, *, held: bool) -> LocalPlan | None:
+        """The motion, if there is one; `held`: the last plan's waist may be tried."""
+        found = self.apart()
+        if found.failed is not None and held:
+            found = self.with_kept_waist()
+        if found.failed is not None:
+            found = self.together()
+        if found.failed is not None:
+            return None
+        keys = np.concatenate([way.keys for way in found.ways], axis=1)
+        velocities = np.concatenate([way.velocities for way in found.ways], axis=1)
+        return LocalPlan(PlanStatus.FOUND, keys, self.goals, self.ledger.evidence(), velocities=velocities)
+
+    def apart(self) -> Ways:
+        """Each group by itself."""
+        self._waist = self._waist_way(self._crouching)
+        found = self._arms(self._waist, None)
+        self.blocked = len(found.ways), min(self.last_reached + 1, self.path.horizon)
+        return found
+
+    def with_kept_waist(self) -> Ways:
+        """The waist held to the last plan's way while there is one."""
+        prices = np.full_like(self._crouching, _DEARER)
+        prices[:, prices.shape[1] - OWN + KEPT] = 0.0
+        return self._arms(self._waist_way(prices + self._crouching), None)
+
+    def together(self) -> Ways:
+        """All groups at once, guided by the joint step."""
+        waist = self._waist
+        assert waist is not None
+        if waist.reached < self.path.horizon:
+            return Ways((), waist)
+        step = self.joint_step(waist)
+        ways = Ways((), waist)
+        for _ in range(self.settings.guided_rounds):
+            began = perf_counter_ns()
+            answer = step.search()
+            self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)
+            if answer.status is not PlanStatus.FOUND:
+                break
+            guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
+            ways = self._arms(self._waist_way(self._crouching, guides[0]), guides)
+            if len(ways.ways) == len(LOCAL_GROUPS):
+                break
+            failed, at = len(ways.ways), min(self.last_reached, self.path.horizon - 1)
+            step.steps[failed][at, answer.nodes[at, failed], answer.nodes[at + 1, failed]] = np.inf
+        return ways
+
+    def blockade(self) -> Blockade:
+        """Why there is no way."""
+        assert self._waist is not None
+        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.rows)
+
+    def blocked_slice(self) -> Blocked:
+        """The slice that the first group to fail could not get through."""
+        number, depth = self.blocked
+        waist = self._waist
+        assert waist is not None
+        at, known = columns_of(LOCAL_GROUPS[number]), self.shelves.groups[DofGroup.WAIST].postures.configurations
+        prices = waist.price[depth, : len(known)]
+        order = np.argsort(prices, kind="stable")
+        waists = known[order[np.isfinite(prices[order])]]
+        if depth < len(waist.keys):
+            waists = np.concatenate([waist.keys[depth : depth + 1], waists])
+        around = surroundings(self.path.states, self.shelves.roots, self.roots, self.boxes)
+        return Blocked(depth, around, self.goals[depth, at], float(self.margins[depth]), waists)
+
+    def joint_step(self, waist: GroupWay) -> JointStep:
+        """The joint step of this path, nothing filled in yet."""
+        groups, task = self.shelves.groups, self._task(DofGroup.WAIST, self.roots, None, None)
+        waists = groups[DofGroup.WAIST].ways
+        arms = []
+        for group in LOCAL_GROUPS[1:]:
+            arm_task, most = self._task(group, waist.slots, None, None), np.inf
+            if waist.reached == self.path.horizon:
+                at = waist.slots[0]
+                clearance, _ = held_clearance(
+                    groups[group].postures, arm_task.start, waists.places[at], waists.turns[at], self.boxes, START
+                )
+                most = max(0.5 * clearance, 0.0)
+            arms.append(arm_nodes(groups[group], arm_task, self.weights.keeping, most))
+        return JointStep(
+            self.own_body,
+            waist_nodes(groups[DofGroup.WAIST], task, waist, self.weights.keeping),
+            (arms[0], arms[1]),
+            surroundings(self.path.states, self.shelves.roots, self.roots, self.boxes),
+            JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
+        )
+
+    def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> GroupWay:
+        """The waist's way on which the legs have room to crouch as it does."""
+        at, postures = columns_of(DofGroup.WAIST), self.shelves.groups[DofGroup.WAIST].postures
+        kept, closed = self.kept[:, at], prices.copy()
+        if follow is not None:
+            kept = follow.keys
+            closed[:, closed.shape[1] - OWN + KEPT] = 0.0
+        lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
+        lanes[: len(postures.configurations)] = postures.configurations
+        crouch = Crouch(self.legs, self.path, node_lowerings(lanes, self.goals[:, at], kept, self.start[at]))
+        for _ in range(ROUNDS):
+            way = self._search(DofGroup.WAIST, self.roots, closed, follow)
+            if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
+                if follow is None:
+                    self._crouching[np.isinf(closed)] = np.inf
+                return way
+        return way._replace(reached=0)
+
+    def _arms(self, waist: GroupWay, guides: list[Guide] | None) -> Ways:
+        """The arms under the waist's way."""
+        self.last_reached = waist.reached
+        if waist.reached < self.path.horizon:
+            self.deepest = max(self.deepest, waist.reached)
+            return Ways((), waist)
+        ways, touched = [waist], [self._none(group) for group in LOCAL_GROUPS[1:]]
+        for _ in range(self.settings.self_rounds):
+            ways = [waist]
+            for side, group in enumerate(LOCAL_GROUPS[1:]):
+                follow = None if guides is None else guides[1 + side]
+                extra = self._folded(side, ways, follow) + touched[side]
+                way = self._search(group, waist.slots, extra, follow)
+                self.last_reached = way.reached
+                if way.reached < self.path.horizon:
+                    self.deepest = max(self.deepest, way.reached)
+                    return Ways(tuple(ways), way)
+                ways.append(way)
+            contact = self._self_contact(ways)
+            if contact is None:
+                return Ways(tuple(ways), None)
+            self._rule_out(touched, ways, *contact)
+            self.last_reached = contact[1]
+        self.deepest = max(self.deepest, self.last_reached)
+        return Ways(tuple(ways[:-1]), ways[-1])
+
+    def _rule_out(self, touched: list[Floats32], ways: list[GroupWay], side: int, interval: int) -> None:
+        """Rule out the postures at the ends of an interval in which an arm runs into the body, and those like them."""
+        way, group = ways[1 + side], self.shelves.groups[LOCAL_GROUPS[1 + side]]
+        width = group.postures.moves.shape[1]
+        own, _, _ = own_postures(group, self._task(LOCAL_GROUPS[1 + side], ways[0].slots, None, None))
+        for t in range(max(interval, 1), interval + 2):
+            nodes = np.concatenate([group.postures.configurations, own[t]])
+            near = np.linalg.norm(nodes - way.keys[t], axis=1) < _ALIKE
+            size = len(group.postures.configurations)
+            touched[side][t, np.flatnonzero(near[:size])] = np.inf
+            touched[side][t, width + np.flatnonzero(near[size:])] = np.inf
+
+    def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None) -> Floats32:
+        """Infinite where a node of an arm touches the body under the ways found before."""
+        group = LOCAL_GROUPS[1 + side]
+        own, _, _ = own_postures(self.shelves.groups[group], self._task(group, ways[0].slots, None, follow))
+        waists = ways[0].keys
+        natural = np.abs(waists - self.goals[:, columns_of(DofGroup.WAIST)]).max(axis=1) < _NATURAL
+        other = None
+        if side == 1:
+            other = ways[1].keys
+            natural &= np.abs(other - self.goals[:, columns_of(LOCAL_GROUPS[1])]).max(axis=1) < _NATURAL
+        postures = self.shelves.groups[group].postures
+        folded = self.own_body.folded_nodes(side, postures, own, natural, waists, self.path.states, other)
+        return np.where(folded, np.float32(np.inf), np.float32(0.0))
+
+    def _self_contact(self, ways: list[GroupWay]) -> tuple[int, int] | None:
+        """The arm and the first interval in which the shown motion runs into the body, or None."""
+        keys = np.concatenate([way.keys for way in ways], axis=1)
+        if np.abs(keys - self.goals).max() < _NATURAL:
+            return None
+        rates = np.concatenate([way.velocities for way in ways], axis=1)
+        times = self.path.interval * np.arange(float(len(keys)))
+        looks = self.path.interval / _LOOKS * np.arange(1.0, _LOOKS * self.path.horizon)
+        shown = _sampled(times, keys, rates, looks)
+        states = sample_states(self.path.states, self.path.interval, looks)
+        found = self_clearances(self.own_body.model, self.own_body.pairs, states, shown)
+        touching = np.flatnonzero(found.min(axis=0) < 0.0)
+        if not len(touching):
+            return None
+        arm = int(np.argmin(found[:, touching[0]]))
+        return min(arm, 1), int(looks[touching[0]] / self.path.interval)
+
+    def _none(self, group: DofGroup) -> Floats32:
+        return np.zeros((len(self.goals), self.shelves.groups[group].postures.moves.shape[1] + OWN), np.float32)
+
+    def _task(self, group: DofGroup, carriers: Longs, extra: Floats32 | None, follow: Guide | None) -> GroupTask:
+        at = columns_of(group)
+        kept = self.kept[:, at] if follow is None else follow.keys
+        return GroupTask(
+            np.ascontiguousarray(self.goals[:, at]), np.ascontiguousarray(kept), self.start[at], self.velocity[at],
+            self.margins, self.skins, self._none(group) if extra is None else extra, self.roots, carriers, self.boxes,
+            self.path.interval,
+        )  # fmt: skip
+
+    def _search(
+        self, group: DofGroup, carriers: Longs, extra: Floats32 | None = None, follow: Guide | None = None
+    ) -> GroupWay:
+        prices = extra if follow is None else follow.extra + (0.0 if extra is None else extra)
+        return self.ledger.search(group, self._task(group, carriers, prices, follow))
+
+
+@exact_kernel
+def _sampled(times: Floats, keys: Floats, rates: Floats, looks: Floats) -> Floats:
+    """The curve (L, d) at `looks` (L,)."""
+    out = np.empty((looks.shape[0], keys.shape[1]))
+    for i in range(looks.shape[0]):
+        out[i] = hermite(times, keys, rates, looks[i])[0]
+    return out
+
+
+class Ledger:
+    """Searches one group after the other and keeps what each group's searches cost together."""
+
+    def __init__(self, shelves: Shelves, weights: Weights) -> None:
+        self._shelves, self._weights = shelves, weights
+        self._rows: dict[DofGroup, GroupEvidence] = {}
+        self.joint: GroupEvidence | None = None
+
+    def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
+        """`search_group`, entered under `group`."""
+        began = perf_counter_ns()
+        shelves = self._shelves
+        waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
+        way: GroupWay = search_group(
+            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.scratch[group]
+        )
+        spent = perf_counter_ns() - began
+        status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
+        old = self._rows.get(group, GroupEvidence(group, status, 0, 0, 0, 0))
+        checks, nodes, nanoseconds = old.checks + way.checks, old.nodes + way.nodes, old.nanoseconds + spent
+        self._rows[group] = GroupEvidence(group, status, checks, nodes, 0, nanoseconds)
+        return way
+
+    def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
+        """What the joint step cost until now."""
+        before = 0 if self.joint is None else self.joint.nanoseconds
+        self.joint = GroupEvidence(DofGroup.WAIST, status, step.checks, step.states, 0, before + nanoseconds)
+
+    def evidence(self) -> tuple[GroupEvidence, ...]:
+        """A row for each group that was searched, in order."""
+        return tuple(self._rows.values())
