@@ -108,8 +108,8 @@ class UpperBody:
         boxes, rows = self._near(path, shelves.chain)
         margins, skins = self._margins(path)
         return Dressing(
-            shelves, self._weights, self.settings, self._own_body, self._legs, path, goals, goals if kept is None else kept,
-            start, velocity, roots, boxes, rows, margins, skins,
+            shelves, self._weights, self.settings, self._own_body, self._legs, path, goals,
+            goals if kept is None else kept, start, velocity, roots, boxes, rows, margins, skins,
         )  # fmt: skip
 
     def _refine(self, dressing: Dressing) -> bool:
