@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from elbowroom.body.dof import DofGroup
+from elbowroom.body.monotone_cubic import MonotoneCubic
 
 Floats = NDArray[np.float64]
 
@@ -31,13 +31,13 @@ class MotionClip:
         return float(self.times[-1] - self.times[0])
 
     @cached_property
-    def _curve(self) -> PchipInterpolator:
+    def _curve(self) -> MonotoneCubic:
         if not self.loop:
-            return PchipInterpolator(self.times, self.configurations, axis=0)
+            return MonotoneCubic(self.times, self.configurations)
         before, after = self.times[-3:-1] - self.duration, self.times[1:3] + self.duration
         times = np.concatenate([before, self.times, after])
         rows = np.concatenate([self.configurations[-3:-1], self.configurations, self.configurations[1:3]])
-        return PchipInterpolator(times, rows, axis=0)
+        return MonotoneCubic(times, rows)
 
     def sample(self, t: ArrayLike) -> Floats:
         """Configurations (..., d) at times `t` (...): a loop goes on for ever, any other clip rests at its ends."""

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from elbowroom.body.capsules import Capsules
+from elbowroom.body.nelder_mead import least_point
 from elbowroom.body.proportions import last_spine, proportional_capsules, stature
 from elbowroom.body.skeleton import Skeleton
 
@@ -159,10 +159,7 @@ def _half(points: Floats, direction: Floats) -> Floats:
 def _search(points: Floats, first: Floats, share: float, evaluations: int) -> Floats:
     step = 0.1 * float(np.ptp(points, axis=0).max()) + 1e-6
     simplex = first + np.vstack([np.zeros(6), step * np.eye(6)])
-    options = {"maxfev": evaluations, "initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-8}
-    found = minimize(_volume, first, args=(points, share), method="Nelder-Mead", options=options)
-    best: Floats = found.x
-    return best
+    return least_point(lambda ends: _volume(ends, points, share), simplex, evaluations, 1e-4, 1e-8)
 
 
 def _volume(ends: Floats, points: Floats, share: float) -> float:

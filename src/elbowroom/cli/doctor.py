@@ -25,6 +25,8 @@ def doctor(
     sessions: Annotated[int, typer.Option(min=1, max=8, help="How many live sessions at once.")] = 1,
     seconds: Annotated[float, typer.Option(min=2.0, max=600.0, help="How long to measure.")] = 10.0,
     scene: Annotated[str, typer.Option(help="The scene of the measured session.")] = "a",
+    startup: Annotated[bool, typer.Option("--startup", help="Measure how long a start takes.")] = False,
+    first_run: Annotated[bool, typer.Option("--first-run", help="And the first one, with all to compile.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
@@ -36,6 +38,11 @@ def doctor(
 
         with Console(stderr=True).status(f"Measuring live sessions for {seconds:g} s ..."):
             facts["session"] = asdict(measure_session(seconds, scene, sessions))
+    if startup or first_run:
+        from elbowroom.cli.startup import measure_startup
+
+        with Console(stderr=True).status("Starting programs and servers ..."):
+            facts["startup"] = asdict(measure_startup(scene, 3, first_run=first_run))
     faults = _faults(facts)
     facts["faults"] = faults
     if json:
@@ -128,6 +135,11 @@ def _faults(facts: dict[str, Any]) -> list[str]:
         faults.append("a live session needs more processor time than its budget")
     if cost and cost["resident_megabytes"] > cost["resident_budget_megabytes"]:
         faults.append("a live session needs more memory than its budget")
+    start = facts.get("startup")
+    if start and start["program_seconds"] > start["warm_budget_seconds"]:
+        faults.append("the first plan of a program comes later than its budget")
+    if start and (start["first_run_seconds"] or 0.0) > start["first_run_budget_seconds"]:
+        faults.append("the first run takes longer than its budget")
     return faults
 
 
@@ -141,6 +153,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         ("page", f"built, {client['megabytes']} MB" if client["built"] else "not built"),
         ("wheel", f"{wheel['file'] or 'packed from here'}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})"),
         *_session_rows(facts.get("session")),
+        *_startup_rows(facts.get("startup")),
         *(("fault", fault) for fault in facts["faults"]),
     ]
     return "\n".join(f"{name:<10} {text}" for name, text in rows)
@@ -159,3 +172,17 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
         ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),
         ("", f"{frames}; {answers}; {cost['late_plans']} plans too late"),
     ]
+
+
+def _startup_rows(start: dict[str, Any] | None) -> list[tuple[str, str]]:
+    if start is None:
+        return []
+    program = f"{start['program_seconds']:.1f} s ({start['program_cpu_seconds']:.1f} s of a processor)"
+    rows = [
+        ("start", f"first plan of a program after {program}, budget {start['warm_budget_seconds']:g} s"),
+        ("", f"first plan on the page {start['page_seconds']:.1f} s after the server's start"),
+    ]
+    if start["first_run_seconds"] is not None:
+        first = f"{start['first_run_seconds']:.0f} s, budget {start['first_run_budget_seconds']:g} s"
+        rows.append(("", f"the same with all kernels to compile: {first}"))
+    return rows

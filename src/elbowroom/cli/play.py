@@ -52,7 +52,7 @@ def play(
         warm_up_with_progress(library, console)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)
-        serve(library, opened, host, lambda: _ready(url_of(opened), open_page))
+        serve(library, opened, host, lambda: _ready(library, url_of(opened), open_page))
     console.print("Stopped.")
 
 
@@ -61,7 +61,7 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     from elbowroom.server.kernel_cache import kernels
-    from elbowroom.server.warmup import compile_apart, warm_up
+    from elbowroom.server.warmup import compile_apart, first_steps
 
     columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
@@ -73,7 +73,7 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
                 console.print("Compiling kernels: about a minute, once.")
 
         compile_apart(report)
-        warm_up(library, report)
+        first_steps(library, report)
 
 
 def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None:
@@ -93,7 +93,10 @@ def _tell_openness(console: "Console", opened: "socket.socket") -> None:
         )
 
 
-def _ready(url: str, open_page: bool) -> None:
+def _ready(library: "Library", url: str, open_page: bool) -> None:
+    from elbowroom.server.warmup import warm_up
+
+    threading.Thread(target=warm_up, args=(library,), daemon=True).start()  # loads the rest while the page opens
     print(f"Elbowroom is at {url}  (Ctrl-C ends it)", flush=True)
     if open_page and _has_display():
         threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

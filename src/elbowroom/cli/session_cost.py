@@ -1,12 +1,14 @@
 """What live sessions cost and how punctual they are: a real server in its own process, real clients that walk about."""
 
 import json
+import os
 import re
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
@@ -59,14 +61,31 @@ class _Tally:
 def measure_session(seconds: float, scene: str, sessions: int = 1) -> SessionCost:
     """Run a server and clients for `seconds`; raises `InputError` if the server does not start."""
     began = time.perf_counter()
+    with started_server(scene, dict(os.environ)) as url:
+        return _measured(url, seconds, sessions, time.perf_counter() - began)
+
+
+@contextmanager
+def started_server(scene: str, environment: dict[str, str]) -> Iterator[str]:
+    """The address of `elbowroom play` in a process of its own; raises `InputError` if it does not start."""
     command = "import sys; from elbowroom.cli import main; sys.argv[0] = 'elbowroom'; main()"
-    arguments = ["play", "--port", "0", "--no-open", "--scene", scene]
-    with subprocess.Popen([sys.executable, "-c", command, *arguments], stdout=subprocess.PIPE, text=True) as server:
+    call = [sys.executable, "-c", command, "play", "--port", "0", "--no-open", "--scene", scene]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, text=True, env=environment) as server:
         try:
-            url = _url(server)
-            return _measured(url, seconds, sessions, time.perf_counter() - began)
+            yield _url(server)
         finally:
             server.terminate()
+
+
+def wait_for_plan(url: str) -> None:
+    """Hold the forward key until a plan has come."""
+    with _client(url) as client:
+        client.send(encode(Input(seq=1, forward=1.0)))
+        while True:
+            message = client.recv(timeout=_PATIENCE)
+            told = None if isinstance(message, bytes) else decode_server(message)
+            if isinstance(told, Status) and told.plans > 0:
+                return
 
 
 def _url(server: "subprocess.Popen[str]") -> str:

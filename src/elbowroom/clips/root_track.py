@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.strides import Strides, strides_of
@@ -55,6 +54,8 @@ def seen_from_root(motion: BodyMotion, states: Floats) -> Floats:
 
 def _smooth(values: Floats, frame_time: float) -> Floats:
     """Gaussian filter along time; beyond its ends a motion goes on as it began and ended."""
+    from scipy.ndimage import gaussian_filter1d  # takes longer to import than a whole start
+
     if len(values) < 3:
         return values.copy()
     spread = _SMOOTH / frame_time

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry.quaternion import angle_between
@@ -80,6 +79,8 @@ def _ahead(motion: BodyMotion, heading: Floats, side: str) -> Floats:
 
 def _peaks(ahead: Floats, motion: BodyMotion, closed: int) -> Floats:
     """Frames at which an ankle is farthest ahead; of a loop those of one round, found on three."""
+    from scipy.signal import find_peaks  # takes longer to import than a whole start
+
     size = _STEP * float(motion.rest[0, 1])
     distance = max(int(_SOONEST / motion.frame_time), 1)
     if not closed:

@@ -30,6 +30,7 @@ _WALK = [
     (10, Input(seq=3, turn=1.0, strafe=0.5)),
     (30, Input(seq=4)),
 ]
+_FIRST_STEPS = [(1, Input(seq=1)), (12, Input(seq=2, forward=1.0))]
 
 
 class _Listener(event.Listener):
@@ -54,19 +55,25 @@ def warm_up(library: Library, report: Report | None = None) -> None:
     """Walk, turn and stand a moment in the library's first scene with its first avatar: every planner, the canned walk.
 
     `report(kernel, number)` hears of each kernel that must be compiled; with all of them cached it hears nothing.
-    Raises `InputError` if the avatar cannot stand in that scene: better now than when a page is open.
+    Raises `InputError` if the avatar cannot stand in that scene.
     """
     with event.install_listener("numba:compile", _Listener(report)) if report else nullcontext():
         for planner in PLANNERS:
-            _walk_a_moment(library, planner)
+            _walk_a_moment(library, planner, _WALK)
 
 
-def _walk_a_moment(library: Library, planner: str) -> None:
+def first_steps(library: Library, report: Report | None = None) -> None:
+    """The beginning of that walk with the planner that sessions begin with: what a page needs at once."""
+    with event.install_listener("numba:compile", _Listener(report)) if report else nullcontext():
+        _walk_a_moment(library, library.walk.planner, _FIRST_STEPS)
+
+
+def _walk_a_moment(library: Library, planner: str, held_inputs: list[tuple[int, Input]]) -> None:
     settings = replace(library.walk, planner=planner)
     walk = Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), settings)
     stage, now = Stage(walk, 0.0), 0.0
     stage.overlays = Overlays(capsules=True, plan=True)
-    for frames, held in _WALK:
+    for frames, held in held_inputs:
         stage.obey(held, now)
         for _ in range(frames):
             now += STEP
