@@ -195,7 +195,7 @@ def test_a_file_dropped_on_the_page_becomes_an_avatar(page: Page) -> None:
     data = stock_avatar_path().read_bytes()
     answer = page.post("/api/avatars?name=mine.vrm", content=data)
     assert answer.status_code == 201
-    choice = answer.json()
+    choice = answer.json()["avatar"]
     assert page.get(f"/avatars/{choice['id']}.glb").content == data
     assert choice in page.get("/api/catalog").json()["avatars"]
 

@@ -1,8 +1,8 @@
 /** The page: brings session, picture, controls and panels together, a frame at a time. */
 
-import { uploadAvatar } from "./avatar/upload";
+import { uploadFile } from "./avatar/upload";
 import { FrameStats } from "./frame_stats";
-import type { AvatarMessage, Catalog, Crossed, Loading, Notice, Plan, SceneMessage, Settings, Status } from "./generated/messages";
+import type { AvatarMessage, Catalog, ClipMessage, Crossed, Loading, Notice, Plan, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
 import { Controls } from "./input/controls";
 import type { Action } from "./input/keyboard";
 import { PointerInput } from "./input/pointer";
@@ -106,6 +106,10 @@ export class App implements SessionListener, MenuListener {
       .finally(() => this.veil.download(false));
   }
 
+  clip(message: ClipMessage): void {
+    this.menu.clips.show(message);
+  }
+
   avatarLost(id: string): void {
     if (this.lastFile) this.file(this.lastFile);
     else this.notices.show("warning", `The server has no avatar "${id}"; the stock one stands in.`);
@@ -161,16 +165,27 @@ export class App implements SessionListener, MenuListener {
   file(file: File): void {
     this.lastFile = file;
     this.veil.upload(file.name);
-    uploadAvatar(file)
-      .then(({ id, title }) => {
-        this.menu.addAvatar(id, title);
-        this.session.configure({ avatar: id });
-      })
+    uploadFile(file)
+      .then((uploaded) => this.use(uploaded))
       .catch((error: unknown) => {
         this.lastFile = null;
         this.notices.show("error", words(error));
       })
       .finally(() => this.veil.upload(null));
+  }
+
+  /** An avatar is put on, a motion is played; the motions of an avatar's own file wait in the menu. */
+  private use({ avatar, clips }: Uploaded): void {
+    this.menu.clips.add(clips);
+    if (avatar) {
+      this.menu.addAvatar(avatar.id, avatar.title);
+      this.session.configure({ avatar: avatar.id });
+      const [count, them] = clips.length === 1 ? ["one motion clip", "it"] : [`${clips.length} motion clips`, "them"];
+      if (clips.length > 0) this.notices.show("info", `${avatar.title} brings ${count}: choose ${them} in the menu.`);
+    } else if (clips[0]) {
+      this.lastFile = null;
+      this.session.configure({ clip: clips[0].id });
+    }
   }
 
   menuCovers(pixels: number): void {

@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom import __version__
-from elbowroom.cli import bench, doctor, gauntlet, play, replay, table1, verify, walk
+from elbowroom.cli import bench, clips, doctor, gauntlet, play, replay, table1, verify, walk
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -83,6 +83,7 @@ def _one_line(error: Any) -> str:
 
 
 app.command("play", epilog=play.EXAMPLES)(play.play)
+app.command("clips", epilog=clips.EXAMPLES)(clips.clips)
 app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
 app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
 app.command("table1", epilog=table1.EXAMPLES)(table1.table1)

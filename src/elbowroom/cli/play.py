@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli import clip_options
 from elbowroom.cli.output import PLANNER_HELP
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     import socket
+    from collections.abc import Callable
 
     from rich.console import Console
 
@@ -33,21 +35,33 @@ def play(
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,
+    swing: clip_options.Swing = None,
+    dodge: clip_options.Dodge = None,
+    unit: clip_options.Unit = None,
+    up: clip_options.Up = None,
+    fps: clip_options.Fps = None,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
+    from elbowroom.server.library import Library
+    from elbowroom.server.walk import WalkSettings
+
+    settings = WalkSettings(planner=planner, queue_size=queue)
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
+    serve_until_interrupted(lambda: Library.open(scene, avatar, settings, motions), host, port, open_page=open_page)
+
+
+def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int, *, open_page: bool) -> None:
+    """Serve the page with a library until Ctrl-C; raises `InputError` where there is no such library or port."""
     from rich.console import Console
 
-    from elbowroom.server.library import Library
     from elbowroom.server.serving import listen, serve, url_of
-    from elbowroom.server.walk import WalkSettings
 
     console = Console(stderr=True, highlight=False)
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
-    settings = WalkSettings(planner=planner, queue_size=queue)
     with (
         contextlib.suppress(KeyboardInterrupt),
         listen(host, port) as opened,
-        contextlib.closing(Library.open(scene, avatar, settings)) as library,
+        contextlib.closing(make()) as library,
     ):
         warm_up_with_progress(library, console)
         _tell_port(console, opened, port)

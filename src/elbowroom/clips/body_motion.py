@@ -133,7 +133,8 @@ def without_calibration(motion: BodyMotion) -> BodyMotion:
     """The motion without a first frame that is a pose by itself: many recordings begin with one in the T-pose."""
     if len(motion) < 4:
         return motion
-    steps = quaternion.angle_between(motion.turns[1:6], motion.turns[:5]).max(axis=1)
+    first = motion.turns[:6]
+    steps = quaternion.angle_between(first[1:], first[:-1]).max(axis=1)
     if steps[0] < _JUMP or steps[0] < _TIMES * float(np.median(steps[1:])):
         return motion
     return replace(motion, turns=motion.turns[1:], hips=motion.hips[1:])

@@ -66,12 +66,32 @@ def split_reference(reference: str | Path) -> tuple[Path, str | None]:
 def parse_motion(data: bytes, name: str, told: Told | None = None, folder: Path | None = None) -> MotionFile:
     """Read the bytes of a motion file; `folder` is where a glTF may have its buffers. Raises `InputError`."""
     told = told or Told()
-    if data[:4] == b"glTF" or data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
+    if _is_gltf(data):
         return _from_gltf(parse_gltf(data, name, folder), told)
     if not is_bvh(data):
         shown = data[:16].decode("latin-1")
         raise InputError(f"{name} begins with {shown!r}: it is neither BVH (HIERARCHY) nor glTF, GLB or VRMA")
     return _from_bvh(data, name, told)
+
+
+def is_motion_only(data: bytes, name: str) -> bool:
+    """Whether a file shows no avatar: BVH, a VRM animation, or a glTF without meshes that is animated."""
+    if is_bvh(data):
+        return True
+    if not _is_gltf(data):
+        return False
+    root = parse_gltf(data, name).root
+    vrma = root.at("extensions").at("VRMC_vrm_animation").present
+    return vrma or bool(root.at("animations").items() and not root.at("meshes").items())
+
+
+def has_animations(data: bytes, name: str) -> bool:
+    """Whether a file is a glTF with animations."""
+    return _is_gltf(data) and bool(parse_gltf(data, name).root.at("animations").items())
+
+
+def _is_gltf(data: bytes) -> bool:
+    return data[:4] == b"glTF" or data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{")
 
 
 def _from_bvh(data: bytes, name: str, told: Told) -> MotionFile:

@@ -52,7 +52,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
         Route("/api/health", handlers.health),
         Route("/api/catalog", handlers.catalog),
         Route("/api/scenes/{name}", handlers.scene),
-        Route("/api/avatars", UploadDesk(library.avatars).take, methods=["POST"]),
+        Route("/api/avatars", UploadDesk(library).take, methods=["POST"]),
         Route("/avatars/{avatar}.glb", handlers.avatar),
         WebSocketRoute("/ws", handlers.session),
         Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),

@@ -2,17 +2,20 @@
 
 import asyncio
 import logging
+from collections.abc import Callable
 from dataclasses import replace
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
+from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
-from elbowroom.server.messages import Configure, Loading, Notice
+from elbowroom.server.messages import Configure, Notice
 from elbowroom.server.outbox import Outbox
 from elbowroom.server.planning_thread import PlanningThread
-from elbowroom.server.reports import avatar_message, scene_message
+from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.stage import Stage
-from elbowroom.server.walk import Walk, WalkSettings
+from elbowroom.server.walk import Walk
+from elbowroom.server.wanted import Wanted
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -48,36 +51,35 @@ class Changes:
 
     def _possible(self, message: Configure) -> Configure:
         """The change without choices that do not exist here; the client is told of each."""
-        for name, check in {"scene": self._library.find_scene, "avatar": self._library.avatars.check}.items():
+        for name, check in self._checks().items():
             choice = getattr(message, name)
             try:
-                if choice is not None:
+                if choice:
                     check(choice)
             except InputError as error:
                 self._outbox.put(Notice("error", str(error)))
                 message = replace(message, **{name: None})
         return message
 
-    async def _configure(self, message: Configure) -> None:
-        walk = self._stage.walk
-        settings = _merged(walk.settings, message)
-        scene, avatar = message.scene or walk.scene.name, message.avatar or walk.avatar.id
-        rebuilt = (settings.planner, settings.queue_size) != (walk.settings.planner, walk.settings.queue_size)
-        if (scene, avatar) == (walk.scene.name, walk.avatar.id) and not rebuilt:
-            walk.adjust(settings)
-            return
-        await self._rebuild(scene, avatar, settings)
+    def _checks(self) -> dict[str, Callable[[str], object]]:
+        library = self._library
+        return {"scene": library.find_scene, "avatar": library.avatars.check, "clip": library.clips.check}
 
-    async def _rebuild(self, scene: str, avatar: str, settings: WalkSettings) -> None:
-        old = self._stage.walk
-        moved, dressed = scene != old.scene.name, avatar != old.avatar.id
-        notice = Loading("avatar", avatar, True) if dressed else Loading("scene", scene, True)
-        notice = notice if moved or dressed else Loading("planner", settings.planner, True)
+    async def _configure(self, message: Configure) -> None:
+        now = Wanted.of(self._stage.walk)
+        wanted = now.changed(message)
+        if wanted.differs(now):
+            await self._rebuild(now, wanted)
+        else:
+            self._stage.walk.adjust(wanted.settings)
+
+    async def _rebuild(self, now: Wanted, wanted: Wanted) -> None:
+        moved, dressed = wanted.scene != now.scene, wanted.avatar != now.avatar
+        notice = wanted.loading(now)
         self._outbox.put(notice)
         try:
-            walk = await asyncio.to_thread(
-                make_walk, self._library, scene, avatar, settings, None if moved else old.place
-            )
+            place = None if moved else self._stage.walk.place
+            walk = await asyncio.to_thread(make_walk, self._library, wanted, place)
         finally:
             self._outbox.put(replace(notice, active=False))
         self._outbox.drop_frame()
@@ -86,14 +88,15 @@ class Changes:
             self._outbox.put(scene_message(walk.scene))
         if dressed:
             self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
+        if isinstance(walk, ClipWalk) and wanted.clip != now.clip:
+            self._outbox.put(clip_message(walk.stored))
 
 
-def make_walk(library: Library, scene: str, avatar: str, settings: WalkSettings, place: RootState | None) -> Walk:
-    """A walk from the library; takes a while, so call it in a worker thread. Raises `InputError`."""
+def make_walk(library: Library, wanted: Wanted, place: RootState | None) -> Walk | ClipWalk:
+    """A walk or a clip from the library; takes a while, so call it in a worker thread. Raises `InputError`."""
+    avatar, scene = library.avatars.get(wanted.avatar), library.find_scene(wanted.scene)
+    if wanted.clip:
+        stored = library.clips.get(wanted.clip)
+        return ClipWalk(avatar, scene, wanted.settings, stored, as_planned=wanted.as_planned)
     desk = PlanningThread(library.planning)
-    return Walk(library.avatars.get(avatar), library.find_scene(scene), settings, place, desk)
-
-
-def _merged(settings: WalkSettings, message: Configure) -> WalkSettings:
-    wanted = {name: getattr(message, name) for name in ("planner", "queue_size", "assist", "walk_speed")}
-    return replace(settings, **{name: value for name, value in wanted.items() if value is not None})
+    return Walk(avatar, scene, wanted.settings, place, desk, library.motions)

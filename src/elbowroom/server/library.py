@@ -5,9 +5,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.avatar_store import STOCK, AvatarStore
+from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS, Catalog, SceneChoice
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
@@ -28,10 +30,19 @@ class Library:
     scene: str  # the names that a session begins with
     avatar: str
     walk: WalkSettings
+    clips: ClipStore = field(default_factory=ClipStore)
+    clip: str = ""  # that a session begins with; "": it walks
+    motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
 
     @classmethod
-    def open(cls, scene: str = "a", avatar: Path | None = None, walk: WalkSettings | None = None) -> "Library":
+    def open(
+        cls,
+        scene: str = "a",
+        avatar: Path | None = None,
+        walk: WalkSettings | None = None,
+        motions: MotionSet | None = None,
+    ) -> "Library":
         """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
         first = Scene.load(scene)
         scenes = {name: Scene.load(name) for name in Scene.stock_names()}
@@ -42,7 +53,12 @@ class Library:
             avatars.close()
             raise
         return cls(
-            avatars, {first.name: first} | scenes | {first.name: first}, first.name, chosen, walk or WalkSettings()
+            avatars,
+            {first.name: first} | scenes | {first.name: first},
+            first.name,
+            chosen,
+            walk or WalkSettings(),
+            motions=motions or MotionSet(),
         )
 
     def close(self) -> None:
@@ -68,4 +84,5 @@ class Library:
             planners=list(PLANNERS),
             queue_sizes=list(QUEUE_SIZES),
             walk_speed=WALK_SPEEDS,
+            clips=self.clips.choices(),
         )

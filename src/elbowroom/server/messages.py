@@ -67,6 +67,8 @@ class Configure:
     queue_size: Annotated[int, Range(QUEUE_SIZES[0], QUEUE_SIZES[-1])] | None = None
     assist: bool | None = None  # False plays the canned walk, right through everything
     walk_speed: Annotated[float, Range(*WALK_SPEEDS)] | None = None  # m/s at forward = 1
+    clip: Name | None = None  # play this clip; "" walks again
+    clip_as_planned: bool | None = None  # play only what the planning degrees of freedom keep of it
 
 
 @dataclass(frozen=True)
@@ -118,6 +120,22 @@ class AvatarChoice:
 
 
 @dataclass(frozen=True)
+class ClipChoice:
+    """A motion clip in the menu."""
+
+    id: str
+    title: str
+
+
+@dataclass(frozen=True)
+class Uploaded:
+    """The answer to a file that was posted to /api/avatars."""
+
+    avatar: AvatarChoice | None  # None for a file of motion alone
+    clips: list[ClipChoice]
+
+
+@dataclass(frozen=True)
 class Catalog:
     """What the menus offer; also at GET /api/catalog."""
 
@@ -126,6 +144,7 @@ class Catalog:
     planners: list[str]
     queue_sizes: list[int]
     walk_speed: tuple[float, float]  # slowest and fastest
+    clips: list[ClipChoice]
 
 
 @dataclass(frozen=True)
@@ -151,6 +170,26 @@ class Settings:
     speed: float
     capsules: bool
     plan: bool
+    clip: str  # "" while the avatar walks
+    clip_as_planned: bool
+
+
+@dataclass(frozen=True)
+class ClipMessage:
+    """The clip that is played, and what was recognised in it."""
+
+    id: str
+    title: str
+    format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
+    up: str  # the file's axis that points up
+    unit: str  # "cm", ...; "body": taken from the height of the body
+    metres: float  # a unit of the file
+    fps: float
+    frames: int
+    seconds: float
+    speed: float  # m/s of the walk in it; 0 where nobody walks
+    trunk_degrees: float  # what planning loses of the trunk, on average
+    arm_degrees: float  # and of the directions of the arms' bones
 
 
 @dataclass(frozen=True)
@@ -324,7 +363,7 @@ class Plan:
 class Loading:
     """Something that takes a while has begun or ended; what was there before goes on meanwhile."""
 
-    what: Literal["scene", "avatar", "planner"]
+    what: Literal["scene", "avatar", "planner", "clip"]
     name: str
     active: bool
 
@@ -355,4 +394,6 @@ class Pong:
 
 
 ClientMessage = Input | Configure | ClockMessage | Reset | Overlays | Ping
-ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | Status | Plan | Loading | Crossed | Notice | Pong
+ServerMessage = (
+    Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Notice | Pong
+)

@@ -32,9 +32,12 @@ class Poser:
 
     def node_pose(self, q: Floats, root: Floats) -> NodePose:
         """What the nodes get for a configuration (14,) and a root state (7,)."""
-        rotations = np.matmul(self._rotation, local_rotations(self.model, q, root)[:, :, None])[:, :, 0]
-        hips = self._hips @ hips_position(self.model, q, root) + self._hips_rest
-        return NodePose(hips, rotations.astype(np.float32))
+        return self.full_pose(local_rotations(self.model, q, root), hips_position(self.model, q, root))
+
+    def full_pose(self, local: Floats, hips: Floats) -> NodePose:
+        """What the nodes get for normalised local rotations (J, 4) and the hips joint (3,) in the root's frame."""
+        rotations = np.matmul(self._rotation, local[:, :, None])[:, :, 0]
+        return NodePose(self._hips @ hips + self._hips_rest, rotations.astype(np.float32))
 
     def segments(self, q: Floats, roots: Floats) -> NDArray[np.float32]:
         """End points of all capsules in the world, (N, C, 6), for configurations (N, 14) and root states (N, 7)."""

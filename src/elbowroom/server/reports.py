@@ -10,12 +10,14 @@ from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
 from elbowroom.planning.result import BlockadeKind
 from elbowroom.server.avatar_store import StoredAvatar
+from elbowroom.server.clip_store import StoredClip
 from elbowroom.server.messages import (
     AvatarCapsule,
     AvatarMessage,
     Blocked,
     Bone,
     Box,
+    ClipMessage,
     Gate,
     Ground,
     GroupName,
@@ -84,6 +86,25 @@ def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
             for name, radius, group in zip(capsules.names, capsules.radii.tolist(), capsules.groups, strict=True)
         ],
         height=skeleton.height,
+    )
+
+
+def clip_message(stored: StoredClip) -> ClipMessage:
+    """The clip that is played, and what was recognised in it."""
+    clip, planning = stored.clip, stored.clip.planning
+    return ClipMessage(
+        id=stored.id,
+        title=stored.title,
+        format=clip.format,
+        up=clip.figure.up,
+        unit=clip.figure.unit_name,
+        metres=clip.figure.unit,
+        fps=clip.fps,
+        frames=clip.frames,
+        seconds=clip.motion.duration,
+        speed=planning.track.strides.speed,
+        trunk_degrees=float(np.rad2deg(planning.trunk_error.mean())),
+        arm_degrees=float(np.rad2deg(planning.arm_error.mean())),
     )
 
 

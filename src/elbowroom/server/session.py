@@ -12,6 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from elbowroom import __version__
 from elbowroom.errors import InputError
 from elbowroom.server.changes import Changes, make_walk
+from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.codec import decode_client, encode
 from elbowroom.server.library import Library
 from elbowroom.server.messages import (
@@ -32,8 +33,9 @@ from elbowroom.server.messages import (
 )
 from elbowroom.server.outbox import Outbox, SlowClientError
 from elbowroom.server.rate_limit import TokenBucket
-from elbowroom.server.reports import avatar_message, scene_message
+from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.stage import Stage
+from elbowroom.server.wanted import Wanted
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -90,15 +92,18 @@ class Session:
 
     async def _open(self) -> None:
         library = self._library
+        wanted = Wanted(library.scene, library.avatar, library.walk, library.clip)
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog()))
         self._outbox.put(Loading("avatar", library.avatar, True))
-        walk = await asyncio.to_thread(make_walk, library, library.scene, library.avatar, library.walk, None)
+        walk = await asyncio.to_thread(make_walk, library, wanted, None)
         self._outbox.put(Loading("avatar", library.avatar, False))
         self._stage = Stage(walk, self._now())
         self._changes = Changes(library, self._stage, self._outbox)
         self._outbox.put(self._stage.settings())
         self._outbox.put(scene_message(walk.scene))
         self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
+        if isinstance(walk, ClipWalk):
+            self._outbox.put(clip_message(walk.stored))
         self._heard = self._now()
 
     # --- messages in ---------------------------------------------------------------------------------------------

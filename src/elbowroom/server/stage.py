@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.server import pose_frame
+from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.messages import ClockMessage, Crossed, Input, Nearest, Overlays, Plan, Settings, Status
 from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
@@ -26,8 +27,8 @@ _NO_CAPSULES = np.empty((0, 6), np.float32)
 class Stage:
     """Advances a walk by a clock that can be paused, slowed down and stepped, and packs what there is to see."""
 
-    def __init__(self, walk: Walk, now: float) -> None:
-        self.walk = walk
+    def __init__(self, walk: Walk | ClipWalk, now: float) -> None:
+        self.walk: Walk | ClipWalk = walk
         self.paused = False
         self.speed = 1.0
         self.overlays = Overlays()
@@ -41,7 +42,7 @@ class Stage:
         self._busy: deque[float] = deque(maxlen=_TIMED)
         self.punctuality = Punctuality()
 
-    def show(self, walk: Walk) -> None:
+    def show(self, walk: Walk | ClipWalk) -> None:
         """Go on with another walk; the counters of crossings go with the session, not with the walk."""
         walk.crossed, walk.stuck_times = self.walk.crossed, self.walk.stuck_times
         self.revision = (self.revision + (walk.avatar is not self.walk.avatar)) % 2**16
@@ -93,7 +94,7 @@ class Stage:
         began = perf_counter()
         walk, frame = self.walk, self.walk.frame
         poser, root = walk.avatar.poser, frame.root
-        posed = poser.node_pose(frame.q, root)
+        posed = walk.node_pose()
         self._index += 1
         packed = pose_frame.pack(
             PoseFrame(
@@ -177,11 +178,16 @@ class Stage:
             speed=self.speed,
             capsules=self.overlays.capsules,
             plan=self.overlays.plan,
+            clip=walk.stored.id if isinstance(walk, ClipWalk) else "",
+            clip_as_planned=isinstance(walk, ClipWalk) and walk.as_planned,
         )
 
     def _step(self, dt: float) -> list[Crossed]:
         began = perf_counter()
+        rounds = self.walk.rounds
         seconds = self.walk.step(self.command, dt)
+        if self.walk.rounds != rounds:
+            self._jump()
         self._stepping += perf_counter() - began
         if seconds is None:
             return []

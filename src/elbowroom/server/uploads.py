@@ -1,4 +1,4 @@
-"""Avatar files that arrive over HTTP."""
+"""Avatar and motion files that arrive over HTTP."""
 
 import asyncio
 import contextlib
@@ -7,10 +7,12 @@ import logging
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
+from elbowroom.clips.files import has_animations, is_motion_only
 from elbowroom.errors import InputError
-from elbowroom.server.avatar_store import AvatarStore
+from elbowroom.server.clip_store import StoredClip
 from elbowroom.server.codec import plain
-from elbowroom.server.messages import MAX_UPLOAD, AvatarChoice
+from elbowroom.server.library import Library
+from elbowroom.server.messages import MAX_UPLOAD, AvatarChoice, ClipChoice, Uploaded
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -25,19 +27,19 @@ class _TooLargeError(Exception):
 class UploadDesk:
     """Takes one file at a time, so that the memory it needs is bounded."""
 
-    def __init__(self, avatars: AvatarStore) -> None:
-        self._avatars = avatars
+    def __init__(self, library: Library) -> None:
+        self._library = library
         self._free = asyncio.Lock()
 
     async def take(self, request: Request) -> Response:
-        """POST: the raw bytes of a VRM or GLB file, `?name=` its name. Answers 201 with id and title."""
+        """POST: the raw bytes of an avatar or motion file, `?name=` its name. Answers 201 with an `Uploaded`."""
         if self._free.locked():
             return _refused(503, "another file is being read; try again in a moment")
         async with self._free:
             try:
                 data = await _body(request)
                 name = request.query_params.get("name", "avatar")[:_NAME]
-                avatar = await asyncio.to_thread(self._avatars.add_upload, data, name)
+                uploaded = await asyncio.to_thread(self._read, data, name)
             except _TooLargeError:
                 return _refused(413, f"the file is larger than {MAX_UPLOAD // 2**20} MiB")
             except InputError as error:
@@ -45,9 +47,21 @@ class UploadDesk:
             except (TimeoutError, ClientDisconnect):
                 return _refused(408, "the file did not arrive whole")
             except Exception:
-                LOG.exception("an uploaded avatar could not be read")
+                LOG.exception("an uploaded file could not be read")
                 return _refused(500, "the file could not be read; the server's log says more")
-        return JSONResponse(plain(AvatarChoice(avatar.id, avatar.title)), 201)
+        return JSONResponse(plain(uploaded), 201)
+
+    def _read(self, data: bytes, name: str) -> Uploaded:
+        """By content: a motion, an avatar, or an avatar with motions of its own."""
+        clips = self._library.clips
+        if is_motion_only(data, name):
+            return Uploaded(None, [ClipChoice(clip.id, clip.title) for clip in clips.add_upload(data, name)])
+        avatar = self._library.avatars.add_upload(data, name)
+        own: list[StoredClip] = []
+        if has_animations(data, name):
+            with contextlib.suppress(InputError):
+                own = clips.add_upload(data, name)
+        return Uploaded(AvatarChoice(avatar.id, avatar.title), [ClipChoice(clip.id, clip.title) for clip in own])
 
 
 async def _body(request: Request) -> bytes:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
 from elbowroom.control.controller import Controller
 from elbowroom.control.desk import PlanningDesk
@@ -14,6 +15,7 @@ from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS
+from elbowroom.server.pose import NodePose
 from elbowroom.world.scene import Scene
 
 _MOTION = RootMotionSettings()
@@ -44,6 +46,8 @@ class WalkSettings:
 class Walk:
     """A living walk; `step` advances it."""
 
+    rounds = 0  # a walk never jumps by itself
+
     def __init__(
         self,
         avatar: StoredAvatar,
@@ -51,15 +55,17 @@ class Walk:
         settings: WalkSettings,
         place: RootState | None = None,
         desk: PlanningDesk | None = None,
+        motions: MotionSet = STOCK,
     ) -> None:
         """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`.
 
-        Plans are made at `desk`, by default at once.
+        Plans are made at `desk`, by default at once, with the motions that the avatar has learnt.
         """
         self.avatar = avatar
         self.scene = scene
         self.settings = settings
         self._desk = desk
+        self._motions = motions
         self._controller = self._made(place)
         self.crossed = 0
         self.stuck_times = 0
@@ -82,6 +88,7 @@ class Walk:
             assist=self.settings.assist,
             start=place,
             desk=self._desk,
+            motions=self._motions,
         )
 
     def _begin(self) -> None:
@@ -120,6 +127,10 @@ class Walk:
         if plan is None or self.frame.time < plan.root.path.start_time:
             return False
         return not steering.changed(plan.command, at_speed(command, self.settings.walk_speed))
+
+    def node_pose(self) -> NodePose:
+        """What the avatar's nodes get now."""
+        return self.avatar.poser.node_pose(self.frame.q, self.frame.root)
 
     @property
     def place(self) -> RootState:

@@ -1,16 +1,10 @@
-/** Sends an avatar file to the server and asks for it to be used. */
+/** Sends an avatar or motion file to the server. */
 
-import { MAX_UPLOAD } from "../generated/messages";
+import { MAX_UPLOAD, type Uploaded } from "../generated/messages";
 import { UPLOAD_URL } from "../net/endpoints";
 
-/** What the server calls the avatar. */
-export interface UploadedAvatar {
-  readonly id: string;
-  readonly title: string;
-}
-
 /** @throws Error with one sentence for the user when the server does not take the file */
-export async function uploadAvatar(file: File): Promise<UploadedAvatar> {
+export async function uploadFile(file: File): Promise<Uploaded> {
   if (file.size > MAX_UPLOAD) {
     throw new Error(`${file.name} has ${megabytes(file.size)} MB; at most ${megabytes(MAX_UPLOAD)} MB are taken.`);
   }
@@ -19,11 +13,11 @@ export async function uploadAvatar(file: File): Promise<UploadedAvatar> {
     headers: { "Content-Type": "application/octet-stream" },
     body: file,
   });
-  const answer = (await response.json().catch(() => ({}))) as Partial<UploadedAvatar> & { error?: string };
-  if (!response.ok || typeof answer.id !== "string") {
+  const answer = (await response.json().catch(() => ({}))) as Partial<Uploaded> & { error?: string };
+  if (!response.ok || !answer.clips) {
     throw new Error(answer.error ?? `${file.name} was not taken (status ${response.status}).`);
   }
-  return { id: answer.id, title: answer.title ?? file.name };
+  return { avatar: answer.avatar ?? null, clips: answer.clips };
 }
 
 function megabytes(bytes: number): string {

@@ -43,6 +43,10 @@ export interface Configure {
   assist?: boolean | null;
   /** m/s at forward = 1; from 0.2 to 2 */
   walkSpeed?: number | null;
+  /** play this clip; "" walks again; at most 128 long */
+  clip?: string | null;
+  /** play only what the planning degrees of freedom keep of it */
+  clipAsPlanned?: boolean | null;
 }
 
 /** Pause, slow motion and single steps of simulated time. */
@@ -87,6 +91,19 @@ export interface AvatarChoice {
   title: string;
 }
 
+/** A motion clip in the menu. */
+export interface ClipChoice {
+  id: string;
+  title: string;
+}
+
+/** The answer to a file that was posted to /api/avatars. */
+export interface Uploaded {
+  /** null for a file of motion alone */
+  avatar: AvatarChoice | null;
+  clips: ClipChoice[];
+}
+
 /** What the menus offer; also at GET /api/catalog. */
 export interface Catalog {
   scenes: SceneChoice[];
@@ -95,6 +112,7 @@ export interface Catalog {
   queueSizes: number[];
   /** slowest and fastest */
   walkSpeed: [number, number];
+  clips: ClipChoice[];
 }
 
 /** The first message of a connection. */
@@ -119,6 +137,33 @@ export interface Settings {
   speed: number;
   capsules: boolean;
   plan: boolean;
+  /** "" while the avatar walks */
+  clip: string;
+  clipAsPlanned: boolean;
+}
+
+/** The clip that is played, and what was recognised in it. */
+export interface ClipMessage {
+  type: "clip";
+  id: string;
+  title: string;
+  /** "BVH", "glTF 2.0", "VRM animation 1.0" */
+  format: string;
+  /** the file's axis that points up */
+  up: string;
+  /** "cm", ...; "body": taken from the height of the body */
+  unit: string;
+  /** a unit of the file */
+  metres: number;
+  fps: number;
+  frames: number;
+  seconds: number;
+  /** m/s of the walk in it; 0 where nobody walks */
+  speed: number;
+  /** what planning loses of the trunk, on average */
+  trunkDegrees: number;
+  /** and of the directions of the arms' bones */
+  armDegrees: number;
 }
 
 /** The floor, at height 0. */
@@ -303,7 +348,7 @@ export interface Plan {
 /** Something that takes a while has begun or ended; what was there before goes on meanwhile. */
 export interface Loading {
   type: "loading";
-  what: "scene" | "avatar" | "planner";
+  what: "scene" | "avatar" | "planner" | "clip";
   name: string;
   active: boolean;
 }
@@ -336,7 +381,7 @@ export interface Pong {
 
 export type ClientMessage = Input | Configure | ClockMessage | Reset | Overlays | Ping;
 
-export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | Status | Plan | Loading | Crossed | Notice | Pong;
+export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Notice | Pong;
 
 /** One pose as it travels. */
 export interface PoseFrame {

@@ -1,7 +1,7 @@
 /** The live session as the page sees it: the server's latest words, the poses, and what to say after a reconnect. */
 
 import {
-  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type Configure, type Crossed, type Hello,
+  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type ClipMessage, type Configure, type Crossed, type Hello,
   type Loading, type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
 } from "../generated/messages";
 import type { SessionWishes } from "../preferences";
@@ -16,6 +16,7 @@ export interface SessionListener {
   settings(settings: Settings): void;
   scene(scene: SceneMessage): void;
   avatar(avatar: AvatarMessage): void;
+  clip(clip: ClipMessage): void;
   status(status: Status): void;
   plan(plan: Plan): void;
   /** The server no longer has the chosen avatar. */
@@ -108,6 +109,8 @@ export class Session {
       this.choices = { ...this.choices, avatar: null };
       this.listener.avatarLost(avatar);
     }
+    const { clip } = this.choices;
+    if (clip && !catalog.clips.some((known) => known.id === clip)) this.choices = { ...this.choices, clip: "" };
     if (protocol !== PROTOCOL) {
       this.listener.notice("error", "This page and its server are of different versions: reload the page.");
     }
@@ -135,6 +138,9 @@ export class Session {
         break;
       case "avatar":
         listener.avatar(message);
+        break;
+      case "clip":
+        listener.clip(message);
         break;
       case "plan":
         listener.plan(message);

@@ -3,6 +3,7 @@
 import type { Catalog, Configure, Settings } from "../generated/messages";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
 import type { Preferences } from "../preferences";
+import { ClipPanel } from "./clip_panel";
 import { byId, make, setOptions } from "./dom";
 
 /** What the user does with the menu. */
@@ -20,6 +21,7 @@ const NARROW = "(max-width: 900px), (max-height: 540px)";
 const BAR_ACTIONS = ["assist", "pause", "step", "slow", "reset"] as const;
 
 export class Menu {
+  readonly clips: ClipPanel;
   private readonly panel = byId("menu", HTMLElement);
   private readonly button = byId("menu-button", HTMLButtonElement);
   private readonly scene = byId("scene", HTMLSelectElement);
@@ -32,6 +34,7 @@ export class Menu {
   private readonly checks = new Map<OverlayName, HTMLInputElement>();
 
   constructor(private readonly listener: MenuListener, preferences: Preferences) {
+    this.clips = new ClipPanel((change) => listener.configure(change));
     this.listenToLists();
     this.listenToSliders();
     this.listenToFile();
@@ -59,6 +62,7 @@ export class Menu {
   showCatalog(catalog: Catalog): void {
     setOptions(this.scene, catalog.scenes.map((s) => [s.name, s.title]));
     setOptions(this.avatar, catalog.avatars.map((a) => [a.id, a.title]));
+    this.clips.add(catalog.clips);
     setOptions(this.planner, catalog.planners.map((name) => [name, name]));
     this.queue.min = String(Math.min(...catalog.queueSizes));
     this.queue.max = String(Math.max(...catalog.queueSizes));
@@ -73,6 +77,7 @@ export class Menu {
     this.queue.value = String(settings.queueSize);
     this.speed.value = String(settings.walkSpeed);
     this.showValues();
+    this.clips.showSettings(settings);
     const assist = byId("assist", HTMLButtonElement);
     assist.setAttribute("aria-checked", String(settings.assist));
     const value = assist.querySelector(".value");

@@ -46,6 +46,7 @@ export class StatusLine {
     if (!pose || !settings) return ["", ""];
     if (this.celebrated && now < this.celebrated.until) return [crossedText(this.celebrated.crossed), "good"];
     if (settings.paused) return ["Paused: . for one step, P to go on", ""];
+    if (settings.clip !== "") return ["A recorded motion plays: choose “none: walk” in the menu to steer", ""];
     if (!settings.assist && (pose.flags & POSE_FLAGS.touching) !== 0) return ["Assist is off: the body passes through things", "bad"];
     if (status?.blocked && settings.assist) return [blockedSentence(status.blocked), "bad"];
     if ((pose.flags & POSE_FLAGS.stuck) !== 0) return ["No room this way: back up with S and try another", "bad"];

@@ -7,6 +7,7 @@ import { byId } from "./dom";
 const PATIENCE_MS = 180;
 const WHAT: Readonly<Record<Loading["what"], string>> = {
   scene: "Preparing the scene", avatar: "Reading the avatar", planner: "Building the planner",
+  clip: "Putting the motion on the avatar",
 };
 
 export class Veil {

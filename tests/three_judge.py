@@ -1,0 +1,118 @@
+"""three.js and three-vrm-animation in a headless browser, as judges of animations. The page sees no network."""
+
+import base64
+import mimetypes
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlparse
+
+import pytest
+
+MODULES = Path(__file__).parents[1] / "web" / "node_modules"
+HOME = "http://judge.test/"
+_PAGE = """<!doctype html><script type="importmap">{"imports": {
+  "three": "/three/build/three.module.js",
+  "three/addons/": "/three/examples/jsm/",
+  "@pixiv/three-vrm": "/@pixiv/three-vrm/lib/three-vrm.module.js",
+  "@pixiv/three-vrm-animation": "/@pixiv/three-vrm-animation/lib/three-vrm-animation.module.js"
+}}</script>"""
+
+_SETUP = """
+async () => {
+  const THREE = await import("three");
+  const { GLTFLoader } = await import("three/addons/loaders/GLTFLoader.js");
+  const { VRMLoaderPlugin } = await import("@pixiv/three-vrm");
+  const animation = await import("@pixiv/three-vrm-animation");
+  const load = (text) => {
+    const loader = new GLTFLoader();
+    loader.register((parser) => new VRMLoaderPlugin(parser));
+    loader.register((parser) => new animation.VRMAnimationLoaderPlugin(parser));
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    return loader.parseAsync(bytes.buffer, "");
+  };
+  window.judge = { THREE, animation, load };
+}
+"""
+
+_NODES = """
+async ([glb, clip, times]) => {
+  const { THREE, load } = window.judge;
+  const gltf = await load(glb);
+  const count = gltf.parser.json.nodes.length;
+  const nodes = await Promise.all(Array.from({ length: count }, (_, i) => gltf.parser.getDependency("node", i)));
+  const mixer = new THREE.AnimationMixer(gltf.scene);
+  const action = mixer.clipAction(gltf.animations[clip]);
+  action.setLoop(THREE.LoopOnce);
+  action.clampWhenFinished = true;
+  action.play();
+  return times.map((time) => {
+    mixer.setTime(time);
+    gltf.scene.updateMatrixWorld(true);
+    const place = new THREE.Vector3(), turn = new THREE.Quaternion();
+    return nodes.map((node) => [...node.getWorldPosition(place).toArray(), ...node.getWorldQuaternion(turn).toArray()]);
+  });
+}
+"""
+
+_BONES = """
+async ([avatar, vrma, times]) => {
+  const { THREE, animation, load } = window.judge;
+  const vrm = (await load(avatar)).userData.vrm;
+  const motion = (await load(vrma)).userData.vrmAnimations[0];
+  const mixer = new THREE.AnimationMixer(vrm.scene);
+  const action = mixer.clipAction(animation.createVRMAnimationClip(motion, vrm));
+  action.setLoop(THREE.LoopOnce);
+  action.clampWhenFinished = true;
+  action.play();
+  return times.map((time) => {
+    mixer.setTime(time);
+    const pose = {};
+    for (const name of Object.keys(vrm.humanoid.humanBones)) {
+      const node = vrm.humanoid.getNormalizedBoneNode(name);
+      if (node) pose[name] = [...node.quaternion.toArray(), ...node.position.toArray()];
+    }
+    return pose;
+  });
+}
+"""
+
+
+class ThreeJudge:
+    """A page with three.js in it."""
+
+    def __init__(self, browser: Any) -> None:
+        if not (MODULES / "@pixiv" / "three-vrm-animation").is_dir():
+            pytest.skip("three-vrm-animation is not installed: run `npm ci` in web")
+        self._page = browser.new_page()
+        self._page.route("**/*", self._answer)
+        self._page.goto(HOME)
+        self._page.evaluate(_SETUP)
+
+    def nodes(self, glb: bytes, clip: int, times: list[float]) -> list[list[list[float]]]:
+        """World position and rotation of every node at these times of a clip."""
+        found: list[list[list[float]]] = self._page.evaluate(_NODES, [_text(glb), clip, times])
+        return found
+
+    def bones(self, avatar: bytes, vrma: bytes, times: list[float]) -> list[dict[str, list[float]]]:
+        """Normalised local rotation and position of every bone of a VRM that plays a VRM animation."""
+        found: list[dict[str, list[float]]] = self._page.evaluate(_BONES, [_text(avatar), _text(vrma), times])
+        return found
+
+    def close(self) -> None:
+        """Close the page."""
+        self._page.close()
+
+    def _answer(self, route: Any) -> None:
+        path = urlparse(route.request.url).path
+        file = MODULES / path.lstrip("/")
+        if path == "/":
+            route.fulfill(body=_PAGE, content_type="text/html")
+        elif route.request.url.startswith(HOME) and file.is_file():
+            kind = "text/javascript" if file.suffix == ".js" else mimetypes.guess_type(file.name)[0]
+            route.fulfill(path=str(file), content_type=kind or "application/octet-stream")
+        else:
+            route.abort()
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode()
