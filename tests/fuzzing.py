@@ -11,6 +11,8 @@ from elbowroom.errors import InputError
 LONGEST_MESSAGE = 600
 
 _NUMBER = re.compile(rb"\d+")
+_NAME = re.compile(rb"[A-Za-z_]{2,40}")
+_HARMLESS = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-+ _"  # characters of any text
 _HUGE = (b"0", b"-1", b"1e308", b"-1e309", b"nan", b"4294967295", b"99999999999999999999", b"0.0000001", b"1e-320")
 _BOMB = 4096  # repeats of a piece that is nested or copied
 
@@ -55,6 +57,25 @@ def _flip(data: bytes, _: Reader, rng: np.random.Generator) -> bytes:
     for at in rng.integers(len(data), size=int(rng.integers(1, 9))):
         changed[int(at)] = int(rng.integers(256))
     return bytes(changed)
+
+
+def _retype(data: bytes, _: Reader, rng: np.random.Generator) -> bytes:
+    """Some characters of a text become others that any text may have."""
+    changed = bytearray(data)
+    for at in rng.integers(len(data), size=int(rng.integers(1, 5))):
+        if changed[int(at)] in _HARMLESS:
+            changed[int(at)] = _HARMLESS[int(rng.integers(len(_HARMLESS)))]
+    return bytes(changed)
+
+
+def _rename(data: bytes, reader: Reader, rng: np.random.Generator) -> bytes:
+    """A name gives way to another one: a field of another kind, a node that is not there."""
+    donor = reader.seeds[int(rng.integers(len(reader.seeds)))]
+    names, others = (list(_NAME.finditer(text[:200_000])) for text in (data, donor))
+    if not names or not others:
+        return data
+    at, other = names[int(rng.integers(len(names)))], others[int(rng.integers(len(others)))]
+    return data[: at.start()] + other.group() + data[at.end() :]
 
 
 def _truncate(data: bytes, _: Reader, rng: np.random.Generator) -> bytes:
@@ -109,4 +130,4 @@ def _pick(pieces: Sequence[bytes], rng: np.random.Generator) -> bytes:
     return pieces[int(rng.integers(len(pieces)))]
 
 
-_ACCIDENTS = (_flip, _truncate, _drop, _repeat, _move, _number, _word)
+_ACCIDENTS = (_flip, _retype, _rename, _truncate, _drop, _repeat, _move, _number, _word)

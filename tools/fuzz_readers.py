@@ -70,10 +70,69 @@ def animation_reader() -> Reader:
     return Reader(read, (animated_glb(), animated_glb(vrma=True), animated_glb(mode="CUBICSPLINE")), words)
 
 
+def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
+    """H-Anim humanoids in one of the encodings of X3D."""
+    from elbowroom.body.loading import load_humanoid_bytes
+    from hanim_builder import SOLIDS, HanimRecipe, build_hanim
+
+    version = "1.1" if encoding == "vrml" else "2.0"
+    recipes = (
+        HanimRecipe(encoding, version, points=4),
+        HanimRecipe(encoding, "2.0", skinned=True, points=4, prefix="Joe_"),
+    )
+    seeds = (*map(build_hanim, recipes), build_hanim(HanimRecipe(encoding, points=0, extras=SOLIDS)))
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrl"), seeds, words)
+
+
+def xml_reader() -> Reader:
+    """X3D in XML."""
+    words = (b"<Group>", b"</Group>", b'<Shape USE="Figure"/>', b'<ProtoInstance name="P"/>', b"<!ENTITY a 'aa'>")
+    words += (b'containerField="skeleton"', b'center="nan 1 2"', b"<Transform DEF='a'><Group USE='a'/>", b"<![CDATA[")
+    return hanim_reader("xml", words)
+
+
+def classic_reader() -> Reader:
+    """X3D in the Classic encoding."""
+    words = (b"Group { children [", b"]", b"}", b"USE Figure", b"PROTO P [ ] {", b"P { }", b"IS center", b"NULL")
+    words += (b"EXTERNPROTO Q [ ] [ ", b'"', b"#", b"center 1e999 0 0", b"[ 0x7fffffff", b"META", b"ROUTE a.b TO c.d")
+    return hanim_reader("classic", words)
+
+
+def vrml_reader() -> Reader:
+    """VRML97, with the PROTOs of H-Anim 1.1."""
+    words = (b"Transform { children [", b"PROTO P [ field MFNode c [ ] ] { Group { children IS c } }", b"P { c [")
+    words += (
+        b"DEF A Group { children [ USE A ] }",
+        b"eventIn SFBool a",
+        b"]",
+        b"}",
+        b"{",
+        b"[",
+        b'"\\',
+        b"Joint {",
+        b"#",
+    )
+    return hanim_reader("vrml", words)
+
+
+def packed_reader() -> Reader:
+    """The three packed with gzip."""
+    from elbowroom.body.loading import load_humanoid_bytes
+    from hanim_builder import HanimRecipe, build_hanim
+
+    encodings = ("xml", "classic", "vrml")
+    seeds = tuple(build_hanim(HanimRecipe(encoding, points=4, packed=True)) for encoding in encodings)
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrz"), seeds, (b"\x1f\x8b\x08\x00", b"\x00" * 9))
+
+
 READERS: dict[str, Callable[[], Reader]] = {
     "glb": glb_reader,
     "bvh": bvh_reader,
     "animation": animation_reader,
+    "x3d-xml": xml_reader,
+    "x3d-classic": classic_reader,
+    "vrml97": vrml_reader,
+    "x3d-gzip": packed_reader,
 }
 
 

@@ -34,7 +34,7 @@ def load_humanoid(path: Path, settings: LoadSettings | None = None) -> Humanoid:
 
 def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     """The same for the bytes of a file that was sent to us; it must not refer to other files."""
-    if is_x3d(data):
+    if is_x3d(data) or name.lower().endswith(SUFFIXES):
         hanim = parse_hanim(data, name)
         return _humanoid(hanim.gltf, None, None, LoadSettings(), hanim)[0]
     return _humanoid(parse_gltf(data, name), None, None, LoadSettings())[0]
