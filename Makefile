@@ -63,6 +63,7 @@ web-test: $(VENV)/developer
 browser: $(VENV)/developer
 	@echo "==> Tests in a real browser"
 	@sh tools/install_browser.sh
+	@sh tools/install_judges.sh $(BIN)/python
 	@$(BIN)/python -m pytest -m browser $(ARGS)
 
 format: $(VENV)/developer

@@ -99,5 +99,7 @@ class ClientHook(BuildHookInterface):  # type: ignore[type-arg]
 if __name__ == "__main__":
     if sys.argv[1:] == ["build"]:
         build_client()
+    elif sys.argv[1:2] == ["judges"]:
+        run_npm(sys.argv[2:], ROOT / "tests" / "judges")
     else:
         run_npm(sys.argv[1:], WEB)

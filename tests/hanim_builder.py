@@ -74,12 +74,16 @@ _PROTO_FIELDS = """  exposedField SFString name ""
   exposedField SFRotation scaleOrientation 0 0 1 0
   exposedField SFVec3f center 0 0 0
 """
+_PLACED = "".join(
+    f"{field} IS {field} " for field in ("translation", "rotation", "scale", "scaleOrientation", "center")
+)
 PROTOS_1 = (
-    "PROTO Joint [\n" + _PROTO_FIELDS + "  exposedField MFNode children [ ]\n] { Transform { children IS children } }\n"
+    f"PROTO Joint [\n{_PROTO_FIELDS}  exposedField MFNode children [ ]\n]"
+    f" {{ Transform {{ {_PLACED}children IS children }} }}\n"
     'PROTO Segment [ exposedField SFString name "" exposedField MFNode children [ ] ]\n'
     "{ Group { children IS children } }\n"
-    "PROTO Humanoid [\n" + _PROTO_FIELDS + '  field SFString version "1.1"\n  exposedField MFNode humanoidBody [ ]\n'
-    "  exposedField MFNode joints [ ]\n] { Transform { children IS humanoidBody } }\n"
+    f'PROTO Humanoid [\n{_PROTO_FIELDS}  field SFString version "1.1"\n  exposedField MFNode humanoidBody [ ]\n'
+    f"  exposedField MFNode joints [ ]\n] {{ Transform {{ {_PLACED}children IS humanoidBody }} }}\n"
 )
 
 
