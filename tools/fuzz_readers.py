@@ -34,7 +34,17 @@ def glb_reader() -> Reader:
     from elbowroom.body.loading import load_humanoid_bytes
 
     recipes = (Recipe(vrm="1", points=2, spin=True), Recipe(vrm="0", points=2), Recipe(names=MIXAMO, points=2))
-    words = (b"[[[[", b'{"a":', b'"nodes":', b"]", b"}", b'"children":[0]', b'"uri":"../x"', b'"count":1e9', b"null")
+    words: tuple[bytes, ...] = (
+        b"[[[[",
+        b'{"a":',
+        b'"nodes":',
+        b"]",
+        b"}",
+        b'"children":[0]',
+        b'"uri":"../x"',
+        b'"count":1e9',
+        b"null",
+    )
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words)
 
 
@@ -86,21 +96,40 @@ def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
 
 def xml_reader() -> Reader:
     """X3D in XML."""
-    words = (b"<Group>", b"</Group>", b'<Shape USE="Figure"/>', b'<ProtoInstance name="P"/>', b"<!ENTITY a 'aa'>")
+    words: tuple[bytes, ...] = (
+        b"<Group>",
+        b"</Group>",
+        b'<Shape USE="Figure"/>',
+        b'<ProtoInstance name="P"/>',
+        b"<!ENTITY a 'aa'>",
+    )
     words += (b'containerField="skeleton"', b'center="nan 1 2"', b"<Transform DEF='a'><Group USE='a'/>", b"<![CDATA[")
     return hanim_reader("xml", words)
 
 
 def classic_reader() -> Reader:
     """X3D in the Classic encoding."""
-    words = (b"Group { children [", b"]", b"}", b"USE Figure", b"PROTO P [ ] {", b"P { }", b"IS center", b"NULL")
+    words: tuple[bytes, ...] = (
+        b"Group { children [",
+        b"]",
+        b"}",
+        b"USE Figure",
+        b"PROTO P [ ] {",
+        b"P { }",
+        b"IS center",
+        b"NULL",
+    )
     words += (b"EXTERNPROTO Q [ ] [ ", b'"', b"#", b"center 1e999 0 0", b"[ 0x7fffffff", b"META", b"ROUTE a.b TO c.d")
     return hanim_reader("classic", words)
 
 
 def vrml_reader() -> Reader:
     """VRML97, with the PROTOs of H-Anim 1.1."""
-    words = (b"Transform { children [", b"PROTO P [ field MFNode c [ ] ] { Group { children IS c } }", b"P { c [")
+    words: tuple[bytes, ...] = (
+        b"Transform { children [",
+        b"PROTO P [ field MFNode c [ ] ] { Group { children IS c } }",
+        b"P { c [",
+    )
     words += (
         b"DEF A Group { children [ USE A ] }",
         b"eventIn SFBool a",

@@ -18,6 +18,8 @@ FILES = [pytest.param(STOCK, id="stock")]
 if SHARED is not None:
     FILES.append(pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt"))
     FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired"))
+    FILES.append(pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D"))
+    FILES.append(pytest.param(SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments"))
 
 DROP = """
 ([name, text]) => {
