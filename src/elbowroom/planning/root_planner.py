@@ -158,7 +158,9 @@ class RootPlanner:
         return found
 
     def _lost(self, line: TravelLine, speed: float, answer: Answer, interval: float) -> float:
-        """Seconds that a path costs against a walk along the line of travel at the wanted speed."""
+        """Seconds that a path costs against a walk along the line of travel at the wanted speed; none at a stand."""
+        if speed <= 0.0:
+            return 0.0
         states = answer.states
         s, turned = self.settings, np.abs(np.remainder(states[:, 2] - line.facing + np.pi, 2.0 * np.pi) - np.pi)
         sine, cosine = np.sin(line.heading), np.cos(line.heading)
