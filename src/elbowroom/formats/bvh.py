@@ -22,7 +22,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 MAX_BYTES = 32 * 2**20
-_MAX_VALUES = 8_000_000  # numbers of motion
+_MAX_VALUES = 6_000_000  # numbers of motion
 _BLOCK = 2**20  # characters of motion that are taken apart at once
 _SPACE = re.compile(r"\s")
 _MAX_HEAD = 2 * 2**20  # bytes of the hierarchy

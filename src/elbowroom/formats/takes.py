@@ -11,7 +11,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 MAX_FRAMES = 200_000
-MAX_POSES = 4_000_000  # frames times nodes of one take
+MAX_POSES = 2_000_000  # frames times nodes of one take
 
 
 @dataclass(frozen=True, eq=False)
