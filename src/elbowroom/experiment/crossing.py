@@ -16,7 +16,8 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
-from elbowroom.planning.names import DEFAULT_PLANNER
+from elbowroom.planning.exact.rehearsal import rehearse
+from elbowroom.planning.names import DEFAULT_PLANNER, EXACT
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -109,6 +110,8 @@ def warm_up(controller: Controller) -> None:
         for _ in range(3):
             controller.step(command, DT)
     controller.reset()
+    if controller.settings.planner == EXACT:
+        rehearse(controller.humanoid)
 
 
 def run_crossing(

@@ -13,6 +13,7 @@ from typing import Any
 
 from numba.core import event
 
+from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.kernel_cache import kept_kernels, kernels
 from elbowroom.server.library import Library
@@ -60,6 +61,7 @@ def warm_up(library: Library, report: Report | None = None) -> None:
     with event.install_listener("numba:compile", _Listener(report)) if report else nullcontext():
         for planner in PLANNERS:
             _walk_a_moment(library, planner, _WALK)
+        rehearse(library.avatars.get(library.avatar).humanoid)
 
 
 def first_steps(library: Library, report: Report | None = None) -> None:

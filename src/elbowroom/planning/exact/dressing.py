@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
-from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.group_search import (
     Group,
@@ -34,11 +33,9 @@ from elbowroom.planning.exact.tables import START, held_clearance
 from elbowroom.planning.exact.together import Guide, arm_nodes, guide, surroundings, waist_nodes
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
 from elbowroom.planning.exact.why_not import blockade
-from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.result import Blockade, GroupEvidence, LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath, sample_states
-from elbowroom.planning.self_pairs import self_clearances
+from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -47,7 +44,7 @@ Longs = NDArray[np.int64]
 
 _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
 _NATURAL = 1e-6  # radians from the goal
-_LOOKS = 6  # of a key interval at which the body is held against itself
+_ALERT = 16  # plans after one that ran into the body that look at it from the beginning
 _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
 
 
@@ -114,6 +111,7 @@ class Dressing:
 
     def apart(self) -> Ways:
         """Each group by itself."""
+        self.own_body.alert = max(self.own_body.alert - 1, 0)
         self._waist = self._waist_way(self._crouching)
         found = self._arms(self._waist, None)
         self.blocked = len(found.ways), min(self.last_reached + 1, self.path.horizon)
@@ -213,11 +211,12 @@ class Dressing:
             self.deepest = max(self.deepest, waist.reached)
             return Ways((), waist)
         ways, touched = [waist], [self._none(group) for group in LOCAL_GROUPS[1:]]
-        for _ in range(self.settings.self_rounds):
+        whole = self.own_body.alert > 0
+        for attempt in range(self.settings.self_rounds):
             ways = [waist]
             for side, group in enumerate(LOCAL_GROUPS[1:]):
                 follow = None if guides is None else guides[1 + side]
-                extra = self._folded(side, ways, follow) + touched[side]
+                extra = self._folded(side, ways, follow, whole=whole or attempt > 0) + touched[side]
                 way = self._search(group, waist.slots, extra, follow)
                 self.last_reached = way.reached
                 if way.reached < self.path.horizon:
@@ -227,6 +226,7 @@ class Dressing:
             contact = self._self_contact(ways)
             if contact is None:
                 return Ways(tuple(ways), None)
+            self.own_body.alert = _ALERT
             self._rule_out(touched, ways, *contact)
             self.last_reached = contact[1]
         self.deepest = max(self.deepest, self.last_reached)
@@ -244,9 +244,11 @@ class Dressing:
             touched[side][t, np.flatnonzero(near[:size])] = np.inf
             touched[side][t, width + np.flatnonzero(near[size:])] = np.inf
 
-    def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None) -> Floats32:
-        """Infinite where a node of an arm touches the body under the ways found before."""
+    def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None, *, whole: bool) -> Floats32:
+        """Infinite where a node of an arm touches the naturally walking body; if `whole`, the body on its ways."""
         group = LOCAL_GROUPS[1 + side]
+        if not whole:
+            return self.own_body.resting_prices(side, self.shelves.groups[group].postures, len(self.goals))
         own, _, _ = own_postures(self.shelves.groups[group], self._task(group, ways[0].slots, None, follow))
         waists = ways[0].keys
         natural = np.abs(waists - self.goals[:, columns_of(DofGroup.WAIST)]).max(axis=1) < _NATURAL
@@ -261,19 +263,13 @@ class Dressing:
     def _self_contact(self, ways: list[GroupWay]) -> tuple[int, int] | None:
         """The arm and the first interval in which the shown motion runs into the body, or None."""
         keys = np.concatenate([way.keys for way in ways], axis=1)
-        if np.abs(keys - self.goals).max() < _NATURAL:
+        natural = np.abs(keys - self.goals).max(axis=1) < _NATURAL
+        if natural.all():
             return None
         rates = np.concatenate([way.velocities for way in ways], axis=1)
-        times = self.path.interval * np.arange(float(len(keys)))
-        looks = self.path.interval / _LOOKS * np.arange(1.0, _LOOKS * self.path.horizon)
-        shown = _sampled(times, keys, rates, looks)
-        states = sample_states(self.path.states, self.path.interval, looks)
-        found = self_clearances(self.own_body.model, self.own_body.pairs, states, shown)
-        touching = np.flatnonzero(found.min(axis=0) < 0.0)
-        if not len(touching):
-            return None
-        arm = int(np.argmin(found[:, touching[0]]))
-        return min(arm, 1), int(looks[touching[0]] / self.path.interval)
+        arms = self.own_body.contacts(self.path, keys, rates, ~(natural[:-1] & natural[1:]))
+        touching = np.flatnonzero(arms >= 0)
+        return None if not len(touching) else (int(arms[touching[0]]), int(touching[0]))
 
     def _none(self, group: DofGroup) -> Floats32:
         return np.zeros((len(self.goals), self.shelves.groups[group].postures.moves.shape[1] + OWN), np.float32)
@@ -292,15 +288,6 @@ class Dressing:
     ) -> GroupWay:
         prices = extra if follow is None else follow.extra + (0.0 if extra is None else extra)
         return self.ledger.search(group, self._task(group, carriers, prices, follow))
-
-
-@exact_kernel
-def _sampled(times: Floats, keys: Floats, rates: Floats, looks: Floats) -> Floats:
-    """The curve (L, d) at `looks` (L,)."""
-    out = np.empty((looks.shape[0], keys.shape[1]))
-    for i in range(looks.shape[0]):
-        out[i] = hermite(times, keys, rates, looks[i])[0]
-    return out
 
 
 class Ledger:

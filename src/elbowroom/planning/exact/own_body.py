@@ -16,11 +16,13 @@ from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
+from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.goal import GoalFunction
+from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.limb import pose
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_pairs import SelfPairs, body_from_chest, self_pairs
+from elbowroom.planning.root_path import RootPath, interpolate_root
+from elbowroom.planning.self_pairs import SelfPairs, body_from_chest, self_clearances, self_pairs
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -30,6 +32,8 @@ Indices = NDArray[np.int64]
 SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the way to the next keeps it too
 _PHASES, _SPEED = 8, 1.1  # of the stride
 _SAME = 1e-6  # radians
+_LOOKS = 6  # of a key interval at which the body is held against itself
+_REMEMBERED = 4096  # intervals
 
 ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 
@@ -80,6 +84,9 @@ class OwnBody:
         self.pairs: SelfPairs = self_pairs(model, goals)
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
+        self._prices: dict[tuple[int, int], Floats32] = {}
+        self._known: dict[bytes, int] = {}
+        self.alert = 0  # plans to come that look at the body from the beginning, as one before ran into it
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -102,10 +109,41 @@ class OwnBody:
             waists, other = self._goals[DofGroup.WAIST](path), self._goals[ARMS[1 - side]](path)
             parts = self.parts(side, waists, states, other)
             found = [folded(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
-            self._resting = {k: v for k, v in self._resting.items() if k[0] != side} | {
-                key: (postures, np.any(found, axis=0))
-            }
+            others = {known: kept for known, kept in self._resting.items() if known[0] != side}
+            self._resting = others | {key: (postures, np.any(found, axis=0))}
+            self._prices = {known: prices for known, prices in self._prices.items() if known[0] != side}
         return self._resting[key][1]
+
+    def resting_prices(self, side: int, postures: Postures, count: int) -> Floats32:
+        """What that adds to the prices (count, W + OWN) of an arm's nodes: nothing, or infinity."""
+        resting = self.resting(side, postures)
+        if (side, count) not in self._prices:
+            prices = np.zeros((count, len(resting) + OWN), np.float32)
+            prices[:, : len(resting)][:, resting] = np.inf
+            self._prices[side, count] = prices
+        return self._prices[side, count]
+
+    def contacts(self, path: RootPath, keys: Floats, rates: Floats, chosen: Bools) -> Indices:
+        """The arm, 0 or 1, that runs into the body in each chosen interval (n,) of a shown motion, or -1.
+
+        `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times. An interval that
+        was looked at for an earlier plan is known by its content.
+        """
+        ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1)
+        content = np.round(np.concatenate([ends[:-1], ends[1:]], axis=1), 6) + 0.0
+        found, names = np.full(path.horizon, -1), [row.tobytes() for row in content]
+        missing = [int(k) for k in np.flatnonzero(chosen) if names[k] not in self._known]
+        if len(self._known) > _REMEMBERED:
+            self._known.clear()
+            missing = [int(k) for k in np.flatnonzero(chosen)]
+        if missing:
+            shown, states = _looked_at(path.states, keys, rates, path.interval, np.array(missing))
+            gaps = self_clearances(self.model, self.pairs, states, shown).reshape(3, len(missing), _LOOKS).min(axis=2)
+            for k, gap in zip(missing, gaps.T, strict=True):
+                self._known[names[k]] = min(int(np.argmin(gap)), 1) if gap.min() < 0.0 else -1
+        for at in np.flatnonzero(chosen):
+            found[at] = self._known[names[at]]
+        return found
 
     def folded_nodes(
         self,
@@ -133,6 +171,22 @@ class OwnBody:
         segments = pose(postures.limb, own[rows].reshape(len(rows) * extra, -1))
         _mark(postures.lanes, postures.balls, segments, parts.axes, parts.allowed, rows, natural, out)
         return out
+
+
+@exact_kernel
+def _looked_at(states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices) -> tuple[Floats, Floats]:
+    """Upper bodies and root states at looks within chosen intervals (K,), in order, (K looks, ...)."""
+    shown = np.empty((chosen.shape[0] * _LOOKS, keys.shape[1]))
+    roots = np.empty((chosen.shape[0] * _LOOKS, states.shape[1]))
+    times = np.array([0.0, interval])
+    for i in range(chosen.shape[0]):
+        k = chosen[i]
+        for look in range(_LOOKS):
+            share = (look + 1.0) / _LOOKS
+            at = i * _LOOKS + look
+            shown[at] = hermite(times, keys[k : k + 2], rates[k : k + 2], share * interval)[0]
+            roots[at] = interpolate_root(states[k], states[k + 1], share, interval)
+    return shown, roots
 
 
 @exact_kernel

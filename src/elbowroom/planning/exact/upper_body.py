@@ -97,6 +97,7 @@ class UpperBody:
 
     def reset(self) -> None:
         """Forget the postures that were added."""
+        self._own_body.alert = 0
         for group, pool in self._pools.items():
             if pool.clear():
                 self._take_in(group)
