@@ -96,8 +96,9 @@ class UpperBody:
         return UpperPlan(plan, dressing.deepest, dressing)
 
     def reset(self) -> None:
-        """Forget the postures that were added."""
+        """Forget the postures that were added, and what was computed of late."""
         self._own_body.alert = 0
+        self._shelves.clear()
         for group, pool in self._pools.items():
             if pool.clear():
                 self._take_in(group)
