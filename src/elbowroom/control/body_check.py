@@ -19,35 +19,47 @@ def configuration(root: Floats, upper: Floats) -> Floats:
 
 
 class BodyCheck:
-    """Clearance of a humanoid's whole collision body in a scene."""
+    """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self._model = body_model(humanoid)
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._table = scene.boxes.table
+        self.moving = scene.moving
 
-    def clearance(self, root: Floats, upper: Floats) -> float:
+    def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (11,).
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
         segments = posture_capsules(self._model, configuration(root, upper)[None], self._near(root, root)[None])
-        return clearance_of(segments[:, :, 0], self._radii, self._around(root))
+        return clearance_of(segments[:, :, 0], self._radii, self._around(root, time))
 
-    def clearance_between(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> float:
+    def clearance_between(
+        self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats], times: tuple[float, float]
+    ) -> float:
         """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants."""
         root = roots[0] + _BETWEEN[:, None] * (roots[1] - roots[0])
         upper = uppers[0] + _BETWEEN[:, None] * (uppers[1] - uppers[0])
         segments = posture_capsules(self._model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
-        return float(clearance(segments, self._radii, self._around(roots[0])).min())
+        if not len(self.moving):
+            return float(clearance(segments, self._radii, self._around(roots[0], times[0])).min())
+        looks = times[0] + _BETWEEN * (times[1] - times[0])
+        found = [
+            clearance_of(segments[:, :, i], self._radii, self._around(roots[0], float(time)))
+            for i, time in enumerate(looks)
+        ]
+        return min(found)
 
     def _near(self, roots: Floats, origin: Floats) -> Floats:
         near = roots.copy()
         near[..., :2] -= origin[:2]
         return near
 
-    def _around(self, origin: Floats) -> Floats:
+    def _around(self, origin: Floats, time: float) -> Floats:
         table = self._table.copy()
+        if len(self.moving):
+            table = np.concatenate([table, self.moving.tables([time])[0]])
         table[:, 0] -= origin[0]
         table[:, 2] -= origin[1]
         return table

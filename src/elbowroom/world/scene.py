@@ -1,7 +1,7 @@
 """Where: obstacles, ground, a start and a finish."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -11,6 +11,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.json_place import parse_json, read_json
+from elbowroom.world.moving import MovingBoxes
 
 MAX_FILE_BYTES = 16 * 2**20
 
@@ -43,6 +44,7 @@ class Scene:
     finish: Gate
     boxes: Boxes
     box_names: tuple[str, ...]  # (B,)
+    moving: MovingBoxes = field(default_factory=MovingBoxes)  # besides the boxes, which stand still
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> "Scene":

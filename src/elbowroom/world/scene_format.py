@@ -3,7 +3,6 @@
 A test holds reader and schema together on many broken documents.
 """
 
-import math
 from typing import Any
 
 import numpy as np
@@ -15,16 +14,16 @@ from elbowroom.geometry import quaternion
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
 from elbowroom.world.json_place import Place
+from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
+from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.moving_format import read_moving, write_moving
 from elbowroom.world.scene import Gate, Scene
 
 FORMAT = "elbowroom-scene"
 VERSION = 1
 
 MAX_OBSTACLES = 10_000
-FARTHEST = 10_000.0  # metres, any coordinate
-LARGEST = 1_000.0  # metres, any size
-_FULL_TURN = 6.2832  # radians; what is larger was meant in degrees
-_NAME, _TITLE, _PROSE = 100, 200, 4000  # characters
+_TITLE, _PROSE = 200, 4000  # characters
 
 # What a start must leave free: a slim standing figure's legs and pelvis, metres.
 _STANCE_LOW, _STANCE_HIGH, _STANCE_RADIUS = 0.1, 1.0, 0.12
@@ -35,12 +34,12 @@ _TURNS = ("rotation", "yaw", "euler")
 
 def read_scene(document: Any, source: str) -> Scene:
     """The scene in a parsed JSON document; raises `InputError` at the first wrong field."""
-    fields = Place(source, "$", document).fields(_REQUIRED, ("$schema", "title", "description"))
+    fields = Place(source, "$", document).fields(_REQUIRED, ("$schema", "title", "description", "moving"))
     fields["format"].constant(FORMAT)
     fields["version"].constant(VERSION)
     if "$schema" in fields:
         fields["$schema"].text(_TITLE)
-    name = fields["name"].text(_NAME, least=1)
+    name = fields["name"].text(NAME, least=1)
     ground = fields["ground"].fields(("size",), ("center",))
     boxes, names = _read_obstacles(fields["obstacles"])
     scene = Scene(
@@ -53,6 +52,7 @@ def read_scene(document: Any, source: str) -> Scene:
         finish=_read_gate(fields["finish"]),
         boxes=boxes,
         box_names=names,
+        moving=read_moving(fields["moving"]) if "moving" in fields else MovingBoxes(),
     )
     _refuse_start_in_obstacle(scene, fields["start"])
     return scene
@@ -62,23 +62,17 @@ def _pair(values: list[float]) -> tuple[float, float]:
     return values[0], values[1]
 
 
-def _angle(place: Place) -> float:
-    if isinstance(place.value, int | float) and _FULL_TURN < abs(place.value) <= 360.0:
-        place.fail(f"must be an angle in radians (were these degrees? then write {math.radians(place.value):.4f})")
-    return place.number(-_FULL_TURN, _FULL_TURN)
-
-
 def _read_start(place: Place) -> RootState:
     fields = place.fields(("position",), ("heading",))
     x, z = fields["position"].vector(2, -FARTHEST, FARTHEST)
-    return RootState(x=x, z=z, heading=_angle(fields["heading"]) if "heading" in fields else 0.0)
+    return RootState(x=x, z=z, heading=read_angle(fields["heading"]) if "heading" in fields else 0.0)
 
 
 def _read_gate(place: Place) -> Gate:
     fields = place.fields(("position",), ("heading", "width"))
     return Gate(
         position=_pair(fields["position"].vector(2, -FARTHEST, FARTHEST)),
-        heading=_angle(fields["heading"]) if "heading" in fields else 0.0,
+        heading=read_angle(fields["heading"]) if "heading" in fields else 0.0,
         width=fields["width"].number(0.0, LARGEST, above=True) if "width" in fields else Gate.width,
     )
 
@@ -97,7 +91,7 @@ def _read_obstacle(place: Place, index: int) -> tuple[str, list[float], NDArray[
         Place(place.source, f"{place.path}.type", place.value["type"]).constant("box")
     fields = place.fields(("type", "center", "size"), ("name", *_TURNS))
     return (
-        fields["name"].text(_NAME, least=1) if "name" in fields else f"box {index + 1}",
+        fields["name"].text(NAME, least=1) if "name" in fields else f"box {index + 1}",
         fields["center"].vector(3, -FARTHEST, FARTHEST),
         _read_rotation(place, fields),
         fields["size"].vector(3, 0.0, LARGEST, above=True),
@@ -109,9 +103,9 @@ def _read_rotation(place: Place, fields: dict[str, Place]) -> NDArray[np.float64
     if len(given) > 1:
         raise InputError(f"{place.source}: {place.path} has both {' and '.join(given)}; give one of them")
     if "yaw" in fields:
-        return quaternion.about_axis(1, _angle(fields["yaw"]))
+        return quaternion.about_axis(1, read_angle(fields["yaw"]))
     if "euler" in fields:
-        return _from_euler([_angle(item) for item in _three(fields["euler"])])
+        return _from_euler([read_angle(item) for item in _three(fields["euler"])])
     if "rotation" in fields:
         return _unit_quaternion(fields["rotation"])
     return quaternion.IDENTITY
@@ -142,10 +136,11 @@ def _unit_quaternion(place: Place) -> NDArray[np.float64]:
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     x, z = scene.start.x, scene.start.z
     legs, radius = np.array([[x, _STANCE_LOW, z, x, _STANCE_HIGH, z]]), np.array([_STANCE_RADIUS])
-    if clearance_of(legs, radius, scene.boxes.table32) >= 0.0:
+    table = np.concatenate([scene.boxes.table, scene.moving.tables([0.0])[0]])
+    if clearance_of(legs, radius, table) >= 0.0:
         return
-    each = [clearance_of(legs, radius, row[None]) for row in scene.boxes.table32]
-    name = scene.box_names[int(np.argmin(each))]
+    each = [clearance_of(legs, radius, row[None]) for row in table]
+    name = (*scene.box_names, *scene.moving.names)[int(np.argmin(each))]
     Place(place.source, f"{place.path}.position", [x, z]).fail(f"it stands in the obstacle {name!r}; move one of them")
 
 
@@ -158,7 +153,7 @@ def write_scene(scene: Scene) -> dict[str, Any]:
         scene.boxes.rotations.tolist(),
         strict=True,
     )
-    return {
+    document = {
         "format": FORMAT,
         "version": VERSION,
         "name": scene.name,
@@ -176,3 +171,4 @@ def write_scene(scene: Scene) -> dict[str, Any]:
             for name, center, size, rotation in rows
         ],
     }
+    return document | ({"moving": write_moving(scene.moving)} if len(scene.moving) else {})

@@ -1,0 +1,158 @@
+"""Boxes that move on tracks: where they are at any time, and what they sweep in a span of time.
+
+A track has key poses; between them place and heading change evenly. Whoever plans ahead asks where things will be:
+motion is known, not guessed. Another avatar is told about in the same way, by what its own plan says.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.geometry import quaternion
+from elbowroom.world.boxes import BOX_ROW, Boxes
+
+Floats = NDArray[np.float64]
+
+FASTEST = 20.0  # m/s and rad/s
+_PARTS = 4  # of a span of time in which a sweep is looked at
+
+
+class Repeat(Enum):
+    """What follows the last key pose of a track."""
+
+    ONCE = "once"  # it stays there
+    LOOP = "loop"  # it goes on to the first key pose
+    PINGPONG = "pingpong"  # the same way back
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One upright box and its motion."""
+
+    name: str
+    size: Floats  # (3,) full lengths along its own axes, metres
+    times: Floats  # (K,) seconds from the beginning, increasing; the first is 0, unless it is once
+    centers: Floats  # (K, 3) metres
+    yaws: Floats  # (K,) radians about Y
+    repeat: Repeat = Repeat.ONCE  # a loop's last key pose is its first again
+
+    @property
+    def duration(self) -> float:
+        """The time of the last key pose, seconds."""
+        return float(self.times[-1])
+
+    def within(self, times: ArrayLike) -> Floats:
+        """Times (M,) as times between the first key pose and the last."""
+        wanted, span = np.asarray(times, np.float64), self.duration
+        if span == 0.0 or self.repeat is Repeat.ONCE:
+            return np.clip(wanted, self.times[0], span)
+        if self.repeat is Repeat.LOOP:
+            return np.mod(wanted, span)
+        return span - np.abs(np.mod(wanted, 2.0 * span) - span)
+
+    def poses(self, times: ArrayLike) -> tuple[Floats, Floats]:
+        """Centres (M, 3) and yaws (M,) at times (M,)."""
+        at = self.within(times)
+        centers = np.stack([np.interp(at, self.times, self.centers[:, i]) for i in range(3)], axis=-1)
+        return centers, np.interp(at, self.times, self.yaws)
+
+    def turning_points(self, first: float, last: float) -> Floats:
+        """The times from `first` to `last` at which the track is at a key pose."""
+        if self.repeat is Repeat.ONCE or self.duration == 0.0:
+            points = self.times
+        else:
+            back = 2.0 * self.duration - self.times[-2:0:-1]
+            cycle = self.times[:-1] if self.repeat is Repeat.LOOP else np.concatenate([self.times, back])
+            period = self.duration * (1.0 if self.repeat is Repeat.LOOP else 2.0)
+            rounds = np.arange(math.floor(first / period), math.floor(last / period) + 1)
+            points = (period * rounds[:, None] + cycle).ravel()
+        found: Floats = points[(points > first) & (points < last)]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class MovingBoxes:
+    """Some tracks; it never changes."""
+
+    tracks: tuple[Track, ...] = field(default=())
+
+    def __len__(self) -> int:
+        return len(self.tracks)
+
+    def __add__(self, others: "MovingBoxes") -> "MovingBoxes":
+        """These and others."""
+        return MovingBoxes(self.tracks + others.tracks)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The boxes' names."""
+        return tuple(track.name for track in self.tracks)
+
+    @cached_property
+    def half_sizes(self) -> Floats:
+        """Half lengths (B, 3), metres."""
+        return 0.5 * np.array([track.size for track in self.tracks]).reshape(-1, 3)
+
+    def poses(self, times: ArrayLike) -> tuple[Floats, Floats]:
+        """Centres (M, B, 3) and yaws (M, B) at times (M,)."""
+        count = len(np.atleast_1d(times))
+        if not self.tracks:
+            return np.empty((count, 0, 3)), np.empty((count, 0))
+        found = [track.poses(np.atleast_1d(times)) for track in self.tracks]
+        return np.stack([center for center, _ in found], axis=1), np.stack([yaw for _, yaw in found], axis=1)
+
+    def at(self, time: float) -> Boxes:
+        """The boxes as they stand at a time."""
+        centers, yaws = self.poses(time)
+        return Boxes(centers[0], _turns(yaws[0]), self.half_sizes)
+
+    def tables(self, times: ArrayLike) -> Floats:
+        """Rows (M, B, 15) as in `Boxes.table`, at times (M,)."""
+        centers, yaws = self.poses(times)
+        return _rows(centers, yaws, np.broadcast_to(self.half_sizes, centers.shape))
+
+    def swept(self, times: Sequence[float] | Floats) -> Floats:
+        """Rows (n, B, 15) of boxes that hold what each box sweeps from each of the times (n+1,) to the next."""
+        spans = len(times) - 1
+        out = np.empty((spans, len(self), BOX_ROW))
+        for b, track in enumerate(self.tracks):
+            for n in range(spans):
+                out[n, b] = _sweep(track, float(times[n]), float(times[n + 1]))
+        return out
+
+
+def _sweep(track: Track, first: float, last: float) -> Floats:
+    """The row (15,) of a box, turned as the track is in the middle, round its corners at all times of a span."""
+    looks = np.concatenate([np.linspace(first, last, _PARTS + 1), track.turning_points(first, last)])
+    centers, yaws = track.poses(np.sort(looks))
+    yaw = float(track.poses([0.5 * (first + last)])[1][0])
+    turned, half = yaws - yaw, 0.5 * track.size
+    reach = float(np.hypot(half[0], half[2]))
+    bulge = 0.125 * reach * float(np.abs(np.diff(yaws)).max(initial=0.0)) ** 2  # of an arc beyond its chord
+    sine, cosine = math.sin(yaw), math.cos(yaw)
+    across, along = centers[:, 0] * cosine - centers[:, 2] * sine, centers[:, 0] * sine + centers[:, 2] * cosine
+    wide = half[0] * np.abs(np.cos(turned)) + half[2] * np.abs(np.sin(turned)) + bulge
+    deep = half[0] * np.abs(np.sin(turned)) + half[2] * np.abs(np.cos(turned)) + bulge
+    low = np.array([(across - wide).min(), centers[:, 1].min() - half[1], (along - deep).min()])
+    high = np.array([(across + wide).max(), centers[:, 1].max() + half[1], (along + deep).max()])
+    middle = 0.5 * (low + high)
+    center = np.array([middle[0] * cosine + middle[2] * sine, middle[1], middle[2] * cosine - middle[0] * sine])
+    return _rows(center, np.array(yaw), 0.5 * (high - low))
+
+
+def _rows(centers: Floats, yaws: Floats, half_sizes: Floats) -> Floats:
+    """Rows (..., 15) of upright boxes."""
+    sine, cosine = np.sin(yaws), np.cos(yaws)
+    zero, one = np.zeros_like(sine), np.ones_like(sine)
+    to_box = np.stack([cosine, zero, -sine, zero, one, zero, sine, zero, cosine], axis=-1)
+    rows: Floats = np.concatenate([centers, to_box, half_sizes], axis=-1)
+    return rows
+
+
+def _turns(yaws: Floats) -> Floats:
+    return np.array([quaternion.about_axis(1, float(yaw)) for yaw in yaws]).reshape(-1, 4)

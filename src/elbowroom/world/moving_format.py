@@ -1,0 +1,88 @@
+"""Moving boxes in scene documents: the part of reader and writer that knows tracks."""
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from elbowroom.errors import InputError
+from elbowroom.world.json_place import Place
+from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
+from elbowroom.world.moving import FASTEST, MovingBoxes, Repeat, Track
+
+MAX_MOVING = 100
+MAX_KEYS = 1_000
+_SHORTEST, _LONGEST = 0.01, 3_600.0  # seconds between key poses
+
+
+class _Key(NamedTuple):
+    place: Place
+    center: list[float]
+    yaw: float
+    seconds: float  # until the next
+
+
+def read_moving(place: Place) -> MovingBoxes:
+    """The tracks in a list; raises `InputError` at the first wrong field."""
+    return MovingBoxes(tuple(_read_track(item, i) for i, item in enumerate(place.items(MAX_MOVING))))
+
+
+def _read_track(place: Place, index: int) -> Track:
+    if isinstance(place.value, dict) and "type" in place.value:
+        Place(place.source, f"{place.path}.type", place.value["type"]).constant("box")
+    fields = place.fields(("type", "size", "track"), ("name", "repeat"))
+    name = fields["name"].text(NAME, least=1) if "name" in fields else f"moving box {index + 1}"
+    repeat = _read_repeat(fields["repeat"]) if "repeat" in fields else Repeat.LOOP
+    size = fields["size"].vector(3, 0.0, LARGEST, above=True)
+    keys = [_read_key(item) for item in fields["track"].items(MAX_KEYS)]
+    if len(keys) < 2:
+        fields["track"].fail("must have at least 2 key poses; a box that stands still is an obstacle")
+    closed = [*keys, keys[0]] if repeat is Repeat.LOOP else keys
+    _refuse_leaps(closed)
+    times = np.cumsum([0.0, *(key.seconds for key in closed[:-1])])
+    return Track(
+        name, np.array(size), times, np.array([key.center for key in closed]), np.array([key.yaw for key in closed]),
+        repeat,
+    )  # fmt: skip
+
+
+def _read_repeat(place: Place) -> Repeat:
+    names = [repeat.value for repeat in Repeat]
+    if not isinstance(place.value, str) or place.value not in names:
+        place.fail(f"must be one of {', '.join(names)}")
+    return Repeat(place.value)
+
+
+def _read_key(place: Place) -> _Key:
+    fields = place.fields(("center", "seconds"), ("yaw",))
+    center = fields["center"].vector(3, -FARTHEST, FARTHEST)
+    yaw = read_angle(fields["yaw"]) if "yaw" in fields else 0.0
+    return _Key(place, center, yaw, fields["seconds"].number(_SHORTEST, _LONGEST))
+
+
+def _refuse_leaps(keys: list[_Key]) -> None:
+    for key, following in pairwise(keys):
+        speed = float(np.linalg.norm(np.subtract(following.center, key.center))) / key.seconds
+        fastest = max(speed, abs(following.yaw - key.yaw) / key.seconds)
+        if fastest > FASTEST:
+            most = f"at most {FASTEST:g} m/s and rad/s are allowed: give it more seconds"
+            raise InputError(f"{key.place.source}: {key.place.path} leads on at {fastest:.3g}; {most}")
+
+
+def write_moving(moving: MovingBoxes) -> list[dict[str, Any]]:
+    """The list in a scene's JSON document."""
+    return [_written(track) for track in moving.tracks]
+
+
+def _written(track: Track) -> dict[str, Any]:
+    keys = len(track.times) - (track.repeat is Repeat.LOOP)
+    seconds = [*np.diff(track.times).tolist(), 1.0][:keys]
+    rows = zip(track.centers[:keys].tolist(), track.yaws[:keys].tolist(), seconds, strict=True)
+    poses = [{"center": center, "yaw": yaw, "seconds": wait} for center, yaw, wait in rows]
+    return {
+        "type": "box",
+        "name": track.name,
+        "size": track.size.tolist(),
+        "repeat": track.repeat.value,
+        "track": poses,
+    }
