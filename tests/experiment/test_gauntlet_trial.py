@@ -47,7 +47,7 @@ def test_legs_walk_the_line_and_who_does_as_the_certificate_gets_through(level: 
         assert np.hypot(*(frame.root[:2] - made.line.points(way))) < 0.015
         assert abs(frame.root[2] - made.line.heading(way)) <= STEERING
         upper = np.array([np.interp(way, proof.way, column) for column in proof.uppers.T])
-        assert check.clearance(frame.root, upper) > proof.margin - 0.012
+        assert check.clearance(frame.root, upper, 0.0) > proof.margin - 0.012
 
 
 def test_an_empty_course_is_crossed_straight() -> None:

@@ -19,6 +19,7 @@ from elbowroom.planning.root_plan import RootPlan, RootPlanKind
 from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.planning.root_profile import Course, follow_profile, turned_speed
 from elbowroom.world.clearance import clearance
+from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -43,7 +44,7 @@ def gap(width: float) -> Scene:
 
 def evasion(scene: Scene, start: RootState = WALKING) -> Any:
     finder = EvasionFinder(AVATAR, scene.boxes.table)
-    grid = finder.ahead_of(new_line(start, FORWARD, RootMotionSettings()), start, 3.2, (1.1, 0.45))
+    grid = finder.ahead_of(new_line(start, FORWARD, RootMotionSettings()), start, 3.2, (1.1, 0.45), MovingBoxes(), 0.0)
     return grid.cheapest(finder.settings.bodies[0], None)
 
 

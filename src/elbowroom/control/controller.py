@@ -29,6 +29,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,7 @@ LONGEST_STEP = 60.0  # seconds
 _SAME = 1e-6  # radians
 _SAME_TIME = 1e-9  # seconds
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
+_FAR_MOVING = 0.6  # the same where things move by themselves
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
 
 
@@ -87,6 +89,7 @@ class Controller:
         self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
         self.start = scene.start if start is None else start
         self._check = BodyCheck(humanoid, scene)
+        self._others = MovingBoxes()
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
         self._desk: PlanningDesk = desk or ImmediateDesk()
         self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self.motions)
@@ -117,7 +120,7 @@ class Controller:
     def _stand_at_start(self) -> None:
         root = self.start._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
         upper = standing_posture(root)
-        clearance = self._check.clearance(root, upper)
+        clearance = self._check.clearance(root, upper, 0.0)
         if clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
@@ -128,6 +131,16 @@ class Controller:
     def root(self) -> RootState:
         """The root state that is shown."""
         return RootState(*self._shown.root.tolist())
+
+    @property
+    def others(self) -> MovingBoxes:
+        """What moves besides the scene's own things, as it is predicted: other avatars; may change with every step."""
+        return self._others
+
+    @others.setter
+    def others(self, moving: MovingBoxes) -> None:
+        self._others = moving
+        self._check.moving = self.scene.moving + moving
 
     @property
     def phase(self) -> Phase:
@@ -147,7 +160,7 @@ class Controller:
         self._next, self._resting = Phase.RESET, False
         if wanted and self._clearance < 0.0:
             self._clear()
-            self._show(self._free, self._check.clearance(self._free.root, self._free.upper))
+            self._show(self._free, self._clearance_of(self._free))
 
     def step(self, command: Command, dt: float) -> Frame:
         """Go on by `dt` seconds under `command` and say what to show.
@@ -198,7 +211,7 @@ class Controller:
         time, start = self._planning_start(at_once)
         root, settings = RootState(*start.root.tolist()), self.settings
         query = MotionQuery(
-            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval
+            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, self._others
         )
         held = None
         if self._holding.active and self._assist:
@@ -250,7 +263,8 @@ class Controller:
         if answer.uppers is not None:
             path = replace(answer.path, start_time=start)
             self._queue.splice(path, answer.uppers, question.query.velocity, answer.velocities)
-            self._resting = command.idle and self._stands_still(path.states, answer.uppers)
+            still = command.idle and not len(self._check.moving)
+            self._resting = still and self._stands_still(path.states, answer.uppers)
 
     def _stands_still(self, states: Floats, uppers: Floats) -> bool:
         shown = self._shown
@@ -269,7 +283,7 @@ class Controller:
             self._hold(dt)
             return
         for posed, stance in self._holding.over(self._queue.sample(), dt):
-            clearance = self._check.clearance(posed.root, posed.upper)
+            clearance = self._clearance_of(posed)
             if not self._assist or self._is_free(posed, clearance):
                 self._holding.end(stance)
                 self._blocked = False
@@ -294,19 +308,24 @@ class Controller:
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
-        if clearance < 0.0 or min(clearance, self._clearance) > _FAR:
+        if clearance < 0.0 or min(clearance, self._clearance) > (_FAR_MOVING if len(self._check.moving) else _FAR):
             return clearance >= 0.0
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
-        return self._check.clearance_between(roots, uppers) >= 0.0
+        return self._check.clearance_between(roots, uppers, (self._shown_at, self._queue.time)) >= 0.0
+
+    def _clearance_of(self, posed: Playback) -> float:
+        """Of a pose, now."""
+        return self._check.clearance(posed.root, posed.upper, self._queue.time)
 
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""
         self._clear()
         self._next = Phase.RESET
         still = self._holding.settle(self._shown, dt)
-        clearance = self._check.clearance(still.root, still.upper)
+        clearance = self._clearance_of(still)
         if self._assist and not self._is_free(still, clearance):
-            still, clearance = still._replace(root=self._shown.root), self._clearance
+            still = still._replace(root=self._shown.root)
+            clearance = self._clearance_of(still) if len(self._check.moving) else self._clearance
         self._show(still, clearance)
 
     # --- flow C ------------------------------------------------------------------------------------------------------
@@ -326,7 +345,7 @@ class Controller:
     # --- what is shown -----------------------------------------------------------------------------------------------
 
     def _show(self, playback: Playback, clearance: float) -> None:
-        self._shown, self._clearance = playback, clearance
+        self._shown, self._clearance, self._shown_at = playback, clearance, self._queue.time
         if clearance >= 0.0:
             self._free = playback
 

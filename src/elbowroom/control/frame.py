@@ -48,7 +48,7 @@ class Frame:
     phase: Phase
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
     stuck: bool  # the user pushes, and planning has found no way on for the root or for the limbs
-    touching: bool  # part of the body is inside an obstacle: only with assistance off
+    touching: bool  # part of the body is in an obstacle: with assistance off, or hit by what moves and leaves no way
     fill: int  # unplayed key frames in the queue
     key_frames: KeyFrames  # the unplayed key frames
     goal: Floats  # (11,) what the goal functions would show now: waist, left arm, right arm

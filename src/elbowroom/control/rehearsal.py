@@ -53,7 +53,7 @@ class Rehearsal:
             trial.advance(_SPACING)
             shown = trial.sample()
             shown.root[3:6] += self._held.stance
-            found.append(self._check.clearance(shown.root, shown.upper))
+            found.append(self._check.clearance(shown.root, shown.upper, trial.time))
         return np.array(found)
 
 

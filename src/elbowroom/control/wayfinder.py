@@ -81,6 +81,7 @@ class Wayfinder:
     def _search(self, question: Question) -> Motion:
         """A root path and its upper body; from the planner as one if it can do that."""
         query = question.query
+        self._root_planner.others = query.others
         if question.assist and isinstance(self._planner, MotionPlanner):
             far = query._replace(horizon=max(query.horizon, question.reserve))
             return self._planner.plan_motion(self._root_planner, far)

@@ -14,6 +14,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_plan import RootPlan
 from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]
 
@@ -28,6 +29,7 @@ class MotionQuery(NamedTuple):
     command: Command
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames
+    others: MovingBoxes = MovingBoxes()  # that move, besides the scene's own
 
 
 class Motion(NamedTuple):

@@ -23,6 +23,7 @@ from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root_line import TravelLine
 from elbowroom.planning.root_profile import Profile, turned_speed
+from elbowroom.world.boxes import BOX_ROW
 from elbowroom.world.clearance import clearance_into
 
 Floats = NDArray[np.float64]
@@ -42,6 +43,7 @@ class EvasionSettings:
     step: float = 0.1  # between rows
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
+    punctual: float = 0.2  # seconds before and after that a row may be reached in
     cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
     shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
     widest: float = 0.48  # from the line of travel, to either side
@@ -106,8 +108,19 @@ class EvasionFinder:
         radii = capsules.radii.astype(np.float32)
         self._radii = np.concatenate([np.tile(radii[legs], _PHASES), radii[self._members[1]], radii[arms]])
 
-    def ahead_of(self, line: TravelLine, start: RootState, sight: float, speeds: tuple[float, float]) -> "EvasionGrid":
-        """The grid from a start on, for `speeds` forward and sideways, m/s."""
+    def ahead_of(
+        self,
+        line: TravelLine,
+        start: RootState,
+        sight: float,
+        speeds: tuple[float, float],
+        moving: MovingBoxes,
+        time: float,
+    ) -> "EvasionGrid":
+        """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
+
+        What moves is where it will be about when a row is reached at full speed.
+        """
         s = self.settings
         headings = line.facing + s.angles
         bodies = np.stack([self._body(line.heading - heading, heading, speeds) for heading in headings])
@@ -120,8 +133,14 @@ class EvasionFinder:
         near = np.hypot(table[:, 0], table[:, 2]) < reach
         place = np.array([math.sin(line.heading), math.cos(line.heading), s.step, s.aside, s.comfort])
         shape = (math.ceil(sight / s.step) + 1, 2 * round(s.widest / s.aside) + 1)
+        passing = np.zeros((shape[0], len(moving), BOX_ROW))
+        for i in range(shape[0] if len(moving) else 0):
+            then = time + i * s.step / speeds[0]
+            passing[i] = moving.swept([max(then - s.punctual, time), then + s.punctual])[0]
+        passing[:, :, 0] -= origin[0]
+        passing[:, :, 2] -= origin[1]
         rows = np.ascontiguousarray(table[near], np.float32)
-        room = _room(bodies, self._groups, self._radii, rows, place, shape)
+        room = _room(bodies, self._groups, self._radii, rows, passing.astype(np.float32), place, shape)
         return EvasionGrid(s, line, start, speeds, first, room)
 
     def _body(self, way: float, heading: float, speeds: tuple[float, float]) -> Floats32:
@@ -240,10 +259,17 @@ def _lower_to_box(
 
 @exact_kernel
 def _room(
-    bodies: Floats32, groups: Indices, radii: Floats32, table: Floats32, place: Floats, shape: tuple[int, int]
+    bodies: Floats32,
+    groups: Indices,
+    radii: Floats32,
+    table: Floats32,
+    passing: Floats32,
+    place: Floats,
+    shape: tuple[int, int],
 ) -> Room:
     """The room of the body's parts `groups` on the grid, a batch for each box, turn and part.
 
+    `table` (B, 15) stands still, `passing` (rows, M, 15) is where a row is when it matters.
     `place`: sine and cosine of the line's heading, the distance of rows and of columns, and the comfort.
     """
     sine, cosine, step, aside, comfort = place[0], place[1], place[2], place[3], place[4]
@@ -263,6 +289,15 @@ def _room(
             for g in range(3):
                 part = slice(groups[g], groups[g + 1])
                 _lower_to_box(bodies[t, part], radii[part], x, z, box, away, comfort, out[g, t])
+    for i in range(rows):
+        row = slice(i * columns, (i + 1) * columns)
+        for b in range(passing.shape[1]):
+            box = passing[i, b : b + 1]
+            clearance_into(axis[:, :, row].copy(), np.zeros(1, np.float32), box, away[row])
+            for t in range(turns):
+                for g in range(3):
+                    part = slice(groups[g], groups[g + 1])
+                    _lower_to_box(bodies[t, part], radii[part], x[row], z[row], box, away[row], comfort, out[g, t, row])
     clear = np.ascontiguousarray(out.reshape(3, turns, rows, columns).transpose(0, 2, 3, 1))
     return _at_best(clear, comfort, aside)
 

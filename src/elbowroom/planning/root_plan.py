@@ -38,6 +38,11 @@ class RootPlannerSettings:
     dead_end: float = 2.0  # seconds that a way costs that ends before an obstacle
     aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
     turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
+    # Velocities forward and to the left with which to step out of the way of what moves, as they are liked.
+    steps_aside: tuple[tuple[float, float], ...] = (
+        *((-0.7, 0.0), (0.0, 0.6), (0.0, -0.6), (-0.5, 0.45), (-0.5, -0.45)),
+        *((1.1, 0.0), (0.8, 0.5), (0.8, -0.5)),
+    )
     slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
 
 

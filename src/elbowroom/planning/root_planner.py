@@ -21,10 +21,12 @@ from elbowroom.planning.root_body import LowerBody
 from elbowroom.planning.root_evasion import EvasionFinder
 from elbowroom.planning.root_line import TravelLine, asked_direction, new_line, wanted_speed, wanted_velocities
 from elbowroom.planning.root_motion import MotionBounds
+from elbowroom.planning.root_moving import MovingAround
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root_profile import Profile
 from elbowroom.planning.root_query import Answer, RootQuery
+from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -47,6 +49,8 @@ class RootPlanner:
         motion = self.settings.motion
         self.bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
         self._evasions = EvasionFinder(humanoid, scene.boxes.table, self.settings.evasion)
+        self._moving = scene.moving
+        self.others = MovingBoxes()  # that move besides the scene's own
         self.reset()
 
     def reset(self) -> None:
@@ -54,6 +58,15 @@ class RootPlanner:
         self._line: TravelLine | None = None
         self._last: Floats | None = None
         self._evading: Evading = None
+
+    @property
+    def moving(self) -> MovingBoxes:
+        """All that moves."""
+        return self._moving + self.others if len(self.others) else self._moving
+
+    def _query(self, start: RootState, horizon: int, interval: float, begin: float) -> RootQuery:
+        around = MovingAround(self.body, self.moving, begin, horizon, interval)
+        return RootQuery(self.settings, self.body, self.bounds, start, horizon, interval, around)
 
     def plan(
         self,
@@ -69,7 +82,7 @@ class RootPlanner:
         It is walked at the share `pace`, above 0 and up to 1, of the speed that the command asks for.
         """
         began = perf_counter_ns()
-        query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
+        query = self._query(start, horizon, interval, start_time)
         lost = 0.0
         if command.idle:
             self._line = None
@@ -119,6 +132,11 @@ class RootPlanner:
             yield self.plan(start, command, horizon, interval, start_time, pace)
         for other in others:
             yield self._taken(*other)
+        if len(self.moving):
+            query = self._query(start, horizon, interval, start_time)
+            for states in query.steps_aside():
+                path = RootPath(start_time, interval, states)
+                yield self._taken(RootPlan(path, RootPlanKind.EVASION, (start.x, start.z), 0, 0), self._evading)
 
     def _taken(self, plan: RootPlan, evading: Evading) -> RootPlan:
         self._last, self._evading = plan.path.states, evading
@@ -138,7 +156,7 @@ class RootPlanner:
         began, speed = perf_counter_ns(), wanted_speed(command, self.settings.motion)
         evasion = self.settings.evasion
         speeds = (speed, min(speed, evasion.sideways))
-        grid = self._evasions.ahead_of(line, start, self.settings.sight, speeds)
+        grid = self._evasions.ahead_of(line, start, self.settings.sight, speeds, self.moving, start_time)
         kept = known[0] if known is not None and known[1] == line else None
         found: list[Candidate] = []
         profiles: list[Profile] = []
@@ -148,7 +166,7 @@ class RootPlanner:
                 if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
                     break
                 profiles.append(way.profile)
-                query = RootQuery(self.settings, self.body, self.bounds, start, horizon, interval)
+                query = self._query(start, horizon, interval, start_time)
                 answer = query.evaded(line, way, speed)
                 lost, path = self._lost(line, speed, answer, interval), RootPath(start_time, interval, answer.states)
                 checks, spent = grid.cells + query.checks, perf_counter_ns() - began

@@ -1,7 +1,7 @@
 """One root plan in the making: candidates in the order in which they are liked, and the first that is free."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from elbowroom.planning.root_motion import (
     steer,
     stopping_states,
 )
+from elbowroom.planning.root_moving import MovingAround
 from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root_profile import Course, follow_profile
 from elbowroom.planning.root_route import find_route, route_points, shortened_route
@@ -55,8 +56,9 @@ class RootQuery:
         start: RootState,
         horizon: int,
         interval: float,
+        around: MovingAround,
     ) -> None:
-        self.settings, self.body, self.bounds = settings, body, bounds
+        self.settings, self.body, self.bounds, self.around = settings, body, bounds, around
         self.start, self.horizon, self.interval = start, horizon, interval
         run = self.settings.motion.run_speed
         reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
@@ -87,6 +89,21 @@ class RootQuery:
 
     def _kept(self, states: Floats) -> int:
         """The number of leading key intervals that are free, with a free stop from the end of each."""
+        kept = self._kept_in_motion(states) if self.around else self.horizon
+        return min(kept, self._kept_at_rest(states))
+
+    def _kept_in_motion(self, states: Floats) -> int:
+        """The number of leading key intervals that no moving box comes into."""
+        every = np.ones(self.horizon, np.bool_)
+        shown, owner = dense_states(states, self.interval, self.settings.spacing, every)
+        after = self.interval * self.horizon / len(shown) * np.arange(1.0, len(shown) + 1.0)
+        self.checks += len(shown)
+        clear = self.around.clearance(shown, after)
+        touching = owner[clear < min(self.skin, max(0.5 * float(clear[0]), 0.0))]
+        return int(touching[0]) - 1 if len(touching) else self.horizon
+
+    def _kept_at_rest(self, states: Floats) -> int:
+        """The number of leading key intervals that no standing box is in, with a free stop from the end of each."""
         if not len(self.boxes.table):
             return self.horizon
         moving, stopping = to_look_at(
@@ -119,15 +136,41 @@ class RootQuery:
             kept = self._kept(states)
             if kept == self.horizon:
                 return states, i
+            if self.around:
+                continue
             brake(states, kept, self.interval, self.bounds)
             if 2 * kept >= self.horizon:
                 return states, -1
             progress = _length(states) + _TURN_WORTH * abs(float(states[-1, 2] - states[0, 2]))
             if kept > 0 and progress > farthest:
                 best, farthest = states, progress
+        if self.around:
+            return self._given_way(), -1
         return (best, -1) if best is not None else (self.stop(), -1)
 
+    def _given_way(self) -> Floats:
+        """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
+        best, longest = self._stopped(), -1
+        for states in (best, *self.steps_aside()):
+            kept = self._kept(states)
+            if kept == self.horizon:
+                return states
+            if kept > longest:
+                best, longest = states, kept
+        return best
+
+    def steps_aside(self) -> Iterator[Floats]:
+        """Short ways back, to both sides and on, in the order in which they are liked."""
+        for forward, lateral in self.settings.steps_aside:
+            states, wanted = self._blank(), np.array([forward, lateral, 0.0])
+            steer(states, wanted, self.interval, self.bounds)
+            yield states
+
     def stop(self) -> Floats:
+        """Stand, or step out of the way of what comes."""
+        return self._given_way() if self.around else self._stopped()
+
+    def _stopped(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
         for hard in (1.0, 2.0, 4.0):
             states = self._blank()

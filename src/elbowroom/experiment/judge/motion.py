@@ -43,6 +43,7 @@ class ShownMotion:
     roots: Floats  # (F, 7) see `body.root`
     jumps: NDArray[np.bool_]  # (F,) the frame does not follow from the one before it: nothing is shown between them
     assisted: NDArray[np.bool_]  # (F,) the planner was at work
+    clock: Floats | None = None  # (F,) the scene's own time, by which things move; None: the frames' times
 
     def __len__(self) -> int:
         return len(self.times)
@@ -63,7 +64,9 @@ class ShownMotion:
         _check(recording.path, q.reshape(-1, DOF), roots.reshape(-1, ROOT_STATE), dt)
         jumps = (steps["flags"] & RESTART) != 0
         jumps[0] = True
-        return cls(np.cumsum(dt), q, roots, jumps, (steps["flags"] & ASSIST) != 0)
+        times = np.cumsum(dt)
+        before = np.maximum.accumulate(np.where(jumps, times - dt, 0.0))  # the scene's time begins anew with a restart
+        return cls(times, q, roots, jumps, (steps["flags"] & ASSIST) != 0, times - before)
 
     def moments(self, rate: float) -> Moments:
         """Every frame, and as many even steps between neighbours as make at least `rate` poses a second.
@@ -80,6 +83,12 @@ class ShownMotion:
         second = np.minimum(first + 1, len(self) - 1)
         times = self.times[first] + share * (self.times[second] - self.times[first])
         return Moments(first, second, share, times)
+
+    def scene_times(self, moments: Moments) -> Floats:
+        """The scene's own time (N,) at some moments."""
+        clock = self.times if self.clock is None else self.clock
+        found: Floats = clock[moments.first] + moments.share * (clock[moments.second] - clock[moments.first])
+        return found
 
     def runs(self) -> Iterator[slice]:
         """The frames between one jump and the next."""

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
+from elbowroom.world.moving import Track
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -48,22 +50,46 @@ def coal_library() -> Any:
     return coal
 
 
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """Obstacles that keep their places to each other, seen from where they are."""
+
+    obstacles: tuple[Obstacle, ...]
+    track: Track | None  # by which they move; None: they stand still
+
+    def seen(self, posed: Posed, times: Floats) -> Posed:
+        """The joints of N poses at the scene's times (N,) as seen from the moving frame."""
+        if self.track is None:
+            return posed
+        centers, yaws = self.track.poses(times)
+        to_frame = np.swapaxes(quaternion.to_matrix(_about_y(yaws)), -1, -2)
+        positions = np.einsum("nij,nkj->nki", to_frame, posed.positions - centers[:, None])
+        return Posed(positions, np.einsum("nij,nkjl->nkil", to_frame, posed.rotations))
+
+
 def obstacles_of(scene: Scene) -> tuple[Obstacle, ...]:
-    """Every obstacle of a scene."""
-    return _boxes(scene)
-
-
-def _boxes(scene: Scene) -> tuple[Obstacle, ...]:
-    coal, boxes = coal_library(), scene.boxes
+    """Every obstacle of a scene that stands still."""
+    boxes = scene.boxes
     turns = quaternion.to_matrix(boxes.rotations)
-    return tuple(
-        Obstacle(
-            name=name,
-            shape=coal.Box(*(2.0 * half)),
-            place=coal.Transform3s(turn, center),
-            center=center,
-            to_box=turn.T,
-            half_size=half,
-        )
-        for name, center, turn, half in zip(scene.box_names, boxes.centers, turns, boxes.half_sizes, strict=True)
-    )
+    rows = zip(scene.box_names, boxes.centers, turns, boxes.half_sizes, strict=True)
+    return tuple(_box(*row) for row in rows)
+
+
+def surroundings_of(scene: Scene) -> tuple[Surroundings, ...]:
+    """Every obstacle of a scene: those that stand still together, each moving one by itself."""
+    moving = [
+        Surroundings((_box(track.name, np.zeros(3), np.eye(3), 0.5 * track.size),), track)
+        for track in scene.moving.tracks
+    ]
+    return (Surroundings(obstacles_of(scene), None), *moving)
+
+
+def _box(name: str, center: Floats, turn: Floats, half: Floats) -> Obstacle:
+    coal = coal_library()
+    shape, place = coal.Box(*(2.0 * half)), coal.Transform3s(turn, center)
+    return Obstacle(name=name, shape=shape, place=place, center=center, to_box=turn.T, half_size=half)
+
+
+def _about_y(yaws: Floats) -> Floats:
+    zero = np.zeros_like(yaws)
+    return np.stack([zero, np.sin(0.5 * yaws), zero, np.cos(0.5 * yaws)], axis=-1)

@@ -12,7 +12,7 @@ from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness
 from elbowroom.experiment.judge.mesh_judge import MeshJudge
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
-from elbowroom.experiment.judge.obstacles import obstacles_of
+from elbowroom.experiment.judge.obstacles import surroundings_of
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.skin import Skin, skin_of
@@ -93,20 +93,25 @@ def judge(
     Raises `InputError` where the collision library is missing or the avatar's mesh is damaged.
     """
     chosen = settings or JudgeSettings()
-    obstacles, poser = obstacles_of(scene), Poser(humanoid)
+    surroundings, poser = surroundings_of(scene), Poser(humanoid)
     skin, note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
     moments = motion.moments(chosen.rate)
     of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
     of_itself = Ledger(chosen.self_tolerance)
-    capsule_judge, self_judge = CapsuleJudge(humanoid, obstacles), SelfJudge(humanoid)
-    mesh_judge = None if skin is None else MeshJudge(skin, humanoid.skeleton, obstacles)
+    capsule_judges = [CapsuleJudge(humanoid, around.obstacles) for around in surroundings]
+    self_judge = SelfJudge(humanoid)
+    mesh_judges = (
+        [] if skin is None else [MeshJudge(skin, humanoid.skeleton, around.obstacles) for around in surroundings]
+    )
     for first in range(0, len(moments.times), _AT_ONCE):
         some = moments.part(slice(first, first + _AT_ONCE))
         posed = poser.at(motion, some)
-        capsule_judge.judge(posed, some.times, first, of_capsules)
+        views = [around.seen(posed, motion.scene_times(some)) for around in surroundings]
+        for view, capsule_judge in zip(views, capsule_judges, strict=True):
+            capsule_judge.judge(view, some.times, first, of_capsules)
         self_judge.judge(posed, some.times, first, of_itself)
-        if mesh_judge is not None:
-            mesh_judge.judge(posed, some.times, first, of_mesh)
+        for view, mesh_judge in zip(views, mesh_judges, strict=bool(mesh_judges)):
+            mesh_judge.judge(view, some.times, first, of_mesh)
         if progress is not None:
             progress(float(some.times[-1]))
     return _verdict(motion, moments, (skin, note), of_capsules, of_itself, of_mesh)
