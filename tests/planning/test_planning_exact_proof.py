@@ -107,7 +107,7 @@ def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
     for _ in range(12):
         a, b = random_roots(rng)
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
-        root = root_way(body.roots, body.chain, a, b, T)
+        root = root_way(body.roots, body.chain, a, b, T, 0.0)
         begin_round(body.roots.slots)
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         trunk, limb = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
@@ -151,7 +151,7 @@ def test_what_is_proven_is_free_at_every_moment(humanoid: Humanoid) -> None:
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
         for slots in (body.roots.slots, body.waists.slots, body.arms.slots):
             begin_round(slots)
-        root = root_way(body.roots, body.chain, a, b, T)
+        root = root_way(body.roots, body.chain, a, b, T, 0.0)
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         _, points = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
         # A small box beside the hand's way, so that about half of the motions touch it.

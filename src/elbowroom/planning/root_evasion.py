@@ -25,6 +25,7 @@ from elbowroom.planning.root_line import TravelLine
 from elbowroom.planning.root_profile import Profile, turned_speed
 from elbowroom.world.boxes import BOX_ROW
 from elbowroom.world.clearance import clearance_into
+from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

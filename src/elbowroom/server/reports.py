@@ -122,7 +122,8 @@ def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
     blockade = None if plan is None else plan.local.blockade
     if blockade is None:
         return None
-    names = [scene.box_names[box] for box in blockade.boxes if box < len(scene.box_names)]
+    known = (*scene.box_names, *scene.moving.names)
+    names = [known[box] for box in blockade.boxes if box < len(known)]
     return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 
 

@@ -26,6 +26,7 @@ from elbowroom.planning.exact.group_search import (
 )
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep
 from elbowroom.planning.exact.lattice import KEPT, OWN
+from elbowroom.planning.exact.near_boxes import NearBoxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.reaching import Blocked
 from elbowroom.planning.exact.settings import ExactSettings
@@ -84,8 +85,7 @@ class Dressing:
     start: Floats  # (10,)
     velocity: Floats  # (10,)
     roots: Longs  # (n,)
-    boxes: Floats  # (B, 15)
-    rows: Longs  # (B,) their numbers in the scene
+    near: NearBoxes
     margins: Floats  # (n+1,)
     skins: Floats  # (n,)
 
@@ -148,7 +148,7 @@ class Dressing:
     def blockade(self) -> Blockade:
         """Why there is no way."""
         assert self._waist is not None
-        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.rows)
+        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.near.rows)
 
     def blocked_slice(self) -> Blocked:
         """The slice that the first group to fail could not get through."""
@@ -161,7 +161,7 @@ class Dressing:
         waists = known[order[np.isfinite(prices[order])]]
         if depth < len(waist.keys):
             waists = np.concatenate([waist.keys[depth : depth + 1], waists])
-        around = surroundings(self.path.states, self.shelves.roots, self.roots, self.boxes)
+        around = surroundings(self.path.states, self.shelves.roots, self.roots, self.near.slices)
         return Blocked(depth, around, self.goals[depth, at], float(self.margins[depth]), waists)
 
     def joint_step(self, waist: GroupWay) -> JointStep:
@@ -174,7 +174,12 @@ class Dressing:
             if waist.reached == self.path.horizon:
                 at = waist.slots[0]
                 clearance, _ = held_clearance(
-                    groups[group].postures, arm_task.start, waists.places[at], waists.turns[at], self.boxes, START
+                    groups[group].postures,
+                    arm_task.start,
+                    waists.places[at],
+                    waists.turns[at],
+                    self.near.intervals[0],
+                    START,
                 )
                 most = max(0.5 * clearance, 0.0)
             arms.append(arm_nodes(groups[group], arm_task, self.weights.keeping, most))
@@ -182,7 +187,7 @@ class Dressing:
             self.own_body,
             waist_nodes(groups[DofGroup.WAIST], task, waist, self.weights.keeping),
             (arms[0], arms[1]),
-            surroundings(self.path.states, self.shelves.roots, self.roots, self.boxes),
+            surroundings(self.path.states, self.shelves.roots, self.roots, self.near.slices),
             JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
         )
 
@@ -279,8 +284,8 @@ class Dressing:
         kept = self.kept[:, at] if follow is None else follow.keys
         return GroupTask(
             np.ascontiguousarray(self.goals[:, at]), np.ascontiguousarray(kept), self.start[at], self.velocity[at],
-            self.margins, self.skins, self._none(group) if extra is None else extra, self.roots, carriers, self.boxes,
-            self.path.interval,
+            self.margins, self.skins, self._none(group) if extra is None else extra, self.roots, carriers,
+            self.near.intervals, self.path.interval,
         )  # fmt: skip
 
     def _search(

@@ -79,7 +79,7 @@ class GroupTask(NamedTuple):
     extra: Floats32  # (n+1, W+OWN) added to the nodes' prices
     roots: Longs  # (n,) slots of the root ways
     carriers: Longs  # (n,) slots of the waist's ways, for an arm
-    boxes: Floats  # (B, 15) in the world
+    boxes: Floats  # (n, B, 15) in the world, in each key interval
     interval: float
 
 
@@ -185,7 +185,7 @@ def _prices(
     checks = 0
     for k in range(horizon):
         carrier, places, turns = _carrier(group, roots, waists, task, k)
-        at, count = table_of(group.tables, postures, carrier, places, turns, task.goals[k : k + 2], task.boxes)
+        at, count = table_of(group.tables, postures, carrier, places, turns, task.goals[k : k + 2], task.boxes[k])
         checks += count
         clear[k, : width + 1] = np.minimum(clear[k, : width + 1], group.tables.early[at])
         clear[k + 1, : width + 1] = np.minimum(clear[k + 1, : width + 1], group.tables.late[at])
@@ -193,7 +193,7 @@ def _prices(
             for end in range(2):
                 if needed[k + end, e]:
                     moments = EARLY if end == 0 else LATE
-                    found, count = held_clearance(postures, own[k + end, e], places, turns, task.boxes, moments)
+                    found, count = held_clearance(postures, own[k + end, e], places, turns, task.boxes[k], moments)
                     checks += count
                     clear[k + end, width + e] = min(clear[k + end, width + e], found)
     comfort, near = np.float32(weights.comfort), np.float32(weights.near)
@@ -238,7 +238,7 @@ def search_group(
     begin_round(group.tables.slots)
     own, needed, kept = own_postures(group, task)
     _, places, turns = _carrier(group, roots, waists, task, 0)
-    clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes, START)
+    clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes[0], START)
     most = max(0.5 * clearance, 0.0)
     price, count = _prices(group, roots, waists, task, weights, own, needed, kept, most)
     checks += count
@@ -268,7 +268,7 @@ def search_group(
             ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
             carrier = task.carriers[k] if not postures.limb.is_waist else 0
             slots[k], count = limb_way(
-                group.ways, postures, group.levers, chain, roots, task.roots[k], waists, carrier, ends, task.boxes,
+                group.ways, postures, group.levers, chain, roots, task.roots[k], waists, carrier, ends, task.boxes[k],
                 skins[k],
             )  # fmt: skip
             checks += count
@@ -288,6 +288,6 @@ def search_group(
                 steps = promising(lattice, scratch.work, k, best + slack[k], seen[k])
                 if len(steps):
                     _, places, turns = _carrier(group, roots, waists, task, k)
-                    checks += close_steps(postures, lattice, k, steps, places, turns, task.boxes, skins[k])
+                    checks += close_steps(postures, lattice, k, steps, places, turns, task.boxes[k], skins[k])
         begin = first
     return GroupWay(deepest, keys[: deepest + 1], tangents[: deepest + 1], slots, price, checks, nodes)

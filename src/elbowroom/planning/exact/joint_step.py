@@ -60,7 +60,7 @@ class Surroundings(NamedTuple):
     states: Floats  # (n+1, 7) the root at the key times
     places: Floats  # (n+1, m, 3) pelvis at m moments around each key time, in the world
     turns: Floats  # (n+1, m, 4)
-    boxes: Floats  # (B, 15) in the world
+    boxes: Floats  # (n+1, B, 15) in the world, around each key time
 
 
 class JointStep:
@@ -134,7 +134,7 @@ class JointStep:
         for side, group in enumerate(self.nodes[1:]):
             lanes = self.lanes(1 + side, depth)
             every = np.ones(len(chosen), np.bool_)
-            clear, checks = clearances_under(lanes, *frames, self.around.boxes, every)
+            clear, checks = clearances_under(lanes, *frames, self.around.boxes[depth], every)
             self.checks += checks
             clear = clear[:, : group.base.shape[1]]
             if depth > 0:

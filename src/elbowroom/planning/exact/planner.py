@@ -75,6 +75,7 @@ class ExactPlanner:
         for root in root_planner.candidates(*at):
             if (
                 first is not None
+                and not len(root_planner.moving)
                 and root.kind is not RootPlanKind.EVASION
                 and _way(root.path, horizon) < blocked_at + _FARTHER
             ):
@@ -82,7 +83,7 @@ class ExactPlanner:
             upper = self._dress(root.path, query, refine=first is None)
             if upper.reached == horizon:
                 return _Whole(root, upper.plan)
-            if first is None:
+            if first is None or (len(root_planner.moving) and upper.reached > first[1].reached):
                 first = root, upper
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         assert first is not None
@@ -126,7 +127,7 @@ class ExactPlanner:
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, *, refine: bool = False) -> UpperPlan:
-        return self._body.plan(path, query.upper, query.velocity, self._kept(path), refine=refine)
+        return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, refine=refine)
 
     def _kept(self, path: RootPath) -> Floats | None:
         """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""

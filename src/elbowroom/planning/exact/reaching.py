@@ -36,7 +36,7 @@ def waists_for(limb: Limb, reach: float, known: Floats, blocked: Blocked, settin
     drawn = drawn_postures(DofGroup.WAIST, blocked.goal, settings.drawn, settings.near)
     places, turns = blocked.around.places[blocked.depth][None], blocked.around.turns[blocked.depth][None]
     lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
-    clear, _ = clearances_under(lanes, places, turns, blocked.around.boxes, np.ones(1, np.bool_))
+    clear, _ = clearances_under(lanes, places, turns, blocked.around.boxes[blocked.depth], np.ones(1, np.bool_))
     free = clear[0, : len(drawn)] >= blocked.margin
     return _worth(drawn, free, known, blocked.goal, settings)
 
@@ -58,8 +58,8 @@ def arms_for(
     )  # fmt: skip
     lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
     clear, _ = clearances_under(
-        lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4), blocked.around.boxes,
-        np.ones(len(waists), np.bool_),
+        lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4),
+        blocked.around.boxes[blocked.depth], np.ones(len(waists), np.bool_),
     )  # fmt: skip
     states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
     parts = body.parts(side, waists, states, None)

@@ -19,19 +19,21 @@ from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.dressing import Dressing, Shelves
 from elbowroom.planning.exact.group_search import Group, Scratch, Weights, new_scratch
 from elbowroom.planning.exact.lattice import OWN
+from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.tables import new_tables
-from elbowroom.planning.exact.ways import Chain, chain_of, levers_of, new_limb_ways, new_root_ways, root_ways
+from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways, root_ways
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
 from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import clear_of_trunk
+from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -74,19 +76,27 @@ class UpperBody:
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
-        self._boxes = scene.boxes.table
-        self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
+        self._boxes, self._moving = scene.boxes.table, scene.moving
         self._legs = LoweredLegs(self._model, scene.boxes)
 
     def plan(
-        self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None = None, *, refine: bool = True
+        self,
+        path: RootPath,
+        start: Floats,
+        velocity: Floats,
+        kept: Floats | None = None,
+        others: MovingBoxes | None = None,
+        *,
+        refine: bool = True,
     ) -> UpperPlan:
         """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's.
 
-        Postures are added where it is blocked if `refine`.
+        `others` move besides the scene's own. Postures are added where it is blocked if `refine`.
         """
+        moving = self._moving if others is None else self._moving + others
+        near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, start, velocity, kept)
+            dressing = self._dressing(path, start, velocity, kept, near)
             found = dressing.motion(held=kept is not None)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing)
@@ -103,15 +113,16 @@ class UpperBody:
             if pool.clear():
                 self._take_in(group)
 
-    def _dressing(self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None) -> Dressing:
+    def _dressing(
+        self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None, near: NearBoxes
+    ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
-        roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval)
-        boxes, rows = self._near(path, shelves.chain)
+        roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval, near.stamps)
         margins, skins = self._margins(path)
         return Dressing(
             shelves, self._weights, self.settings, self._own_body, self._legs, path, goals,
-            goals if kept is None else kept, start, velocity, roots, boxes, rows, margins, skins,
+            goals if kept is None else kept, start, velocity, roots, near, margins, skins,
         )  # fmt: skip
 
     def _refine(self, dressing: Dressing) -> bool:
@@ -155,14 +166,6 @@ class UpperBody:
         settings, times = self.settings, path.interval * np.arange(len(path.states))
         shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * times / settings.soon, 1.0)
         return settings.margin * shares, settings.skin * shares[:-1]
-
-    def _near(self, path: RootPath, chain: Chain) -> tuple[Floats, Longs]:
-        """The boxes that the upper body could reach, or nearly, and their numbers in the scene."""
-        low, high = path.states[:, :2].min(axis=0), path.states[:, :2].max(axis=0)
-        places = self._boxes[:, [0, 2]]
-        gaps = np.linalg.norm(places - np.clip(places, low, high), axis=1)
-        rows = np.flatnonzero(gaps - self._box_radii < chain.span + _NEARLY)
-        return self._boxes[rows], rows
 
     def _shelves_for(self, path: RootPath) -> Shelves:
         key = (path.interval, path.horizon)

@@ -66,7 +66,7 @@ class LimbWays(NamedTuple):
 def new_root_ways(count: int) -> RootWays:
     """Room for the ways of `count` key intervals."""
     return RootWays(
-        new_slots(count, 15),
+        new_slots(count, 16),
         np.empty((count, SWEEP + 1, 3)),
         np.empty((count, SWEEP + 1, 4)),
         np.empty((count, SWEEP)),
@@ -171,10 +171,10 @@ def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -
 
 
 @exact_kernel
-def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float) -> int:
-    """The slot of the root way from state `a` to `b`."""
-    key = np.empty(15)
-    key[0], key[1:8], key[8:15] = interval, a, b
+def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float, stamp: float) -> int:
+    """The slot of the root way from state `a` to `b`; `stamp` tells apart what moves meanwhile."""
+    key = np.empty(16)
+    key[0], key[1:8], key[8:15], key[15] = interval, a, b, stamp
     known = find(ways.slots, key)
     if known >= 0:
         return int(known)
@@ -256,10 +256,10 @@ def carry(
 
 
 @exact_kernel
-def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float) -> Longs:
-    """The slots (n,) of the root ways between the key states (n+1, 7)."""
+def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float, stamps: Floats) -> Longs:
+    """The slots (n,) of the root ways between the key states (n+1, 7), each with its stamp (n,)."""
     begin_round(ways.slots)
     out = np.empty(states.shape[0] - 1, np.int64)
     for k in range(out.shape[0]):
-        out[k] = root_way(ways, chain, states[k], states[k + 1], interval)
+        out[k] = root_way(ways, chain, states[k], states[k + 1], interval, stamps[k])
     return out

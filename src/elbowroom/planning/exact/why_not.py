@@ -66,7 +66,7 @@ def _possible(step: JointStep, depth: int) -> Bools:
 def _contacts(step: JointStep, depth: int, candidates: Bools) -> SliceContacts:
     """Which box closes which node of a slice."""
     around, (waist, *arms) = step.around, step.nodes
-    boxes, count = around.boxes, candidates.shape[0]
+    boxes, count = around.boxes[depth], candidates.shape[0]
     used = candidates.any(axis=(1, 2))
     pelvis = around.places[depth][None], around.turns[depth][None]
     chests = step.chests(depth, step.configurations(0, depth))
