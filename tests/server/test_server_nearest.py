@@ -29,7 +29,7 @@ def test_points_and_distance_agree_with_many_samples(seed: int) -> None:
     rng = np.random.default_rng(seed)
     boxes, radii = random_boxes(rng, 3), rng.uniform(0.02, 0.2, 4)
     segments = rng.uniform(-2, 2, (4, 6)).astype(np.float32)
-    found = nearest(segments, radii, tuple("abcd"), scene_of(boxes))
+    found = nearest(segments, radii, tuple("abcd"), scene_of(boxes), 0.0)
     assert found is not None
     share = np.linspace(0, 1, 501)[:, None]
     gaps = np.empty((4, 3))
@@ -48,4 +48,4 @@ def test_points_and_distance_agree_with_many_samples(seed: int) -> None:
 
 def test_without_obstacles_nothing_is_near() -> None:
     none = Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3)))
-    assert nearest(np.zeros((1, 6), np.float32), np.ones(1), ("head",), scene_of(none)) is None
+    assert nearest(np.zeros((1, 6), np.float32), np.ones(1), ("head",), scene_of(none), 0.0) is None

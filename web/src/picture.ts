@@ -64,7 +64,7 @@ export class Picture {
 
   showScene(scene: SceneMessage): void {
     this.world.show(scene, this.stage.palette, this.stage.currentQuality.rich);
-    this.overlays.setScene(this.world.boxes, scene.boxes.map((box) => box.name));
+    this.overlays.setScene(this.world.boxes, this.world.names);
     this.last = [Infinity, Infinity];
   }
 
@@ -113,6 +113,7 @@ export class Picture {
   }
 
   private place(pose: ShownPose, scenery: Scenery, dt: number): void {
+    this.world.move(pose.simTime);
     if (pose.avatarRevision === this.avatar.revision) this.avatar.pose(pose);
     this.avatar.update(dt, this.calm());
     const followed = this.followed(pose, scenery);

@@ -22,7 +22,7 @@ class BodyCheck:
     """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
-        self._model = body_model(humanoid)
+        self.model = body_model(humanoid)
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._table = scene.boxes.table
         self.moving = scene.moving
@@ -32,7 +32,7 @@ class BodyCheck:
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
-        segments = posture_capsules(self._model, configuration(root, upper)[None], self._near(root, root)[None])
+        segments = posture_capsules(self.model, configuration(root, upper)[None], self._near(root, root)[None])
         return clearance_of(segments[:, :, 0], self._radii, self._around(root, time))
 
     def clearance_between(
@@ -41,7 +41,7 @@ class BodyCheck:
         """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants."""
         root = roots[0] + _BETWEEN[:, None] * (roots[1] - roots[0])
         upper = uppers[0] + _BETWEEN[:, None] * (uppers[1] - uppers[0])
-        segments = posture_capsules(self._model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
+        segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
         if not len(self.moving):
             return float(clearance(segments, self._radii, self._around(roots[0], times[0])).min())
         looks = times[0] + _BETWEEN * (times[1] - times[0])

@@ -20,7 +20,8 @@ from elbowroom.control.desk import ImmediateDesk, PlanningDesk
 from elbowroom.control.foresight import Foresight
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
-from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
+from elbowroom.control.prediction import predicted
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
@@ -141,6 +142,16 @@ class Controller:
     def others(self, moving: MovingBoxes) -> None:
         self._others = moving
         self._check.moving = self.scene.moving + moving
+
+    def prediction(self) -> MovingBoxes:
+        """Where this avatar will be, as far as is planned and then straight on: for others' `others`."""
+        now, coming = self._shown, self._queue.unplayed()
+        keys = KeyFrames(
+            np.append(self._queue.time, coming.times),
+            np.vstack([now.root, coming.roots]),
+            np.vstack([now.upper, coming.uppers]),
+        )
+        return predicted(self.humanoid, self._check.model, keys)
 
     @property
     def phase(self) -> Phase:

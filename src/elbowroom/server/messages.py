@@ -230,6 +230,18 @@ class Place:
 
 
 @dataclass(frozen=True)
+class MovingBox:
+    """An upright box on a track: its place and its turn about Y change evenly from key pose to key pose."""
+
+    name: str
+    size: Vector  # whole edge lengths
+    times: list[float]  # of the key poses, in simulated seconds since the last reset
+    centers: list[Vector]
+    yaws: list[float]  # radians
+    repeat: Literal["once", "loop", "pingpong"]  # then: it stays, begins anew, goes back the same way
+
+
+@dataclass(frozen=True)
 class SceneMessage:
     """The world to draw; the following frames happen in it."""
 
@@ -238,6 +250,7 @@ class SceneMessage:
     description: str
     ground: Ground
     boxes: list[Box]
+    moving: list[MovingBox]
     start: Place
     finish: Gate | None
 

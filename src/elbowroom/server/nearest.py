@@ -13,19 +13,24 @@ _SAMPLES = 17
 _ROUNDS = 6  # each narrows the interval to an eighth: 4e-6 of the capsule's length
 
 
-def nearest(segments: NDArray[np.float32], radii: Floats, names: tuple[str, ...], scene: Scene) -> Nearest | None:
-    """The closest pair of a posture's capsules (C, 6), radii (C,) and the scene's boxes; None without boxes."""
-    if len(scene.boxes) == 0:
+def nearest(
+    segments: NDArray[np.float32], radii: Floats, names: tuple[str, ...], scene: Scene, time: float
+) -> Nearest | None:
+    """The closest pair of a posture's capsules (C, 6), radii (C,) and the boxes at a time; None without boxes."""
+    table = scene.boxes.table
+    if len(scene.moving):
+        table = np.concatenate([table, scene.moving.tables([time])[0]])
+    if len(table) == 0:
         return None
-    gaps = pairwise_clearance(segments[:, :, None], radii, scene.boxes.table)[:, :, 0]
+    gaps = pairwise_clearance(segments[:, :, None], radii, table)[:, :, 0]
     capsule, box = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
-    on_axis, on_box = _closest_points(segments[capsule].astype(np.float64), scene.boxes.table[box])
+    on_axis, on_box = _closest_points(segments[capsule].astype(np.float64), table[box])
     away = on_box - on_axis
     distance = float(np.linalg.norm(away))
     on_body = on_axis + away * min(1.0, radii[capsule] / distance) if distance > 0.0 else on_axis
     return Nearest(
         capsule=names[capsule],
-        box=scene.box_names[box],
+        box=(*scene.box_names, *scene.moving.names)[box],
         on_body=_vector(on_body),
         on_box=_vector(on_box),
         distance=float(gaps[capsule, box]),

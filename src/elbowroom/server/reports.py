@@ -22,12 +22,14 @@ from elbowroom.server.messages import (
     Ground,
     GroupName,
     GroupReport,
+    MovingBox,
     Place,
     Plan,
     Reason,
     SceneMessage,
 )
 from elbowroom.server.pose import placement
+from elbowroom.world.moving import Track
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -60,9 +62,16 @@ def scene_message(scene: Scene) -> SceneMessage:
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
         boxes=[Box(name, tuple(center), tuple(size), tuple(turn)) for name, center, size, turn in boxes],
+        moving=[_moving_box(track) for track in scene.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
     )
+
+
+def _moving_box(track: Track) -> MovingBox:
+    x, y, z = track.size.tolist()
+    centers = [(a, b, c) for a, b, c in track.centers.tolist()]
+    return MovingBox(track.name, (x, y, z), track.times.tolist(), centers, track.yaws.tolist(), track.repeat.value)
 
 
 def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:

@@ -210,4 +210,4 @@ class Stage:
         walk, frame = self.walk, self.walk.frame
         capsules = walk.avatar.humanoid.capsules
         segments = walk.avatar.poser.segments(frame.q, frame.root)[0]
-        return nearest(segments, capsules.radii, capsules.names, walk.scene)
+        return nearest(segments, capsules.radii, capsules.names, walk.scene, frame.time)

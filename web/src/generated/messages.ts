@@ -200,6 +200,20 @@ export interface Place {
   heading: number;
 }
 
+/** An upright box on a track: its place and its turn about Y change evenly from key pose to key pose. */
+export interface MovingBox {
+  name: string;
+  /** whole edge lengths */
+  size: [number, number, number];
+  /** of the key poses, in simulated seconds since the last reset */
+  times: number[];
+  centers: [number, number, number][];
+  /** radians */
+  yaws: number[];
+  /** then: it stays, begins anew, goes back the same way */
+  repeat: "once" | "loop" | "pingpong";
+}
+
 /** The world to draw; the following frames happen in it. */
 export interface SceneMessage {
   type: "scene";
@@ -208,6 +222,7 @@ export interface SceneMessage {
   description: string;
   ground: Ground;
   boxes: Box[];
+  moving: MovingBox[];
   start: Place;
   finish: Gate | null;
 }

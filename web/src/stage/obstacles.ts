@@ -30,6 +30,13 @@ export class Obstacles {
     this.glowMarked();
   }
 
+  /** Puts a box to another place, by number. */
+  place(i: number, { center, rotation }: OrientedBox): void {
+    const mesh = this.group.children[i];
+    mesh?.position.set(...center);
+    mesh?.quaternion.set(...rotation);
+  }
+
   /** Lets some boxes glow, by number: those that close the way. */
   mark(boxes: ReadonlySet<number>): void {
     if (boxes.size === this.marked.size && [...boxes].every((i) => this.marked.has(i))) return;

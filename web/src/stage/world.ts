@@ -5,6 +5,7 @@ import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type Prepar
 import type { Box, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";
+import { boxAt } from "./moving";
 import { Obstacles } from "./obstacles";
 import { nearestOnSegment } from "../overlays/touching";
 import type { Palette } from "./palette";
@@ -14,8 +15,8 @@ const BESIDE_THE_BODY = 0.97;
 
 export class World {
   readonly group = new Group();
-  /** The obstacles for distance queries. */
-  boxes: readonly PreparedBox[] = [];
+  /** The obstacles for distance queries: those that stand, then those that move, where they were drawn last. */
+  boxes: PreparedBox[] = [];
   cameraObstacles: CameraObstacles = { all: [], walls: [] };
   message: SceneMessage | null = null;
   readonly gate = new Gate();
@@ -28,7 +29,7 @@ export class World {
 
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
-    this.boxes = message.boxes.map((box) => prepareBox(orientedBox(box)));
+    this.boxes = allBoxes(message).map(prepareBox);
     this.cameraObstacles = { all: this.boxes, walls: this.boxes.filter((box) => isWall(box)) };
     this.repaint(palette, rich);
   }
@@ -36,8 +37,23 @@ export class World {
   /** Lets the boxes of these names glow: they close the way. */
   markBlocking(names: readonly string[]): void {
     const wanted = new Set(names);
-    const numbers = (this.message?.boxes ?? []).flatMap((box, i) => (wanted.has(box.name) ? [i] : []));
+    const numbers = this.names.flatMap((name, i) => (wanted.has(name) ? [i] : []));
     this.obstacles.mark(new Set(numbers));
+  }
+
+  /** The names of all boxes, in the order of `boxes`. */
+  get names(): string[] {
+    return this.message ? [...this.message.boxes, ...this.message.moving].map((box) => box.name) : [];
+  }
+
+  /** Puts what moves to where it is at the scene's time. */
+  move(time: number): void {
+    const { message } = this;
+    message?.moving.forEach((track, i) => {
+      const at = message.boxes.length + i, box = boxAt(track, time);
+      this.obstacles.place(at, box);
+      this.boxes[at] = prepareBox(box);
+    });
   }
 
   /** Makes boxes see-through that stand between the camera and the avatar. */
@@ -50,8 +66,9 @@ export class World {
     const { message } = this;
     if (!message) return;
     const { ground, start, finish } = message;
-    this.obstacles.build(message.boxes.map(orientedBox), palette, rich);
-    this.ground.lay(ground.size[0], ground.size[1], ground.center, this.boxes, palette, rich);
+    this.obstacles.build(allBoxes(message), palette, rich);
+    const standing = this.boxes.slice(0, message.boxes.length);
+    this.ground.lay(ground.size[0], ground.size[1], ground.center, standing, palette, rich);
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
     this.gate.build(gate, [start.x, start.z], palette);
   }
@@ -63,6 +80,11 @@ function hides(box: PreparedBox | undefined, camera: Vec3, body: readonly Vec3[]
     const { share, distance } = nearestOnSegment(box, [...camera, ...point], 0);
     return distance < SIGHT_RADIUS && share < BESIDE_THE_BODY;
   });
+}
+
+/** The boxes that stand, then those that move, where they begin. */
+function allBoxes({ boxes, moving }: SceneMessage): OrientedBox[] {
+  return [...boxes.map(orientedBox), ...moving.map((track) => boxAt(track, 0))];
 }
 
 function orientedBox({ center, rotation, size }: Box): OrientedBox {
