@@ -114,7 +114,8 @@ class RootPlanner:
         """
         commanded = self.plan(start, command, horizon, interval, start_time)
         known = self._evading
-        line = None if command.idle or _turns(command) else self._line
+        slow = wanted_speed(command, self.settings.motion) < _SLOW
+        line = None if command.idle or _turns(command) or slow else self._line
         self._evading = known if self._still_turned(start) else None
         if commanded.lost < self.settings.untroubled:
             yield commanded
@@ -176,8 +177,8 @@ class RootPlanner:
         return found
 
     def _lost(self, line: TravelLine, speed: float, answer: Answer, interval: float) -> float:
-        """Seconds that a path costs against a walk along the line of travel at the wanted speed; none at a stand."""
-        if speed <= 0.0:
+        """Seconds that a path costs against a walk along the line of travel at the wanted speed."""
+        if speed < _SLOW:
             return 0.0
         states = answer.states
         s, turned = self.settings, np.abs(np.remainder(states[:, 2] - line.facing + np.pi, 2.0 * np.pi) - np.pi)
@@ -216,6 +217,7 @@ class RootPlanner:
 
 
 _TURNED = 0.05  # radians
+_SLOW = 0.1  # m/s: who wants to go no faster is in no hurry
 
 
 def _turns(command: Command) -> bool:
