@@ -27,6 +27,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root_plan import RootPlanKind
@@ -93,14 +94,15 @@ class Controller:
         self._others = MovingBoxes()
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
         self._desk: PlanningDesk = desk or ImmediateDesk()
-        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self.motions)
+        self._worn = fitted(self.motions, humanoid)
+        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self._worn)
         self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
         if self._desk.busy:  # a plan in the making keeps its planners
             self._desk.forget()
-            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self.motions)
+            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self._worn)
         else:
             self._wayfinder.reset()
         self._begin()
