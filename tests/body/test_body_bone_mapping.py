@@ -15,7 +15,8 @@ from elbowroom.body.bone_mapping.spelling import simplified
 from elbowroom.body.bones import REQUIRED
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import crown_of, load_humanoid_bytes
+from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
 from shared_data import SHARED, needs_shared

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from elbowroom.body.fitting import BodyPoints, coverage, fit_capsules, part_of_points
+from elbowroom.body.body_parts import BodyPoints, part_of_points
+from elbowroom.body.fitting import coverage, fit_capsules
 from elbowroom.body.loading import load_with_surface
 from elbowroom.body.proportions import proportional_capsules, proportional_skeleton
 from shared_data import SHARED, needs_shared

@@ -8,7 +8,8 @@ import pytest
 
 from avatar_builder import MIXAMO, UNREAL, Recipe, build, json_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import crown_of, load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
+from elbowroom.body.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
 from shared_data import SHARED, needs_shared

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.body_parts import BodyPoints
 from elbowroom.body.bone_mapping.structure import parent_bone
-from elbowroom.body.fitting import BodyPoints
 from elbowroom.body.rest_pose import facing_of, t_pose
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton

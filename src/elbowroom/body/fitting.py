@@ -1,60 +1,42 @@
-"""Capsules sized from an avatar's own surface: for each part of the body the slimmest capsule that holds its points.
+"""The collision body, sized from an avatar's own surface: for each part of the body capsules that hold its points.
 
-Every part starts from its capsule of average proportions and is then fitted: the volume of the capsule that holds the
-wanted share of the part's points is minimised over its two ends (Nelder & Mead 1965). A capsule is convex, so one that
-holds the vertices holds the triangles between them.
+Every part starts from its capsule of average proportions and gets the slimmest one round most of its points. Where that
+leaves more outside than it may, the part gets the slimmest capsule round all, or, if that is smaller, a second one
+round the rest (a thumb, a nose, the front of a broad head).
 """
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.body_parts import SIDES, BodyPoints, part_of_points, with_relaxed_hands
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.nelder_mead import least_point
-from elbowroom.body.proportions import last_spine, proportional_capsules, stature
+from elbowroom.body.proportions import proportional_capsules, stature
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.body.slim_capsule import Slim, Wanted, slimmest
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
-_SIDES = ("left", "right")
-_LIMB_PARTS = {
-    "UpperLeg": "Thigh",
-    "LowerLeg": "Shin",
-    "Foot": "Foot",
-    "Toes": "Foot",
-    "UpperArm": "UpperArm",
-    "LowerArm": "Forearm",
-    "Hand": "Hand",
-}
-_FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
-_HEAD = {"neck": "neck", "head": "head", "jaw": "head", "leftEye": "head", "rightEye": "head"}
-_TRUNK = ("abdomen", "torso", "chest")
+MARGIN = 0.01  # metres that the surface may be outside the capsules
 _SHOULDERS = "shoulders"  # from one shoulder joint to the other, as thick as the upper arms that hang there
+_WHOLE = ("leftUpperArm", "rightUpperArm")  # one capsule each: what is rooted in the trunk is told by its place
 
 
 @dataclass(frozen=True)
 class FitSettings:
     """How closely capsules follow the surface."""
 
-    share: float = 0.97  # of a part's points that its capsule must hold; the rest is loose detail
-    hand_share: float = 0.9  # the same for hands, whose thumb stands out in T-pose and lies close in a relaxed hand
+    share: float = 0.97  # of a part's points that its capsule must hold at first; the rest is loose detail
+    hand_share: float = 0.9  # the same for hands, whose thumb stands out
+    covered: float = 0.995  # of a part's points that must be inside its capsules and `MARGIN`
     grid: float = 0.006  # metres at a stature of 1.7 m: points nearer than this count once
-    fewest: int = 8  # points; a part with fewer keeps its average proportions
+    fewest: int = 4  # points; a part with fewer keeps its average proportions
     most: int = 900  # points that the search looks at
-    evaluations: int = 300  # of the search
     thinnest: float = 0.4  # radius, as a multiple of the average proportions'
     thickest: float = 8.0
-
-
-@dataclass(frozen=True, eq=False)
-class BodyPoints:
-    """The surface of a T-posed avatar, each point with the joint that moves it."""
-
-    positions: Floats  # (P, 3) metres, in the skeleton's frame
-    joints: Ints  # (P,) index of the joint
+    capsules: int = 24  # at most, of the whole body
+    worth_it: float = 0.85  # two capsules are taken for one if they have less than this part of its volume
 
 
 def fit_capsules(
@@ -63,67 +45,107 @@ def fit_capsules(
     """Capsules for `skeleton` fitted to its surface, and the names of parts that had no surface to fit."""
     settings = settings or FitSettings()
     average = proportional_capsules(skeleton)
+    relaxed = with_relaxed_hands(skeleton, points)
     parts = part_of_points(skeleton, average, points)
-    rest = skeleton.positions[average.joints]
-    starts, ends, radii = average.starts + rest, average.ends + rest, average.radii.copy()
     cell = settings.grid * stature(skeleton) / 1.7
+    spare = settings.capsules - len(average.names)
+    rest = skeleton.positions[average.joints]
+    slims: dict[str, list[Slim]] = {}
     bare: list[str] = []
     for part, name in enumerate(average.names):
-        own = _thinned(points.positions[parts == part], cell)
-        if name == _SHOULDERS:
+        first = Slim(average.starts[part] + rest[part], average.ends[part] + rest[part], float(average.radii[part]))
+        own = _thinned(relaxed.positions[parts == part], cell)
+        if name == _SHOULDERS or len(own) < settings.fewest:
+            slims[name] = [_grown(first, own)]
+            bare += [name] if name != _SHOULDERS else []
             continue
-        if len(own) < settings.fewest:
-            bare.append(name)
-            continue
-        share = settings.hand_share if name.endswith("Hand") else settings.share
-        both = _slimmest(own[:: -(-len(own) // settings.most)], starts[part], ends[part], share, settings.evaluations)
-        starts[part], ends[part] = both[:3], both[3:]
-        radius = float(np.quantile(_distances(own, both[:3], both[3:]), share))
-        radii[part] = np.clip(radius, settings.thinnest * radii[part], settings.thickest * radii[part])
-    radii[average.names.index(_SHOULDERS)] = radii[[average.names.index(f"{s}UpperArm") for s in _SIDES]].mean()
-    fitted = Capsules(average.names, average.joints, starts - rest, ends - rest, radii, average.groups)
-    return fitted, tuple(bare)
+        slims[name] = _fitted(own[:: -(-len(own) // settings.most)], own, first, name, spare > 0, settings)
+        spare -= len(slims[name]) - 1
+    thickness = float(np.mean([slims[f"{side}UpperArm"][0].radius for side in SIDES]))
+    slims[_SHOULDERS] = [slims[_SHOULDERS][0]._replace(radius=thickness)]
+    return _assembled(skeleton, average, slims), tuple(bare)
 
 
-def coverage(skeleton: Skeleton, capsules: Capsules, points: BodyPoints, margin: float = 0.01) -> float:
-    """The share of points that lie inside the capsule of their own body part, or less than `margin` metres outside."""
-    parts = part_of_points(skeleton, capsules, points)
-    known = parts >= 0
-    rest = skeleton.positions[capsules.joints]
-    start, end = (capsules.starts + rest)[parts[known]], (capsules.ends + rest)[parts[known]]
-    outside = _distances(points.positions[known], start, end) - capsules.radii[parts[known]]
-    return float(np.mean(outside <= margin)) if known.any() else 1.0
+def coverage(skeleton: Skeleton, capsules: Capsules, points: BodyPoints, margin: float = MARGIN) -> float:
+    """The share of points inside the capsules of the bone that moves them, or less than `margin` metres outside.
 
-
-def part_of_points(skeleton: Skeleton, capsules: Capsules, points: BodyPoints) -> Ints:
-    """The capsule (P,) that each point belongs to, -1 for none: fingers to the hand, toes to the foot, jaw to the head.
-
-    Where one spine bone carries several capsules of the trunk, its points are shared out by height.
+    The points are those of the T-posed avatar; its fingers are relaxed before they are looked at.
     """
-    names = {name: index for index, name in enumerate(capsules.names)}
-    of_joint = np.array([names.get(_part_name(bone), -1) for bone in skeleton.names], dtype=np.int64)
-    parts = of_joint[points.joints]
-    shoulders = [skeleton.names.index(f"{s}Shoulder") for s in _SIDES if skeleton.has(f"{s}Shoulder")]
-    top = skeleton.index(last_spine(skeleton))
-    bearer = np.where(np.isin(points.joints, shoulders), top, points.joints)
-    trunk = [names[name] for name in _TRUNK if name in names]
-    for joint in {int(capsules.joints[part]) for part in trunk}:
-        own = [part for part in trunk if capsules.joints[part] == joint]
-        heights = 0.5 * (capsules.starts + capsules.ends)[own, 1] + skeleton.positions[joint, 1]
-        borders = 0.5 * (heights[1:] + heights[:-1])
-        mine = bearer == joint
-        parts[mine] = np.array(own)[np.searchsorted(borders, points.positions[mine, 1])]
-    return parts
+    covered, counted = _covered(skeleton, capsules, points, margin)
+    return float(covered.sum() / counted.sum()) if counted.sum() else 1.0
 
 
-def _part_name(bone: str) -> str:
-    side = next((side for side in _SIDES if bone.startswith(side)), "")
-    rest = bone.removeprefix(side)
-    if bone == "hips":
-        return "pelvis"
-    if rest.startswith(_FINGERS):
-        return f"{side}Hand"
-    return _HEAD.get(bone, side + _LIMB_PARTS.get(rest, ""))
+def coverage_of_parts(
+    skeleton: Skeleton, capsules: Capsules, points: BodyPoints, margin: float = MARGIN
+) -> dict[str, float]:
+    """The same for each part of the body that has points."""
+    covered, counted = _covered(skeleton, capsules, points, margin)
+    names = proportional_capsules(skeleton).names
+    return {name: float(c / n) for name, c, n in zip(names, covered, counted, strict=True) if n}
+
+
+def _covered(skeleton: Skeleton, capsules: Capsules, points: BodyPoints, margin: float) -> tuple[Floats, Floats]:
+    """How many points of each part of average proportions are covered, and how many there are."""
+    average = proportional_capsules(skeleton)
+    parts = part_of_points(skeleton, average, points)
+    relaxed = with_relaxed_hands(skeleton, points).positions
+    rest = skeleton.positions[capsules.joints]
+    covered, counted = np.zeros(len(average.names)), np.zeros(len(average.names))
+    for part, joint in enumerate(average.joints):
+        own = relaxed[parts == part]
+        counted[part] = len(own)
+        held = np.zeros(len(own), bool)
+        for i in np.flatnonzero(capsules.joints == joint):
+            slim = Slim(capsules.starts[i] + rest[i], capsules.ends[i] + rest[i], float(capsules.radii[i]))
+            held |= slim.outside(own) <= margin
+        covered[part] = held.sum()
+    return covered, counted
+
+
+def _fitted(some: Floats, own: Floats, first: Slim, name: str, may_be_two: bool, settings: FitSettings) -> list[Slim]:
+    """The capsules of one part, from a sample of its points and all of them."""
+    low, high = settings.thinnest * first.radius, settings.thickest * first.radius
+    share = settings.hand_share if name.endswith("Hand") else settings.share
+    loose = _clipped(slimmest(some, first.start, first.end, Wanted(share, 0.0)), low, high)
+    loose = _clipped(loose._replace(radius=float(np.quantile(loose.outside(own) + loose.radius, share))), low, high)
+    left = own[loose.outside(own) > MARGIN]
+    if len(left) <= (1.0 - settings.covered) * len(own):
+        return [loose]
+    slack = 0.8 * MARGIN
+    whole = _clipped(slimmest(some, first.start, first.end, Wanted(1.0, slack)), low, high)
+    reach = float(np.quantile(whole.outside(own) + whole.radius, settings.covered)) - slack
+    whole = whole._replace(radius=float(np.clip(reach, low, high)))
+    if not may_be_two or name in _WHOLE or len(left) < settings.fewest:
+        return [whole]
+    rest = slimmest(left[:: -(-len(left) // settings.most)], left.min(axis=0), left.max(axis=0), Wanted(1.0, slack))
+    rest = rest._replace(radius=max(rest.radius, 0.5 * low))
+    both = loose.volume + rest.volume
+    return [loose, rest] if both < settings.worth_it * whole.volume else [whole]
+
+
+def _grown(first: Slim, own: Floats) -> Slim:
+    """A part of average proportions, thick enough for the few points that it has."""
+    return first._replace(radius=first.radius + max([0.0, *(first.outside(own) - 0.8 * MARGIN)]))
+
+
+def _clipped(slim: Slim, low: float, high: float) -> Slim:
+    return slim._replace(radius=float(np.clip(slim.radius, low, high)))
+
+
+def _assembled(skeleton: Skeleton, average: Capsules, slims: dict[str, list[Slim]]) -> Capsules:
+    """All capsules in the order of their parts; the second of a part is named after it."""
+    rows = [(part, count, slim) for part, name in enumerate(average.names) for count, slim in enumerate(slims[name])]
+    parts = np.array([part for part, _, _ in rows], np.int64)
+    rest = skeleton.positions[average.joints[parts]]
+    return replace(
+        average,
+        names=tuple(average.names[part] + (f" {count + 1}" if count else "") for part, count, _ in rows),
+        joints=average.joints[parts],
+        starts=np.array([slim.start for _, _, slim in rows]) - rest,
+        ends=np.array([slim.end for _, _, slim in rows]) - rest,
+        radii=np.array([slim.radius for _, _, slim in rows]),
+        groups=tuple(average.groups[part] for part in parts),
+    )
 
 
 def _thinned(points: Floats, cell: float) -> Floats:
@@ -131,53 +153,3 @@ def _thinned(points: Floats, cell: float) -> Floats:
     _, first = np.unique(np.round(points / cell).astype(np.int64), axis=0, return_index=True)
     thinned: Floats = points[np.sort(first)]
     return thinned
-
-
-def _slimmest(points: Floats, start: Floats, end: Floats, share: float, evaluations: int) -> Floats:
-    """Both ends (6,) of the slimmest capsule that holds a share of the points, from several first guesses."""
-    found = [_search(points, guess, share, evaluations) for guess in _first_guesses(points, start, end)]
-    return min(found, key=lambda both: _volume(both, points, share))
-
-
-def _first_guesses(points: Floats, start: Floats, end: Floats) -> list[Floats]:
-    """Capsules through the middle of the points, along the average proportions' axis and along their longest extent."""
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    _, _, axes = np.linalg.svd(points - middle, full_matrices=False)
-    along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
-    return [np.concatenate([middle - half, middle + half]) for half in (_half(points, d) for d in (along, axes[0]))]
-
-
-def _half(points: Floats, direction: Floats) -> Floats:
-    """Half the axis of a capsule in this direction that is as long and as thick as the points reach."""
-    lengths = points @ direction
-    across = points - lengths[:, None] * direction
-    thickness = float(np.linalg.norm(np.ptp(across, axis=0))) / np.sqrt(2.0)
-    half: Floats = 0.5 * max(float(np.ptp(lengths)) - thickness, 0.0) * direction
-    return half
-
-
-def _search(points: Floats, first: Floats, share: float, evaluations: int) -> Floats:
-    step = 0.1 * float(np.ptp(points, axis=0).max()) + 1e-6
-    simplex = first + np.vstack([np.zeros(6), step * np.eye(6)])
-    return least_point(lambda ends: _volume(ends, points, share), simplex, evaluations, 1e-4, 1e-8)
-
-
-def _volume(ends: Floats, points: Floats, share: float) -> float:
-    """Volume of the capsule with these ends (6,) that holds a share of the points; called thousands of times."""
-    along = ends[3:] - ends[:3]
-    from_start = points - ends[:3]
-    squared = max(float(along @ along), 1e-18)
-    where = np.minimum(np.maximum(from_start @ (along / squared), 0.0), 1.0)
-    away = from_start - where[:, None] * along
-    rank = int(np.ceil(share * (len(points) - 1)))
-    radius = math.sqrt(np.partition(np.einsum("pi,pi->p", away, away), rank)[rank])
-    return math.pi * radius * radius * (math.sqrt(squared) + 4.0 / 3.0 * radius)
-
-
-def _distances(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Distances (P,) of points (P, 3) from segments given by their ends, each (3,) or (P, 3)."""
-    along = end - start
-    squared = np.maximum(np.sum(along * along, axis=-1), 1e-18)
-    where = np.clip(np.sum((points - start) * along, axis=-1) / squared, 0.0, 1.0)
-    away: Floats = np.linalg.norm(points - start - where[:, None] * along, axis=-1)
-    return away

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.load_settings import LoadSettings
+from elbowroom.body.permissions import Permissions
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton
 
@@ -29,6 +30,8 @@ class AvatarMeta:
     format: str = ""  # "VRM 1.0", "VRM 0.x", "glTF 2.0"
     notes: tuple[str, ...] = ()  # what was left out or guessed in reading it, one line each
     bones: tuple[BoneSource, ...] = ()  # parents first
+    contact: str = ""
+    permissions: Permissions = field(default_factory=Permissions)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ class LoadSettings:
     """Options of `Humanoid.load`; raises `InputError` for a height that no humanoid has."""
 
     bones: Path | None = None  # JSON that names nodes of bones; None: `FILE.bones.json` where it lies beside the file
+    include_hair: bool = False  # hair, skirts and the like belong to the collision body too
     height: float | None = None  # metres from the ground to the crown; None: as the file has it
 
     def __post_init__(self) -> None:

@@ -3,28 +3,32 @@
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
+from elbowroom.body.body_parts import SIDES, BodyPoints
 from elbowroom.body.bone_mapping.override import override_beside, read_override
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.figure import figure_of, rig_of, skeleton_of
 from elbowroom.body.file_bones import file_bones
-from elbowroom.body.fitting import BodyPoints, fit_capsules
+from elbowroom.body.fitting import fit_capsules
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading_hanim import HanimAsset, parse_hanim, read_hanim
+from elbowroom.body.permissions import Permissions, of_vrm_0, of_vrm_1
 from elbowroom.body.proportions import proportional_capsules
+from elbowroom.body.size import sized
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.body.surface import body_points
+from elbowroom.body.surface import body_points, loose_nodes
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf, parse_gltf, read_gltf
 from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import pack_glb
-from elbowroom.formats.vrm import Vrm, read_vrm
+from elbowroom.formats.vrm import VRM_0, Vrm, read_vrm
 from elbowroom.formats.x3d.files import SUFFIXES, is_x3d
 
-_ASKED = 1e-3  # relative difference of heights that is none
+# A mesh that leaves more of these parts bare than so many is no body: tokens, a ball on a rig.
+_CORE = frozenset({"chest", "head"} | {s + p for s in SIDES for p in ("Thigh", "Shin", "UpperArm", "Forearm")})
+_CORE_BARE = 3
+NO_BODY = "no mesh on most of the bones: the collision body has average proportions"
 
 
 def load_humanoid(path: Path, settings: LoadSettings | None = None) -> Humanoid:
@@ -59,17 +63,18 @@ def _humanoid(
     bones = file_bones(gltf, tree, vrm, override, hanim.bones if hanim else None)
     figure = figure_of(gltf.name, bones.tree, bones.nodes, vrm.facing if vrm else None)
     surface = surface_points(bones.gltf, bones.tree)
-    springs = vrm.spring_nodes if vrm else frozenset()
-    points = body_points(bones.tree, list(bones.nodes.values()), springs, surface, figure.matrices)
+    carriers = list(bones.nodes.values())
+    loose = frozenset[int]() if settings.include_hair else loose_nodes(bones.tree, carriers, vrm)
+    points, left_out = body_points(bones.tree, carriers, loose, surface, figure.matrices)
     rig = rig_of(figure, points)
     skeleton = skeleton_of(figure, rig)
     points = BodyPoints(rig.to_model(points.positions), points.joints)
     capsules, capsule_notes = _capsules(skeleton, points)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
-    meta = replace(told, notes=told.notes + bones.notes + unit + capsule_notes, bones=bones.sources)
+    meta = replace(told, notes=told.notes + bones.notes + unit + left_out + capsule_notes, bones=bones.sources)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(bones.gltf))
-    return (humanoid, points) if settings.height is None else _scaled(humanoid, points, settings.height)
+    return sized(humanoid, points, settings.height, NO_BODY not in capsule_notes)
 
 
 def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
@@ -79,45 +84,19 @@ def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
         authors=vrm.authors if vrm else (),
         licence=vrm.licence if vrm else gltf.root.at("asset").at("copyright").text(),
         format=vrm.version if vrm else "glTF 2.0",
+        contact=str(vrm.meta.get("contactInformation", "")) if vrm else "",
+        permissions=Permissions() if vrm is None else _permissions(vrm),
     )
+
+
+def _permissions(vrm: Vrm) -> Permissions:
+    return of_vrm_0(vrm.meta) if vrm.version == VRM_0 else of_vrm_1(vrm.meta)
 
 
 def _capsules(skeleton: Skeleton, points: BodyPoints) -> tuple[Capsules, tuple[str, ...]]:
     """The collision body, and notes on what of it has average proportions."""
     average = proportional_capsules(skeleton)
     capsules, bare = fit_capsules(skeleton, points)
-    if 2 * len(bare) > len(capsules.names):
-        return average, ("no mesh on most of the bones: the collision body has average proportions",)
+    if len(_CORE & set(bare)) > _CORE_BARE:
+        return average, (NO_BODY,)
     return capsules, (f"without mesh, of average proportions: {', '.join(bare)}",) if bare else ()
-
-
-def crown_of(humanoid: Humanoid) -> float:
-    """Height in metres of the highest point of the head's capsules above the ground, in T-pose."""
-    capsules = humanoid.capsules
-    head = [i for i, name in enumerate(capsules.names) if name.startswith("head")]
-    rest = humanoid.skeleton.positions[capsules.joints[head], 1]
-    ends = np.maximum(capsules.starts[head, 1], capsules.ends[head, 1])
-    return float(np.max(rest + ends + capsules.radii[head]))
-
-
-def _scaled(humanoid: Humanoid, points: BodyPoints, height: float) -> tuple[Humanoid, BodyPoints]:
-    """The same avatar as tall as was asked for."""
-    factor = height / crown_of(humanoid)
-    if abs(factor - 1.0) < _ASKED or humanoid.rig is None:
-        return humanoid, points
-    skeleton, capsules = humanoid.skeleton, humanoid.capsules
-    scaled = replace(
-        humanoid,
-        skeleton=replace(skeleton, positions=factor * skeleton.positions),
-        capsules=replace(
-            capsules,
-            starts=factor * capsules.starts,
-            ends=factor * capsules.ends,
-            radii=factor * capsules.radii,
-        ),
-        rig=replace(humanoid.rig, scale=factor * humanoid.rig.scale),
-        meta=replace(
-            humanoid.meta, notes=(*humanoid.meta.notes, f"scaled by {factor:.3g} to a height of {height:g} m")
-        ),
-    )
-    return scaled, BodyPoints(factor * points.positions, points.joints)

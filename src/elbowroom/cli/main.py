@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom import __version__
-from elbowroom.cli import bench, clips, doctor, gauntlet, play, replay, table1, verify, walk
+from elbowroom.cli import bench, clips, doctor, gauntlet, inspect, play, replay, table1, verify, walk
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -89,5 +89,6 @@ app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
 app.command("table1", epilog=table1.EXAMPLES)(table1.table1)
 app.command("gauntlet", epilog=gauntlet.EXAMPLES)(gauntlet.gauntlet)
 app.command("verify", epilog=verify.EXAMPLES)(verify.verify)
+app.command("inspect", epilog=inspect.EXAMPLES)(inspect.inspect)
 app.command("doctor", epilog=doctor.EXAMPLES)(doctor.doctor)
 app.add_typer(bench.bench, name="bench")

@@ -6,7 +6,7 @@ Metacarpal, Proximal and Distal.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
@@ -31,6 +31,7 @@ class Vrm:
     title: str = ""
     authors: tuple[str, ...] = ()
     licence: str = ""
+    meta: dict[str, str | bool] = field(default_factory=dict)  # all texts and flags of the meta data
 
     @property
     def facing(self) -> float:
@@ -64,6 +65,7 @@ def _read_1(extensions: Field, nodes: int) -> Vrm:
         title=meta.at("name").text(),
         authors=tuple(author.text() for author in meta.at("authors").items(100)),
         licence=meta.at("licenseUrl").text(),
+        meta=_said(meta),
     )
 
 
@@ -82,7 +84,18 @@ def _read_0(vrm: Field, nodes: int) -> Vrm:
         title=meta.at("title").text(),
         authors=(author,) if author else (),
         licence=meta.at("licenseName").text(),
+        meta=_said(meta),
     )
+
+
+def _said(meta: Field) -> dict[str, str | bool]:
+    """The members of the meta data that are texts or flags."""
+    fields = {name: meta.at(name) for name in meta.names(200)}
+    return {
+        name: value.value if isinstance(value.value, bool) else value.text()
+        for name, value in fields.items()
+        if isinstance(value.value, str | bool)
+    }
 
 
 def _nodes_of(references: list[tuple[str, Field]], place: Field, nodes: int) -> dict[str, int]:

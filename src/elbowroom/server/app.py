@@ -14,9 +14,10 @@ from starlette.types import Scope
 from starlette.websockets import WebSocket
 
 from elbowroom import __version__
+from elbowroom.body.permissions import Use
 from elbowroom.errors import InputError
 from elbowroom.server.codec import encode, plain
-from elbowroom.server.guard import Guard
+from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.library import Library
 from elbowroom.server.messages import Notice
 from elbowroom.server.reports import scene_message
@@ -96,6 +97,9 @@ class _Handlers:
             avatar = self._library.avatars.get(request.path_params["avatar"])
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
+        refusal = avatar.humanoid.meta.permissions.refusal(Use.HAND_OUT)
+        if refusal is not None and not _is_here(request):
+            return JSONResponse({"error": f"{refusal}; it is shown on the machine that has its file"}, 403)
         if avatar.glb is None or not avatar.glb.is_file():
             return JSONResponse({"error": "this avatar has no file"}, 404)
         return FileResponse(avatar.glb, media_type="model/gltf-binary", headers={"cache-control": "no-cache"})
@@ -112,6 +116,11 @@ class _Handlers:
             await Session(socket, self._library).run()
         finally:
             self._sessions -= 1
+
+
+def _is_here(request: Request) -> bool:
+    """Whether the client is on this machine: what it sees then is not handed out."""
+    return request.client is not None and is_loopback(request.client.host)
 
 
 class _Page(StaticFiles):

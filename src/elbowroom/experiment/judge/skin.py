@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.rig import Rig
+from elbowroom.body.surface import loose_nodes
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import NodeTree, read_nodes
@@ -59,7 +60,7 @@ def skin_of(humanoid: Humanoid) -> tuple[Skin | None, str]:
     tree = read_nodes(gltf)
     mesh = triangle_mesh(gltf, tree)
     vrm = read_vrm(gltf, len(tree))
-    skin = _skin(mesh, tree, humanoid, humanoid.rig, vrm.spring_nodes if vrm else frozenset())
+    skin = _skin(mesh, tree, humanoid, humanoid.rig, loose_nodes(tree, humanoid.rig.nodes.tolist(), vrm))
     return (skin, "") if len(skin.triangles) else (None, "the file has no mesh on the body")
 
 

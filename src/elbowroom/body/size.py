@@ -1,0 +1,69 @@
+"""How tall an avatar is: as its file has it, as the user asks, or smaller where its head is too large for metres."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.body_parts import BodyPoints, part_of_points
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.proportions import proportional_capsules
+
+LARGEST_HEAD = 0.45  # metres from chin to crown: of a person 3.4 m tall
+_ASKED = 1e-3  # relative difference of heights that is none
+_LOOSE = 0.005  # share of the head's points at either end that are not measured
+
+
+def crown_of(humanoid: Humanoid) -> float:
+    """Height in metres of the highest point of the head's capsules above the ground, in T-pose."""
+    capsules = humanoid.capsules
+    head = [i for i, name in enumerate(capsules.names) if name.startswith("head")]
+    rest = humanoid.skeleton.positions[capsules.joints[head], 1]
+    ends = np.maximum(capsules.starts[head, 1], capsules.ends[head, 1])
+    return float(np.max(rest + ends + capsules.radii[head]))
+
+
+def head_height(humanoid: Humanoid, points: BodyPoints) -> float:
+    """Metres from the lowest to the highest point of the head; 0 without a mesh on it."""
+    average = proportional_capsules(humanoid.skeleton)
+    head = part_of_points(humanoid.skeleton, average, points) == average.names.index("head")
+    heights: NDArray[np.float64] = points.positions[head, 1]
+    return float(np.ptp(np.quantile(heights, [_LOOSE, 1.0 - _LOOSE]))) if len(heights) else 0.0
+
+
+def sized(humanoid: Humanoid, points: BodyPoints, height: float | None, has_body: bool) -> tuple[Humanoid, BodyPoints]:
+    """The avatar and its surface as tall as was asked for, or, where nothing was, no larger than its head allows.
+
+    Without a mesh that is its body (`has_body`) the head says nothing.
+    """
+    crown = crown_of(humanoid)
+    if height is not None:
+        return _scaled(humanoid, points, height / crown, f"scaled to a height of {height:g} m")
+    head = head_height(humanoid, points) if has_body else 0.0
+    if head <= LARGEST_HEAD:
+        return humanoid, points
+    factor = LARGEST_HEAD / head
+    note = (
+        f"its head is {head:.2f} m high, so the file is taken to have a unit of its own: scaled by {factor:.2f} to "
+        f"{factor * crown:.2f} m (--height {crown:.2f} keeps its size)"
+    )
+    return _scaled(humanoid, points, factor, note)
+
+
+def _scaled(humanoid: Humanoid, points: BodyPoints, factor: float, note: str) -> tuple[Humanoid, BodyPoints]:
+    if abs(factor - 1.0) < _ASKED or humanoid.rig is None:
+        return humanoid, points
+    skeleton, capsules = humanoid.skeleton, humanoid.capsules
+    scaled = replace(
+        humanoid,
+        skeleton=replace(skeleton, positions=factor * skeleton.positions),
+        capsules=replace(
+            capsules,
+            starts=factor * capsules.starts,
+            ends=factor * capsules.ends,
+            radii=factor * capsules.radii,
+        ),
+        rig=replace(humanoid.rig, scale=factor * humanoid.rig.scale),
+        meta=replace(humanoid.meta, notes=(*humanoid.meta.notes, note)),
+    )
+    return scaled, BodyPoints(factor * points.positions, points.joints)

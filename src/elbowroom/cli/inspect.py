@@ -1,0 +1,127 @@
+"""`elbowroom inspect`: what is in an avatar's file, and what was made of it."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from elbowroom.cli.output import print_json, print_row, progress_bar
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:
+    from elbowroom.body.humanoid import Humanoid
+    from elbowroom.body.inspection import AvatarFacts
+
+EXAMPLES = (
+    "Examples:  elbowroom inspect alice.vrm  |  elbowroom inspect knight.glb --bones knight.json --json  |  "
+    "elbowroom inspect avatars/ --pose-sheet sheet.png"
+)
+_SUFFIXES = (".vrm", ".glb", ".gltf", ".x3d", ".x3dv", ".wrl")
+_SHOWN = 12  # clips in the table; --json has all
+
+
+def inspect(
+    files: Annotated[list[Path], typer.Argument(help="Avatar files, or folders of them.")],
+    *,
+    bones: Annotated[Path | None, typer.Option(help="JSON that names the nodes of bones.")] = None,
+    height: Annotated[float | None, typer.Option(help="Metres to the crown, instead of the file's own.")] = None,
+    include_hair: Annotated[
+        bool, typer.Option("--include-hair", help="Count hair, skirts and the like as the body.")
+    ] = False,
+    pose_sheet: Annotated[Path | None, typer.Option(help="Draw all in eight gestures into this PNG.")] = None,
+    capsules: Annotated[bool, typer.Option("--capsules", help="The sheet shows capsules, not surfaces.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Say which bones were found and how, height, facing, collision body, clips, licence and notes.
+
+    Exit code 0: all files are humanoids, 2: one is not (the others are shown).
+    """
+    from elbowroom.body.inspection import inspect_avatar
+    from elbowroom.body.load_settings import LoadSettings
+
+    settings = LoadSettings(bones, include_hair, height)
+    found: list[tuple[AvatarFacts, Humanoid]] = []
+    refused: dict[str, str] = {}
+    paths = _paths(files)
+    with progress_bar("Reading", float(len(paths)), quiet) as bar:
+        for count, path in enumerate(paths):
+            bar.move(count, path.name)
+            try:
+                found.append(inspect_avatar(path, settings))
+            except InputError as error:
+                refused[str(path)] = str(error)
+    if pose_sheet is not None and found:
+        _draw(pose_sheet, [humanoid for _, humanoid in found], capsules)
+    if json:
+        print_json({"avatars": [asdict(facts) for facts, _ in found], "refused": refused})
+    elif pose_sheet is None:
+        for facts, _ in found:
+            _print(facts)
+    for message in refused.values():
+        typer.echo(f"elbowroom: {message}", err=True)
+    raise typer.Exit(2 if refused else 0)
+
+
+def _paths(files: list[Path]) -> list[Path]:
+    """The files, and those in the folders, however deep."""
+    paths: list[Path] = []
+    for file in files:
+        inside = (
+            sorted(path for path in file.rglob("*") if path.suffix.lower() in _SUFFIXES) if file.is_dir() else [file]
+        )
+        if not inside:
+            raise InputError(f"{file}: there is no avatar file in this folder ({', '.join(_SUFFIXES)})")
+        paths += inside
+    return paths
+
+
+def _draw(path: Path, humanoids: "list[Humanoid]", capsules: bool) -> None:
+    from elbowroom.experiment.pose_sheet.png import png_bytes
+    from elbowroom.experiment.pose_sheet.sheet import pose_sheet
+
+    try:
+        path.write_bytes(png_bytes(pose_sheet(humanoids, capsules)))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def _print(facts: "AvatarFacts") -> None:
+    print_row(facts.name, _about(facts))
+    print_row("Bones", {bone: f"{source['name']}  ({source['how']})" for bone, source in facts.bones.items()})
+    parts = facts.coverage_of_parts
+    rows = {
+        name: f"{100 * radius:.1f} cm" + (f", covers {parts[name]:.1%}" if name in parts else "")
+        for name, radius in facts.capsules.items()
+    }
+    print_row("Collision body", rows)
+    if facts.clips:
+        rows = {clip.name: f"{clip.seconds:.2f} s" for clip in facts.clips[:_SHOWN]}
+        more = {"and more": f"{len(facts.clips) - _SHOWN} (see --json)"} if len(facts.clips) > _SHOWN else {}
+        print_row("Clips", rows | more)
+    for note in facts.notes:
+        print(f"note: {note}")
+
+
+def _about(facts: "AvatarFacts") -> dict[str, str]:
+    said = {
+        "title": facts.title,
+        "author": ", ".join(facts.authors),
+        "contact": facts.contact,
+        "licence": facts.licence,
+    }
+    hows = sorted({str(source["how"]) for source in facts.bones.values()})
+    return {
+        "format": facts.format,
+        **{name: text for name, text in said.items() if text},
+        **facts.permissions,
+        "height": f"{facts.height:.2f} m to the crown; head joint {facts.head_joint:.2f}, hips {facts.hip_joint:.2f} m",
+        "stride": f"{facts.stride:.2f} m at 1.1 m/s",
+        "faces": {0: "+Z", 180: "-Z"}.get(round(facts.facing), f"{facts.facing:.0f} degrees from +Z"),
+        "rest pose": facts.rest_pose,
+        "bones": f"{len(facts.bones)}, found by {', '.join(hows)}",
+        "missing, all optional": ", ".join(facts.missing) or "none",
+        "capsules": f"{len(facts.capsules)}, {facts.coverage:.1%} of the surface within 1 cm",
+        "mesh": f"{facts.triangles} triangles, {facts.vertices} vertices of the body",
+    }

@@ -1,0 +1,92 @@
+"""The sheet: a row for each avatar, a column for each gesture, every figure as tall as the others."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.experiment.judge.mesh_judge import region_of
+from elbowroom.experiment.judge.poses import Poser
+from elbowroom.experiment.judge.skin import Skin, skin_of
+from elbowroom.experiment.pose_sheet.capsule_skin import capsule_skin
+from elbowroom.experiment.pose_sheet.gestures import GESTURES
+from elbowroom.experiment.pose_sheet.lettering import letter
+from elbowroom.experiment.pose_sheet.raster import draw
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+_CELL, _TOP, _SIDE = 150, 16, 96  # pixels: a figure's square, the head line, the name beside a row
+_FINER = 3  # each pixel is drawn as so many by so many
+_FILL = 0.66  # of the square that a standing figure takes
+_VIEW = np.deg2rad(-35.0)  # the camera stands ahead and to the figure's left
+_PAPER, _INK, _GROUND = (247, 246, 243), (70, 70, 74), (226, 224, 218)
+_COLORS = {
+    "trunk": (96, 125, 139), "head": (222, 184, 150), "leftArm": (224, 122, 63), "rightArm": (66, 133, 191),
+    "leftLeg": (176, 137, 104), "rightLeg": (125, 146, 116),
+}  # fmt: skip
+_LIGHT = np.array([-0.35, -0.6, 0.72])  # towards the light: columns, rows, nearness
+
+
+def pose_sheet(
+    humanoids: Sequence[Humanoid], capsules: bool = False, progress: Callable[[int], None] | None = None
+) -> Image:
+    """An RGB image (height, width, 3) of avatars in all gestures; `capsules` draws those instead of the surface."""
+    image = np.full((_TOP + _CELL * len(humanoids), _SIDE + _CELL * len(GESTURES), 3), _PAPER, np.uint8)
+    for column, gesture in enumerate(GESTURES):
+        letter(image, gesture.name, _SIDE + column * _CELL + 8, 5, 2, _INK)
+    for row, humanoid in enumerate(humanoids):
+        top = _TOP + row * _CELL
+        image[top : top + _CELL, _SIDE:] = _row(humanoid, capsules)
+        for line, part in enumerate(_lines(humanoid.name)):
+            letter(image, part, 4, top + 20 + 14 * line, 2, _INK)
+        if progress is not None:
+            progress(row + 1)
+    return image
+
+
+def _lines(name: str) -> list[str]:
+    """A name in pieces that fit beside its row."""
+    return [name[at : at + 11] for at in range(0, min(len(name), 44), 11)]
+
+
+def _row(humanoid: Humanoid, capsules: bool) -> Image:
+    """One avatar in all gestures, side by side."""
+    skin = None if capsules else skin_of(humanoid)[0]
+    skin = skin or capsule_skin(humanoid)
+    poser = Poser(humanoid)
+    local, hips = poser.local(
+        np.array([gesture.q for gesture in GESTURES]), np.array([gesture.root.as_array() for gesture in GESTURES])
+    )
+    used = np.unique(skin.triangles)
+    posed = poser.world(local, hips, np.zeros((len(GESTURES), 3)))
+    points = np.zeros((len(GESTURES), len(skin.joints), 3))
+    points[:, used] = skin.vertices(posed, used)
+    standing = next(at for at, gesture in enumerate(GESTURES) if gesture.name == "hanging")
+    stature = float(np.quantile(points[standing, used, 1], 0.999))
+    colors = _colors(skin, humanoid)
+    return np.concatenate([_cell(figure, skin, colors, stature) for figure in points], axis=1)
+
+
+def _colors(skin: Skin, humanoid: Humanoid) -> Floats:
+    """A colour for each triangle by the part of the body that carries most of it."""
+    regions = np.array([_COLORS[region_of(bone)] for bone in humanoid.skeleton.names], np.float64)
+    colors: Floats = regions[skin.joints[skin.triangles[:, 0], 0]]
+    return colors
+
+
+def _cell(points: Floats, skin: Skin, colors: Floats, stature: float) -> Image:
+    size = _CELL * _FINER
+    turned = quaternion.rotate(quaternion.about_axis(1, _VIEW), points)
+    scale = _FILL * size / stature
+    pixels = np.stack(
+        [0.5 * size + scale * turned[:, 0], 0.86 * size - scale * turned[:, 1], scale * turned[:, 2]], axis=1
+    )
+    canvas = np.full((size, size, 3), _PAPER, np.float64)
+    canvas[int(0.86 * size) :] = _GROUND
+    draw(pixels, skin.triangles, colors, _LIGHT / np.linalg.norm(_LIGHT), canvas, np.full((size, size), -np.inf))
+    finer = canvas.reshape(_CELL, _FINER, _CELL, _FINER, 3).mean(axis=(1, 3))
+    cell: Image = np.clip(finer, 0.0, 255.0).astype(np.uint8)
+    return cell
