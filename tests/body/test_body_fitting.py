@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.body_parts import BodyPoints, part_of_points
-from elbowroom.body.fitting import coverage, fit_capsules
+from elbowroom.body.fitting import coverage, coverage_of_parts, fit_capsules
 from elbowroom.body.loading import load_with_surface
 from elbowroom.body.proportions import proportional_capsules, proportional_skeleton
 from shared_data import SHARED, needs_shared
@@ -58,13 +58,27 @@ def test_points_belong_to_the_part_of_their_bone() -> None:
 
 @needs_shared
 @pytest.mark.parametrize(
-    "name", ["glb/m2m_human-male.glb", "glb/m2m_human-zombie.glb", "vrm0/Robot.vrm", "vrm0/Godette_vrm_v4.vrm"]
+    "name",
+    [
+        "glb/CesiumMan.glb",
+        "glb/KayKit_Knight.glb",
+        "glb/VALID_AIAN_M_1_Casual.glb",
+        "glb/boxman.glb",
+        "glb/m2m_human-male.glb",
+        "glb/m2m_human-zombie.glb",
+        "vrm0/Godette_vrm_v4.vrm",
+        "vrm0/Robot.vrm",
+        "vrm1/debug_robot.vrm",
+    ],
 )
 def test_real_avatars_are_covered(name: str) -> None:
     assert SHARED is not None
     humanoid, points = load_with_surface(SHARED / "avatars" / name)
-    assert points is not None
-    assert coverage(humanoid.skeleton, humanoid.capsules, points) >= 0.95
+    assert coverage(humanoid.skeleton, humanoid.capsules, points) >= 0.995
+    assert min(coverage_of_parts(humanoid.skeleton, humanoid.capsules, points).values()) >= 0.99
+    assert len(humanoid.capsules.names) <= 24
+    if name == "vrm1/debug_robot.vrm":  # its bones are shown by crosses as wide as the bones are long
+        return
     limbs = [i for i, part in enumerate(humanoid.capsules.names) if part.endswith(("Arm", "Forearm", "Thigh", "Shin"))]
     lengths = np.linalg.norm(humanoid.capsules.ends - humanoid.capsules.starts, axis=1)
     assert np.all(humanoid.capsules.radii[limbs] < 0.15 * humanoid.skeleton.height)

@@ -4,7 +4,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body import kinematics
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
-from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, stride_length
+from elbowroom.body.gait import STANDARD_LEG, foot_poses, hips_sinks, phase_rate, quickness, stride_length
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.legs import leg_rotations
 from elbowroom.body.proportions import proportional_humanoid
@@ -27,14 +27,14 @@ MOTIONS = [
     (0.0, 0.0, 1.5),
     (0.8, 0.5, -0.5),
 ]
-HEIGHTS = [1.3, 1.72, 2.0]
+HEIGHTS = [0.9, 1.3, 1.72, 2.5]
 LOWERINGS = [0.0, 0.3, float(limits(DofGroup.WAIST)[2, 1])]
 
 
-def steady_walk(motion: tuple[float, float, float], strides: float, n: int) -> Floats:
-    """Root states (n, 7) of a constant motion, integrated exactly."""
+def steady_walk(motion: tuple[float, float, float], strides: float, n: int, scale: float = 1.0) -> Floats:
+    """Root states (n, 7) of a constant motion of a body of this scale, integrated exactly."""
     forward, lateral, turn = motion
-    rate = phase_rate(*motion)
+    rate = quickness(scale) * phase_rate(*motion)
     t = np.linspace(0.0, strides / rate, n)
     heading = turn * t
     along = t if turn == 0.0 else np.sin(heading) / turn
@@ -77,12 +77,16 @@ def sole_points(height: float, roots: Floats, lowering: float = 0.0) -> tuple[Bo
 @pytest.mark.parametrize("motion", MOTIONS)
 @pytest.mark.parametrize("height", HEIGHTS)
 def test_the_standing_foot_stands_still_on_the_ground(motion: tuple[float, float, float], height: float) -> None:
-    roots = steady_walk(motion, 2.0, 240)
+    roots = steady_walk(motion, 2.0, 240, height / 1.72)
     model, soles = sole_points(height, roots)
     feet, _ = foot_poses(model.gait.legs, model.gait.scale, roots)
     assert soles[..., 1].min() > -0.01
     cycle = np.mod(roots[:, 6, None] + np.array([0.0, 0.5]), 1.0)
-    stride = np.hypot(motion[0], motion[1]) / phase_rate(*motion) / model.gait.legs[0, 8:10].sum()
+    stride = (
+        np.hypot(motion[0], motion[1])
+        / (quickness(height / 1.72) * phase_rate(*motion))
+        / model.gait.legs[0, 8:10].sum()
+    )
     on_ground = 0.93 * min(0.62, 1.02 / max(stride, 0.1))  # at least this part of the cycle
     for side in range(2):
         starts = np.flatnonzero(np.diff(cycle[:, side]) < 0.0) + 1
@@ -211,3 +215,13 @@ def test_going_down_is_smooth() -> None:
         rotations = np.concatenate([legs(model, root, lowering) for lowering in np.linspace(0.0, LOWERINGS[-1], 400)])
         steps = quaternion.to_rotation_vector(quaternion.multiply(quaternion.conjugate(rotations[:-1]), rotations[1:]))
         assert np.linalg.norm(steps, axis=-1).max() < np.deg2rad(4.0)
+
+
+@pytest.mark.parametrize("height", [0.9, 1.3, 2.5])
+def test_strides_fit_the_legs(height: float) -> None:
+    """Grieve & Gear 1966: at one speed the stride grows with the stature to the power of 0.57."""
+    scale = body_model(proportional_humanoid(height)).gait.scale
+    stride, adult = 1.1 / (quickness(scale) * phase_rate(1.1, 0.0, 0.0)), stride_length(1.1)
+    assert quickness(1.0) == 1.0
+    assert stride / adult == pytest.approx((height / 1.72) ** 0.57, rel=0.01)
+    assert 0.9 < stride / (scale * STANDARD_LEG) < 2.6  # leg lengths: a child's run, a giant's stroll

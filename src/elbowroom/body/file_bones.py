@@ -30,6 +30,7 @@ class FileBones:
     nodes: dict[str, int]  # bone -> node, canonical order
     sources: tuple[BoneSource, ...]  # in the same order
     notes: tuple[str, ...]
+    told: dict[str, int | None]  # by the user
 
 
 def file_bones(
@@ -58,7 +59,9 @@ def file_bones(
         for bone in PARENTS
         if bone in carried
     )
-    return FileBones(mended, tree, {source.bone: source.node for source in sources}, sources, checked.notes + notes)
+    return FileBones(
+        mended, tree, {source.bone: source.node for source in sources}, sources, checked.notes + notes, chosen
+    )
 
 
 def file_nodes(gltf: Gltf, tree: NodeTree) -> FileNodes:

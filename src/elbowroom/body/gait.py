@@ -25,6 +25,7 @@ _HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN = 0, 3, 6, 7, 8, 9
 _STATURE = 1.72  # metres, of the standard leg
 _CADENCE = 64.8 / 60.0  # strides/s at one stature per second
 _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
+_PACE = 0.57  # power of a body's size by which its strides are quicker at the same speed
 _STILL = 1e-3  # m/s: below, the phase rests
 _LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
 _DUTY, _REACH = 0.62, 1.02  # stance fraction of the cycle; longest stance path in leg lengths, beyond it the body runs
@@ -66,9 +67,23 @@ def _cadence(forward: float, lateral: float, turn: float) -> float:
     return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
+@inlined
+def _quickness(scale: float) -> float:
+    return float(scale**-_PACE)
+
+
+@kernel
+def quickness(scale: float) -> float:
+    """How many strides a body with legs of this `scale` takes for one of an average adult at the same speed.
+
+    Cadence grows with (speed / stature)^0.57 (Grieve & Gear), so at one speed it falls with stature^0.57.
+    """
+    return _quickness(scale)
+
+
 @kernel
 def phase_rate(forward: float, lateral: float, turn: float) -> float:
-    """Strides per second for root velocities in m/s and rad/s; 0 at standstill. The same for every body.
+    """Strides per second of an average adult for root velocities in m/s and rad/s; 0 at standstill; see `quickness`.
 
     D. W. Grieve & R. J. Gear, "The relationships between length of stride, step frequency, time of swing and speed of
     walking for children and adults", Ergonomics 9 (1966): cadence 64.8 (speed / stature)^0.57 strides a minute.
@@ -80,7 +95,7 @@ def phase_rate(forward: float, lateral: float, turn: float) -> float:
 
 @kernel
 def stride_length(speed: float) -> float:
-    """Length in metres of a stride (two steps) when walking forward at `speed` m/s."""
+    """Length in metres of an average adult's stride (two steps), walking forward at `speed` m/s; see `quickness`."""
     return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
 
 
@@ -141,7 +156,7 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> fl
 def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     forward, lateral, turn = root[3], root[4], root[5]
-    period = 1.0 / _cadence(forward, lateral, turn)
+    period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
     duty = _stance_part(speed * period, scale)
     stride = forward * period / (1.1 * scale)
@@ -210,7 +225,7 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     for n in range(len(roots)):
         root = roots[n]
         speed = np.sqrt(root[3] * root[3] + root[4] * root[4])
-        duty = _stance_part(speed / _cadence(root[3], root[4], root[5]), scale)
+        duty = _stance_part(speed / (_quickness(scale) * _cadence(root[3], root[4], root[5])), scale)
         stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(speed / scale)
         low = 0.0
         for side in range(2):

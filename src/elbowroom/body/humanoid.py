@@ -44,6 +44,7 @@ class Humanoid:
     rig: Rig | None = None  # None for a humanoid that has no file
     source: Path | None = None
     meta: AvatarMeta = field(default_factory=AvatarMeta)
+    settings: LoadSettings = field(default_factory=LoadSettings)  # that it was read with; the bones that were told
     glb: bytes | None = None  # the file as one self-contained GLB, for a viewer; None without a file
 
     @classmethod

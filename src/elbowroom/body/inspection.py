@@ -8,7 +8,7 @@ import numpy as np
 from elbowroom.body.body_parts import BodyPoints
 from elbowroom.body.bones import PARENTS
 from elbowroom.body.fitting import coverage, coverage_of_parts
-from elbowroom.body.gait import stride_length
+from elbowroom.body.gait import gait_shape, quickness, stride_length
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading import load_with_surface
@@ -88,7 +88,7 @@ def facts_of(humanoid: Humanoid, points: BodyPoints) -> AvatarFacts:
         height=crown_of(humanoid),
         head_joint=skeleton.height,
         hip_joint=float(skeleton.positions[0, 1]),
-        stride=float(stride_length(WALK)),
+        stride=float(stride_length(WALK) / quickness(gait_shape(skeleton).scale)),
         facing=float(np.rad2deg(rig.facing)),
         rest_pose=_rest_pose(humanoid, tree.world_matrices(tree.rotations)[:, :3, 3]),
         bones={bone.bone: {"node": bone.node, "name": bone.name, "how": bone.how} for bone in meta.bones},

@@ -1,5 +1,6 @@
 """How an avatar file is to be read, where the user wants it otherwise than by itself."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +13,8 @@ SHORTEST, TALLEST = 0.3, 3.0  # metres
 class LoadSettings:
     """Options of `Humanoid.load`; raises `InputError` for a height that no humanoid has."""
 
-    bones: Path | None = None  # JSON that names nodes of bones; None: `FILE.bones.json` where it lies beside the file
+    # Nodes of bones: a JSON file, or bone -> node (name, number, None for none); None: `FILE.bones.json`, if any
+    bones: Path | Mapping[str, str | int | None] | None = None
     include_hair: bool = False  # hair, skirts and the like belong to the collision body too
     height: float | None = None  # metres from the ground to the crown; None: as the file has it
 

@@ -1,5 +1,6 @@
 """An avatar file becomes a `Humanoid`: bones, T-pose, facing, unit, ground, collision body."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,12 +48,19 @@ def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
 def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple[Humanoid, BodyPoints]:
     """The humanoid and the points of its own surface to judge its capsules by."""
     chosen = settings or LoadSettings()
-    beside = chosen.bones or override_beside(path)
-    override = None if beside is None else read_override(beside)
+    override = _override(path, chosen)
     if path.name.lower().endswith(SUFFIXES):
         hanim = read_hanim(path)
         return _humanoid(hanim.gltf, path, override, chosen, hanim)
     return _humanoid(read_gltf(path), path, override, chosen)
+
+
+def _override(path: Path, settings: LoadSettings) -> Field | None:
+    """The user's word on the bones of an avatar file, if there is one."""
+    if isinstance(settings.bones, Mapping):
+        return Field(dict(settings.bones), path.name)
+    beside = settings.bones or override_beside(path)
+    return None if beside is None else read_override(beside)
 
 
 def _humanoid(
@@ -73,7 +81,8 @@ def _humanoid(
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
     meta = replace(told, notes=told.notes + bones.notes + unit + left_out + capsule_notes, bones=bones.sources)
-    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, pack_glb(bones.gltf))
+    read_with = replace(settings, bones=bones.told)
+    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, pack_glb(bones.gltf))
     return sized(humanoid, points, settings.height, NO_BODY not in capsule_notes)
 
 

@@ -6,12 +6,12 @@ import os
 import sys
 import threading
 import webbrowser
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from elbowroom.cli import clip_options
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
 from elbowroom.cli.output import PLANNER_HELP
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -32,7 +32,10 @@ def play(
     port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
     scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, beam, empty) or a scene file.")] = "a",
-    avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
+    avatar: Avatar = None,
+    bones: Bones = None,
+    height: Height = None,
+    include_hair: IncludeHair = False,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,
     swing: clip_options.Swing = None,
@@ -42,12 +45,18 @@ def play(
     fps: clip_options.Fps = None,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
+    from elbowroom.body.load_settings import LoadSettings
     from elbowroom.server.library import Library
     from elbowroom.server.walk import WalkSettings
 
     settings = WalkSettings(planner=planner, queue_size=queue)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
-    serve_until_interrupted(lambda: Library.open(scene, avatar, settings, motions), host, port, open_page=open_page)
+    read = LoadSettings(bones, include_hair, height)
+
+    def library() -> Library:
+        return Library.open(scene, avatar, settings, motions, read)
+
+    serve_until_interrupted(library, host, port, open_page=open_page)
 
 
 def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int, *, open_page: bool) -> None:

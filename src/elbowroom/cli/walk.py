@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli import clip_options
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.output import PLANNER_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -27,7 +28,10 @@ def walk(
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     seed: Annotated[int, typer.Option(help="Varies the planner's chance, the start and the user's patience.")] = 0,
-    avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
+    avatar: Avatar = None,
+    bones: Bones = None,
+    height: Height = None,
+    include_hair: IncludeHair = False,
     limit: Annotated[float, typer.Option(help="Seconds that the user has for the crossing.")] = 30.0,
     record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
     swing: clip_options.Swing = None,
@@ -42,7 +46,6 @@ def walk(
 
     A scripted user walks forward, and when stuck backs up and tries again. Exit code 0: through in time, 1: not.
     """
-    from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
     from elbowroom.world.scene import Scene
@@ -51,7 +54,7 @@ def walk(
     settings = CrossingSettings(planner, queue, seed, limit)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
     with progress_bar("Compiling kernels (the first run takes longest)", None, quiet):
-        humanoid = Humanoid.default() if avatar is None else Humanoid.load(avatar)
+        humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     with (

@@ -48,6 +48,7 @@ class MotionBounds(NamedTuple):
     acceleration: float
     braking: float
     turn_acceleration: float
+    quickness: float = 1.0  # strides of the body for one of an average adult, see `body.gait`
 
 
 class Travel(NamedTuple):
@@ -67,7 +68,7 @@ def wrapped(angle: float) -> float:
 
 
 @exact_kernel
-def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float) -> None:
+def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, quickness: float) -> None:
     """Write state k+1: velocities change linearly from those of state k to (vx, vz) on the ground and `turn`."""
     a, b = states[k], states[k + 1]
     sine, cosine = np.sin(a[2]), np.cos(a[2])
@@ -81,7 +82,7 @@ def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, inte
     for i in range(_PHASE_STEPS):
         between = interpolate_root(a, b, (i + 0.5) / _PHASE_STEPS, interval)
         strides += phase_rate(between[3], between[4], between[5])
-    b[6] = a[6] + strides * interval / _PHASE_STEPS
+    b[6] = a[6] + quickness * strides * interval / _PHASE_STEPS
 
 
 @exact_kernel
@@ -99,7 +100,7 @@ def limited_step(
     part = min(1.0, most / max(change, _STILL))
     swing = bounds.turn_acceleration * interval
     rate = a[5] + min(max(turn - a[5], -swing), swing)
-    _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval)
+    _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds.quickness)
 
 
 @exact_kernel

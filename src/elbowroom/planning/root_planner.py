@@ -14,6 +14,7 @@ from time import perf_counter_ns
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
@@ -47,7 +48,10 @@ class RootPlanner:
         self.settings = settings or RootPlannerSettings()
         self.body = LowerBody(humanoid, scene.boxes)
         motion = self.settings.motion
-        self.bounds = MotionBounds(motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration)
+        strides = quickness(self.body.model.gait.scale)
+        self.bounds = MotionBounds(
+            motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
+        )
         self._evasions = EvasionFinder(humanoid, scene.boxes.table, self.settings.evasion)
         self._moving = scene.moving
         self.others = MovingBoxes()  # that move besides the scene's own

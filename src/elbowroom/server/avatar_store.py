@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.load_settings import LoadSettings
 from elbowroom.errors import InputError
 from elbowroom.server.messages import AvatarChoice
 from elbowroom.server.pose import Poser
@@ -73,9 +74,9 @@ class AvatarStore:
                 self._uploads.move_to_end(avatar_id)
         return found or self._keep(STOCK, Humanoid.default())
 
-    def add_file(self, path: Path) -> StoredAvatar:
+    def add_file(self, path: Path, read: LoadSettings | None = None) -> StoredAvatar:
         """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
-        return self._keep(secrets.token_hex(8), Humanoid.load(path))
+        return self._keep(secrets.token_hex(8), Humanoid.load(path, read))
 
     def add_upload(self, data: bytes, name: str) -> StoredAvatar:
         """Keep an avatar that was sent as bytes; raises `InputError` if they hold no humanoid."""

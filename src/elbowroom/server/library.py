@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
 from elbowroom.planning.planner import PLANNERS
@@ -42,13 +43,14 @@ class Library:
         avatar: Path | None = None,
         walk: WalkSettings | None = None,
         motions: MotionSet | None = None,
+        read: LoadSettings | None = None,
     ) -> "Library":
         """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
         first = Scene.load(scene)
         scenes = {name: Scene.load(name) for name in Scene.stock_names()}
         avatars = AvatarStore()
         try:
-            chosen = STOCK if avatar is None else avatars.add_file(avatar).id
+            chosen = STOCK if avatar is None else avatars.add_file(avatar, read).id
         except BaseException:
             avatars.close()
             raise

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate
+from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, quickness
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis
 from elbowroom.jit import exact_kernel
@@ -198,7 +198,7 @@ def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sw
     jerk_x = _jerk(a[0], ends[0, 0], b[0], ends[1, 0], interval)
     jerk_z = _jerk(a[1], ends[0, 1], b[1], ends[1, 1], interval)
     jerk_turn = _jerk(a[2], a[5], b[2], b[5], interval)
-    stride = max(phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5]))
+    stride = quickness(chain.scale) * max(phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5]))
     bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2
     for i in range(SWEEP):
         one, two = states[i], states[i + 1]
