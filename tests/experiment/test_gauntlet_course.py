@@ -25,8 +25,8 @@ PINNED = {
 }
 # The stock avatar: these change with its collision body too.
 PINNED_STOCK = {
-    (1, 0): "f434effaaaa7fa9dc6820c6e9c3b600bc83da0d695a6df4b5401e115882cad4e",
-    (3, 1): "f9065bb2e73b7039b5763e48b5b478f60c58ec2a7c483fae6d54827565c41668",
+    (1, 0): "622eb4a145b0419dbf2a90630839477528cdce9be439a9ee84837ad03a92c4ce",
+    (3, 1): "ff87b97b2e0f85512d0a408682b478a0f227633fbb3537f2f293d4ef9bac521d",
     (5, 2): "306bd352d57f1ee7f82f53f3be5d7e58621af319670fffedb66c3d5b3f82d065",
 }
 
