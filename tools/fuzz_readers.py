@@ -48,6 +48,35 @@ def glb_reader() -> Reader:
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words)
 
 
+def compressed_reader() -> Reader:
+    """GLB humanoids with Draco and meshoptimizer streams."""
+    from compressed_builder import draco_file, meshopt_file
+    from elbowroom.body.loading import load_humanoid_bytes
+
+    words = (
+        b'"mode":"TRIANGLES"',
+        b'"count":4999999',
+        b'"byteStride":256',
+        b'"filter":"OCTAHEDRAL"',
+        b"DRACO",
+        b"\xe1",
+    )
+    seeds = (meshopt_file(2), draco_file()[0])
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), seeds, words)
+
+
+def bones_reader() -> Reader:
+    """`FILE.bones.json`."""
+    from elbowroom.body.bone_mapping.file_nodes import FileNodes
+    from elbowroom.body.bone_mapping.override import override_nodes, parse_override
+
+    names = ("Hips", "Spine", "Hand", "Hand")
+    nodes = FileNodes(names, np.arange(4) - 1, np.zeros((4, 3)))
+    words = (b'"hips":', b"null", b'"Hand"', b"1e9", b"{", b"[[[[", b'"leftHand":3')
+    seeds = (b'{"hips": "Hips", "spine": 1, "leftHand": null}', b'{"head": 3}')
+    return Reader(lambda data: override_nodes(parse_override(data, "fuzz.bones.json"), nodes), seeds, words)
+
+
 def bvh_reader() -> Reader:
     """BVH files, down to the motion in planning's terms."""
     from bvh_builder import BvhRecipe, random_motion, write_bvh
@@ -156,6 +185,8 @@ def packed_reader() -> Reader:
 
 READERS: dict[str, Callable[[], Reader]] = {
     "glb": glb_reader,
+    "compressed": compressed_reader,
+    "bones": bones_reader,
     "bvh": bvh_reader,
     "animation": animation_reader,
     "x3d-xml": xml_reader,

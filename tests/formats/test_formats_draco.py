@@ -1,58 +1,20 @@
 """Draco meshes: the same avatar with and without compression; damaged data is one line."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
-from avatar_builder import Recipe, build, json_of
+from avatar_builder import Recipe, build
+from compressed_builder import draco_file
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf, read_gltf
 from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
-from elbowroom.formats.packing import write_glb
 from elbowroom.formats.triangles import triangle_mesh
 from shared_data import SHARED, needs_shared
 
-DracoPy = pytest.importorskip("DracoPy")
-
-
-def _draco_file(damage: bytes | None = None) -> tuple[bytes, Any, Any]:
-    """An avatar whose mesh is compressed, its points and its joints."""
-    glb = build(Recipe(points=20))
-    content = json_of(glb)
-    size = int.from_bytes(glb[12:16], "little")
-    binary = bytearray(glb[28 + size :])
-    views, accessors = content["bufferViews"], content["accessors"]
-
-    def view(index: int, kind: str, width: int) -> Any:
-        start = views[index]["byteOffset"]
-        return np.frombuffer(bytes(binary), kind, views[index]["byteLength"] // np.dtype(kind).itemsize, start).reshape(
-            -1, width
-        )
-
-    points, joints, weights = view(0, "<f4", 3), view(1, "<u2", 4), view(2, "<u1", 4)
-    order = np.arange(len(points) // 3 * 3).reshape(-1, 3)
-    packed = DracoPy.encode(
-        points, order, quantization_bits=16, generic_attributes={7: joints.copy(), 8: weights.copy()},
-        preserve_order=True,
-    )  # fmt: skip
-    place = next(a["unique_id"] for a in DracoPy.decode(packed).attributes if a["attribute_type"] == 0)
-    packed = packed if damage is None else damage
-    views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(packed)})
-    binary += packed
-    content["buffers"] = [{"byteLength": len(binary)}]
-    for accessor in accessors[:3]:
-        del accessor["bufferView"]
-    attributes = {"POSITION": place, "JOINTS_0": 7, "WEIGHTS_0": 8}
-    primitive = content["meshes"][0]["primitives"][0]
-    primitive["mode"] = 4
-    primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": len(views) - 1, "attributes": attributes}}
-    return write_glb(content, bytes(binary)), points, joints
-
 
 def test_a_draco_mesh_is_read_with_its_skin() -> None:
-    data, points, _ = _draco_file()
+    data, points, _ = draco_file()
     gltf = parse_gltf(data, "d.glb")
     tree = read_nodes(gltf)
     mesh = triangle_mesh(gltf, tree)
@@ -73,7 +35,7 @@ def test_a_draco_mesh_is_read_with_its_skin() -> None:
 
 @pytest.mark.parametrize("damage", [b"x", b"DRACO\x02\x02\x01\x01\x00\x00", bytes(300)])
 def test_damaged_data_is_one_line(damage: bytes) -> None:
-    gltf = parse_gltf(_draco_file(damage)[0], "d.glb")
+    gltf = parse_gltf(draco_file(damage)[0], "d.glb")
     with pytest.raises(InputError, match="damaged") as caught:
         surface_points(gltf, read_nodes(gltf))
     assert "\n" not in str(caught.value)

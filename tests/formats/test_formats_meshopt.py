@@ -10,13 +10,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from avatar_builder import Recipe, build
+from compressed_builder import meshopt_file
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
-from elbowroom.formats.gltf import read_gltf
+from elbowroom.formats.gltf import parse_gltf, read_gltf
+from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.meshopt import filters
 from elbowroom.formats.meshopt.index_codec import decode_sequence, decode_triangles
 from elbowroom.formats.meshopt.vertex_codec import decode_vertices
 from elbowroom.formats.meshopt.views import compressed, decode_view
+from elbowroom.formats.nodes import read_nodes
 from shared_data import SHARED, needs_shared
 
 meshoptimizer = pytest.importorskip("meshoptimizer")
@@ -198,3 +202,10 @@ def test_a_real_avatar_as_the_page_decodes_it() -> None:
         found = decode_view(field, data).ravel().astype(np.uint64)
         weights = np.arange(found.size, dtype=np.uint64) % 9973 + 1
         assert int(np.sum(found * weights) % 2**32) == judged
+
+
+def test_a_compressed_avatar_has_the_same_surface() -> None:
+    found, plain = parse_gltf(meshopt_file(), "m.glb"), parse_gltf(build(Recipe(points=20)), "p.glb")
+    one, other = (surface_points(gltf, read_nodes(gltf)) for gltf in (found, plain))
+    assert np.array_equal(one.offsets, other.offsets)
+    assert np.array_equal(one.nodes, other.nodes)

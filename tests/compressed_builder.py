@@ -1,0 +1,62 @@
+"""Avatar files whose meshes are compressed."""
+
+from typing import Any
+
+import DracoPy
+import numpy as np
+
+from avatar_builder import Recipe, build, json_of
+from elbowroom.formats.packing import write_glb
+
+
+def meshopt_file(points: int = 20) -> bytes:
+    """An avatar whose buffer views are all compressed with meshoptimizer."""
+    import meshoptimizer
+
+    content, binary = _parts(build(Recipe(points=points)))
+    packed = bytearray()
+    for view, stride in zip(content["bufferViews"], (12, 8, 4, 64), strict=True):
+        raw = np.frombuffer(bytes(binary), np.uint8)[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+        count = len(raw) // stride
+        data = bytes(meshoptimizer.encode_vertex_buffer(raw.reshape(count, stride), count, stride))
+        place = {"buffer": 0, "byteOffset": len(packed), "byteLength": len(data), "byteStride": stride}
+        view["extensions"] = {"EXT_meshopt_compression": place | {"count": count, "mode": "ATTRIBUTES"}}
+        packed += data + bytes(-len(data) % 4)
+    content["buffers"] = [{"byteLength": len(packed)}]
+    return write_glb(content, bytes(packed))
+
+
+def _parts(glb: bytes) -> tuple[dict[str, Any], bytearray]:
+    size = int.from_bytes(glb[12:16], "little")
+    return json_of(glb), bytearray(glb[28 + size :])
+
+
+def draco_file(damage: bytes | None = None) -> tuple[bytes, Any, Any]:
+    """An avatar whose mesh is compressed, its points and its joints."""
+    content, binary = _parts(build(Recipe(points=20)))
+    views, accessors = content["bufferViews"], content["accessors"]
+
+    def view(index: int, kind: str, width: int) -> Any:
+        start = views[index]["byteOffset"]
+        return np.frombuffer(bytes(binary), kind, views[index]["byteLength"] // np.dtype(kind).itemsize, start).reshape(
+            -1, width
+        )
+
+    points, joints, weights = view(0, "<f4", 3), view(1, "<u2", 4), view(2, "<u1", 4)
+    order = np.arange(len(points) // 3 * 3).reshape(-1, 3)
+    packed = DracoPy.encode(
+        points, order, quantization_bits=16, generic_attributes={7: joints.copy(), 8: weights.copy()},
+        preserve_order=True,
+    )  # fmt: skip
+    place = next(a["unique_id"] for a in DracoPy.decode(packed).attributes if a["attribute_type"] == 0)
+    packed = packed if damage is None else damage
+    views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(packed)})
+    binary += packed
+    content["buffers"] = [{"byteLength": len(binary)}]
+    for accessor in accessors[:3]:
+        del accessor["bufferView"]
+    attributes = {"POSITION": place, "JOINTS_0": 7, "WEIGHTS_0": 8}
+    primitive = content["meshes"][0]["primitives"][0]
+    primitive["mode"] = 4
+    primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": len(views) - 1, "attributes": attributes}}
+    return write_glb(content, bytes(binary)), points, joints
