@@ -82,7 +82,7 @@ def test_real_avatars_are_covered(name: str) -> None:
     limbs = [i for i, part in enumerate(humanoid.capsules.names) if part.endswith(("Arm", "Forearm", "Thigh", "Shin"))]
     lengths = np.linalg.norm(humanoid.capsules.ends - humanoid.capsules.starts, axis=1)
     assert np.all(humanoid.capsules.radii[limbs] < 0.15 * humanoid.skeleton.height)
-    assert np.all(lengths < 0.4 * humanoid.skeleton.height)
+    assert np.all(lengths < 0.55 * humanoid.skeleton.height)
 
 
 def test_the_fit_repeats_exactly() -> None:

@@ -178,5 +178,5 @@ def test_a_real_avatar_that_needs_meshopt_and_quantisation() -> None:
     humanoid, points = load_with_surface(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb")
     assert len(points.positions) > 30_000
     assert points.positions[:, 1].min() == pytest.approx(0.0, abs=0.02)
-    assert 1.7 < crown_of(humanoid) < 1.9
+    assert 1.7 < crown_of(humanoid, points) < 1.9
     assert not any("average proportions" in note for note in humanoid.meta.notes)

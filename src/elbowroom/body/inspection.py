@@ -85,7 +85,7 @@ def facts_of(humanoid: Humanoid, points: BodyPoints) -> AvatarFacts:
         licence=meta.licence,
         contact=meta.contact,
         permissions=meta.permissions.lines(),
-        height=crown_of(humanoid),
+        height=crown_of(humanoid, points),
         head_joint=skeleton.height,
         hip_joint=float(skeleton.positions[0, 1]),
         stride=float(stride_length(WALK) / quickness(gait_shape(skeleton).scale)),

@@ -14,8 +14,11 @@ _ASKED = 1e-3  # relative difference of heights that is none
 _LOOSE = 0.005  # share of the head's points at either end that are not measured
 
 
-def crown_of(humanoid: Humanoid) -> float:
-    """Height in metres of the highest point of the head's capsules above the ground, in T-pose."""
+def crown_of(humanoid: Humanoid, points: BodyPoints) -> float:
+    """Height in metres of the head's highest point above the ground; of its capsule where it has no mesh."""
+    heights = _head(humanoid, points)
+    if len(heights):
+        return float(heights.max())
     capsules = humanoid.capsules
     head = [i for i, name in enumerate(capsules.names) if name.startswith("head")]
     rest = humanoid.skeleton.positions[capsules.joints[head], 1]
@@ -25,10 +28,16 @@ def crown_of(humanoid: Humanoid) -> float:
 
 def head_height(humanoid: Humanoid, points: BodyPoints) -> float:
     """Metres from the lowest to the highest point of the head; 0 without a mesh on it."""
+    heights = _head(humanoid, points)
+    return float(np.ptp(np.quantile(heights, [_LOOSE, 1.0 - _LOOSE]))) if len(heights) else 0.0
+
+
+def _head(humanoid: Humanoid, points: BodyPoints) -> NDArray[np.float64]:
+    """Heights (P,) of the points of the head above the ground."""
     average = proportional_capsules(humanoid.skeleton)
     head = part_of_points(humanoid.skeleton, average, points) == average.names.index("head")
     heights: NDArray[np.float64] = points.positions[head, 1]
-    return float(np.ptp(np.quantile(heights, [_LOOSE, 1.0 - _LOOSE]))) if len(heights) else 0.0
+    return heights
 
 
 def sized(humanoid: Humanoid, points: BodyPoints, height: float | None, has_body: bool) -> tuple[Humanoid, BodyPoints]:
@@ -36,7 +45,7 @@ def sized(humanoid: Humanoid, points: BodyPoints, height: float | None, has_body
 
     Without a mesh that is its body (`has_body`) the head says nothing.
     """
-    crown = crown_of(humanoid)
+    crown = crown_of(humanoid, points)
     if height is not None:
         return _scaled(humanoid, points, height / crown, f"scaled to a height of {height:g} m")
     head = head_height(humanoid, points) if has_body else 0.0
