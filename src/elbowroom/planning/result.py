@@ -42,6 +42,20 @@ class GroupEvidence:
     nanoseconds: int
 
 
+@dataclass(frozen=True)
+class JointEvidence:
+    """What searching all groups together cost, and how it ended.
+
+    FOUND: the cheapest way through the product of all postures that the searches had, by steps that had not been found
+    to touch; EXHAUSTED: the proof that the product has none.
+    """
+
+    status: PlanStatus
+    states: int  # triples of waist, left and right arm that were settled
+    checks: int  # capsules checked to fill its tables
+    nanoseconds: int
+
+
 class BlockadeKind(Enum):
     """Why there is no way on."""
 
@@ -72,13 +86,14 @@ class LocalPlan:
     configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
     goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
+    joint: JointEvidence | None = None  # of the groups together, where one after the other led nowhere
     blockade: Blockade | None = None  # why this is not the whole way that was asked for, if the planner can say it
     velocities: NDArray[np.float64] | None = None  # (n+1, 11) of the curve at the key times, if the planner chose them
 
     @property
     def checks(self) -> int:
         """Collision checks of all groups."""
-        return sum(group.checks for group in self.evidence)
+        return sum(group.checks for group in self.evidence) + (self.joint.checks if self.joint else 0)
 
     @property
     def nodes(self) -> int:

@@ -35,7 +35,7 @@ from elbowroom.planning.exact.together import Guide, arm_nodes, guide, surroundi
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
 from elbowroom.planning.exact.why_not import blockade
 from elbowroom.planning.lowered_legs import LoweredLegs
-from elbowroom.planning.result import Blockade, GroupEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.result import Blockade, GroupEvidence, JointEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,9 @@ class Dressing:
             return None
         keys = np.concatenate([way.keys for way in found.ways], axis=1)
         velocities = np.concatenate([way.velocities for way in found.ways], axis=1)
-        return LocalPlan(PlanStatus.FOUND, keys, self.goals, self.ledger.evidence(), velocities=velocities)
+        return LocalPlan(
+            PlanStatus.FOUND, keys, self.goals, self.ledger.evidence(), velocities=velocities, joint=self.ledger.joint
+        )
 
     def apart(self) -> Ways:
         """Each group by itself."""
@@ -301,7 +303,7 @@ class Ledger:
     def __init__(self, shelves: Shelves, weights: Weights) -> None:
         self._shelves, self._weights = shelves, weights
         self._rows: dict[DofGroup, GroupEvidence] = {}
-        self.joint: GroupEvidence | None = None
+        self.joint: JointEvidence | None = None
 
     def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
         """`search_group`, entered under `group`."""
@@ -321,7 +323,7 @@ class Ledger:
     def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
         """What the joint step cost until now."""
         before = 0 if self.joint is None else self.joint.nanoseconds
-        self.joint = GroupEvidence(DofGroup.WAIST, status, step.checks, step.states, 0, before + nanoseconds)
+        self.joint = JointEvidence(status, step.states, step.checks, before + nanoseconds)
 
     def evidence(self) -> tuple[GroupEvidence, ...]:
         """A row for each group that was searched, in order."""

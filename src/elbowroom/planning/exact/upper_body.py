@@ -102,7 +102,8 @@ class UpperBody:
                 return UpperPlan(found, path.horizon, dressing)
             if not refine or attempt == self.settings.refinements or not self._refine(dressing):
                 break
-        plan = LocalPlan(PlanStatus.EXHAUSTED, dressing.goals[:0], dressing.goals, dressing.ledger.evidence())
+        ledger, goals = dressing.ledger, dressing.goals
+        plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence(), joint=ledger.joint)
         return UpperPlan(plan, dressing.deepest, dressing)
 
     def reset(self) -> None:

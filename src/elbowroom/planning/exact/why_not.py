@@ -23,21 +23,20 @@ Indices = NDArray[np.int64]
 
 def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Blockade:
     """Why there is no way into the slice at `depth`; `rows` (B,) are the numbers of the step's boxes in the scene."""
-    contacts = _contacts(step, depth, _possible(step, depth))
-    named, kind = blocking_boxes(contacts), BlockadeKind.NO_POSTURE
+    named, kind = blocking_boxes(_contacts(step, depth, _possible(step, depth))), BlockadeKind.NO_POSTURE
     if named is None:
         for before in range(depth + 1):
             step.fill(before, np.ones(step.filled.shape[1], np.bool_))
         problem = _until(step.problem(), depth)
         reached = reach(problem)
-        kind = BlockadeKind.OUT_OF_REACH
-        if reached.depth == depth or reached.depth < 0:
-            kind, named = BlockadeKind.MOTION, np.empty(0, np.int64)
-        else:
+        if 0 <= reached.depth < depth:
             depth = reached.depth + 1
-            steps = stepped_triples(problem, reached.depth, reached.triples)
-            contacts = _contacts(step, depth, _possible(step, depth) & steps)
-            named = blocking_boxes(contacts)
+            possible = _possible(step, depth)
+            named = blocking_boxes(_contacts(step, depth, possible))
+            if named is None:
+                kind = BlockadeKind.OUT_OF_REACH
+                steps = stepped_triples(problem, reached.depth, reached.triples)
+                named = blocking_boxes(_contacts(step, depth, possible & steps))
     boxes = () if named is None else tuple(int(rows[b]) for b in named)
     state = path.states[depth]
     way = np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum()

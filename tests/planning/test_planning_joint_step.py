@@ -1,0 +1,178 @@
+"""The joint step on a real body: its tables against the body posed in the world, its certificate, and its memory."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.planning.exact.dressing import Dressing
+from elbowroom.planning.exact.joint_step import JointStep
+from elbowroom.planning.exact.own_body import SPARE
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.result import BlockadeKind, PlanStatus
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.self_pairs import self_clearances, self_pairs
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.clearance import clearance
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+Rows = tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
+SETTINGS = ExactSettings(waist_samples=2, arm_samples=3)  # few postures: the whole product can be looked at
+AWAY = ((1.4, 1.0, 1.4), (0.1, 0.1, 0.1))
+WALL = (((0.0, 1.6, 1.4), (3.0, 0.55, 0.1)), AWAY)  # legs pass, nobody else does
+PILLARS = (
+    ((-0.26, 1.4, 1.4), (0.2, 0.9, 0.2)),
+    ((0.26, 1.4, 1.4), (0.2, 0.9, 0.2)),
+    AWAY,
+)
+POSTS = (((0.42, 1.0, 1.2), (0.08, 0.4, 0.08)), ((-0.45, 1.1, 1.5), (0.06, 0.3, 0.06)))
+
+
+@pytest.fixture(scope="module")
+def humanoid() -> Humanoid:
+    return proportional_humanoid(1.72)
+
+
+def scene_of(rows: Rows) -> Scene:
+    centers, halves = (np.array(column) for column in zip(*rows, strict=True))
+    boxes = Boxes(centers, np.tile([0.0, 0.0, 0.0, 1.0], (len(centers), 1)), halves)
+    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(len(centers))))
+
+
+def walk(horizon: int = 8) -> RootPath:
+    states = np.zeros((horizon + 1, 7))
+    times = 0.15 * np.arange(horizon + 1.0)
+    states[:, 1], states[:, 3], states[:, 6] = 1.1 * times, 1.1, 0.9 * times
+    return RootPath(0.0, 0.15, states)
+
+
+def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> Dressing:
+    body = UpperBody(humanoid, scene, SETTINGS)
+    start = goal_configurations(natural_walk(), path)[0]
+    return body.plan(path, start, np.zeros_like(start), refine=False).dressing
+
+
+def step_of(dressing: Dressing) -> JointStep:
+    assert dressing._waist is not None
+    return dressing.joint_step(dressing._waist)
+
+
+def triple(step: JointStep, depth: int, nodes: tuple[int, ...]) -> Floats:
+    return np.concatenate([step.configurations(group, depth)[node] for group, node in enumerate(nodes)])
+
+
+def test_its_tables_say_what_the_posed_body_says(humanoid: Humanoid) -> None:
+    """Free or not, arm by arm and arm beside arm, at every moment that a slice looks at."""
+    path, rng, model = walk(), np.random.default_rng(0), body_model(humanoid)
+    dressing = dressed(humanoid, scene_of(POSTS), path)
+    step, pairs = step_of(dressing), self_pairs(model)
+    seen = {True: 0, False: 0}
+    for _ in range(120):
+        depth = int(rng.integers(4, 9))
+        usable = [np.flatnonzero(np.isfinite(group.prices_alone[depth])) for group in step.nodes]
+        nodes = tuple(int(rng.choice(row)) for row in usable)
+        if not np.isfinite(step.nodes[0].base[depth, nodes[0]]):
+            continue
+        step.fill(depth, np.arange(step.filled.shape[1]) == nodes[0])
+        upper = triple(step, depth, nodes)
+        contact = self_clearances(model, pairs, path.states[depth : depth + 1], upper[None])[:, 0]
+        moments = len(step.around.places[depth])
+        for side in range(2):
+            free = np.isfinite(step.prices[side][depth, nodes[0], nodes[1 + side]])
+            near = min(arm_clearance(humanoid, step, depth, i, upper, side) for i in range(moments))
+            margin = step.nodes[1 + side].margins[depth]
+            if abs(near - margin) > 1e-4 and abs(contact[side] - SPARE) > 1e-3:
+                assert free == (near >= margin and contact[side] >= SPARE)
+                seen[bool(free)] += 1
+        if abs(contact[2] - SPARE) > 1e-3:
+            assert step.apart[depth, nodes[1], nodes[2]] == (contact[2] >= SPARE)
+    assert min(seen.values()) > 5
+
+
+def arm_clearance(humanoid: Humanoid, step: JointStep, depth: int, moment: int, upper: Floats, side: int) -> float:
+    """Of an arm posed in the world with the pelvis where the slice has it at a moment."""
+    model, place, turn = body_model(humanoid), step.around.places[depth, moment], step.around.turns[depth, moment]
+    q = np.zeros((1, DOF))
+    q[0, DOF - len(upper) :] = upper
+    still = np.zeros((1, 7))
+    still[0, 2] = 2.0 * np.arctan2(turn[1], turn[3])
+    capsules = posture_capsules(model, q, still)[model.capsules_of(LOCAL_GROUPS[1 + side]).indices].astype(np.float64)
+    hips = posture_pelvis(humanoid, still)
+    moved = capsules + np.tile(place - hips, 2)[None, :, None]
+    radii = humanoid.capsules.radii[model.capsules_of(LOCAL_GROUPS[1 + side]).indices]
+    return float(clearance(moved, radii, step.around.boxes)[0])
+
+
+def posture_pelvis(humanoid: Humanoid, state: Floats) -> Floats:
+    from elbowroom.body.kinematics import pelvis_frames
+
+    return np.asarray(pelvis_frames(body_model(humanoid), state)[0][0])
+
+
+def test_looking_at_few_waists_gives_the_optimum_of_all(humanoid: Humanoid) -> None:
+    dressing = dressed(humanoid, scene_of(POSTS), walk())
+    lazy, whole = step_of(dressing), step_of(dressing)
+    for depth in range(len(whole.filled)):
+        whole.fill(depth, np.ones(whole.filled.shape[1], np.bool_))
+    found, best = lazy.search(), whole.search()
+    assert found.status is best.status is PlanStatus.FOUND
+    assert np.isclose(found.cost, best.cost, atol=1e-5)
+    assert lazy.checks < whole.checks
+
+
+def any_triple(humanoid: Humanoid, rows: Rows, path: RootPath, depth: int) -> bool:
+    """Whether any posture of the upper body is free in a slice."""
+    step = step_of(dressed(humanoid, scene_of(rows), path))
+    step.fill(depth, np.ones(step.filled.shape[1], np.bool_))
+    problem = step.problem()
+    free = (
+        np.isfinite(problem.waist[depth])[:, None, None]
+        & np.isfinite(problem.left[depth])[:, :, None]
+        & np.isfinite(problem.right[depth])[:, None, :]
+        & problem.apart[depth]
+    )
+    return bool(free.any())
+
+
+@pytest.mark.parametrize("rows", [WALL, PILLARS])
+def test_the_named_obstacles_close_the_slice_and_each_is_needed(humanoid: Humanoid, rows: Rows) -> None:
+    path = walk(10)
+    found = dressed(humanoid, scene_of(rows), path).blockade()
+    depth = round(found.time / path.interval)
+    assert found.kind is BlockadeKind.NO_POSTURE
+    assert np.isclose(found.ahead, 1.1 * found.time)
+    assert found.place[1] == pytest.approx(path.states[depth, 1])
+    named = tuple(rows[box] for box in found.boxes)
+    assert named
+    assert AWAY not in named
+    assert not any_triple(humanoid, (*named, AWAY), path, depth)
+    for box in named:
+        rest = tuple(row for row in named if row is not box)
+        assert any_triple(humanoid, (*rest, AWAY), path, depth)
+
+
+def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid) -> None:
+    """A beam that a few waists of the clips do not pass, and more waists do."""
+    scene, path = scene_of((((0.0, 1.72, 1.3), (1.0, 0.22, 0.05)),)), walk(12)
+    start = goal_configurations(natural_walk(), path)[0]
+    plans = []
+    for _ in range(2):
+        body = UpperBody(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
+        coarse = body.plan(path, start, np.zeros_like(start), refine=False)
+        plans.append(body.plan(path, start, np.zeros_like(start)))
+        body.reset()
+        again = body.plan(path, start, np.zeros_like(start), refine=False)
+        assert again.reached == coarse.reached
+    assert coarse.reached < path.horizon
+    assert plans[0].reached == path.horizon
+    assert np.array_equal(plans[0].plan.configurations, plans[1].plan.configurations)
+    waists = plans[0].plan.configurations[:, columns_of(DofGroup.WAIST)]
+    assert np.abs(waists).max() > 0.2
