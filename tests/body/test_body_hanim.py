@@ -5,11 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from avatar_builder import SKELETON
 from elbowroom.body.bones import REQUIRED
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid
+from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
+from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
+from hanim_builder import HanimRecipe, build_hanim
 from shared_data import SHARED, needs_shared
 
 FILES = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []
@@ -53,3 +56,43 @@ def test_the_glb_carries_the_joints_where_the_skeleton_has_them(humanoid: Humano
     )
     shown = humanoid.rig.to_model(tree.world_matrices(rotations)[humanoid.rig.nodes, :3, 3])
     assert np.allclose(shown, humanoid.skeleton.positions, atol=1e-6)
+
+
+RECIPES = [
+    HanimRecipe("xml", points=4),
+    HanimRecipe("classic", skinned=True, points=4, prefix="Joe_", named=False),
+    HanimRecipe("vrml", "1.1", points=4, scale=0.0254, arms_down=0.8),
+    HanimRecipe("vrml", "2.0", points=4, z_up=True),
+    HanimRecipe("xml", "1.1", points=4, bent=0.6, packed=True),
+    HanimRecipe("xml", skinned=True, points=4, prefix="hanim_", named=False, arms_down=0.0),
+]
+
+
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda recipe: f"{recipe.encoding} {recipe.version}")
+def test_made_figures_come_out_as_the_figure_they_were_made_from(recipe: HanimRecipe) -> None:
+    humanoid = load_humanoid_bytes(build_hanim(recipe), "made.wrl")
+    skeleton = humanoid.skeleton
+    assert set(skeleton.names) == set(SKELETON.names)
+    expected = SKELETON.positions[[SKELETON.index(name) for name in skeleton.names]]
+    offset = (skeleton.positions - expected).mean(axis=0)
+    assert abs(offset[1]) < 0.08  # where the ground is taken to be
+    assert np.allclose(skeleton.positions - offset, expected, atol=1e-5)
+    assert humanoid.meta.format.startswith(f"H-Anim {recipe.version}")
+    how = {source.bone: source.how for source in humanoid.meta.bones}
+    old = recipe.version == "1.1"
+    assert how["leftHand"] == (
+        f"name {'l_wrist' if old else 'l_radiocarpal'}" if recipe.named else f"DEF {recipe.prefix}l_radiocarpal"
+    )
+
+
+def test_a_name_that_two_joints_have_gives_way_to_the_def_name() -> None:
+    text = build_hanim(HanimRecipe("xml", points=4, prefix="Joe_")).decode()
+    wrong = text.replace('name="l_knee"', 'name="l_hip"')
+    how = {source.bone: source.how for source in load_humanoid_bytes(wrong.encode(), "a.x3d").meta.bones}
+    assert (how["leftUpperLeg"], how["leftLowerLeg"]) == ("DEF Joe_l_hip", "DEF Joe_l_knee")
+
+
+def test_level_of_articulation_zero_is_refused_for_what_it_is() -> None:
+    text = '#X3D V3.3 utf8\nHAnimHumanoid { skeleton HAnimJoint { name "humanoid_root" center 0 0.8 0 } }'
+    with pytest.raises(InputError, match=r"one joint \(level of articulation 0\)"):
+        load_humanoid_bytes(text.encode(), "a.x3dv")

@@ -16,7 +16,9 @@ from elbowroom.errors import InputError
 from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.skin import skin_weights
-from elbowroom.formats.x3d.expand import MAX_NODES, expand
+from elbowroom.formats.nodes import MAX_NODES
+from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
+from elbowroom.formats.x3d.expand import expand
 from elbowroom.formats.x3d.files import Library, parse_x3d, read_bytes
 from elbowroom.formats.x3d.looks import Looks, linear_colours
 from elbowroom.formats.x3d.mesh import Mesh
@@ -29,6 +31,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 _MAX_VERTICES = 2_000_000
+_MAX_SHAPES = 5_000  # different ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,7 @@ class _Maker:
         self._looks = Looks(self._draft, library, notes)
         self._meshes: dict[int, tuple[int, Mesh] | None] = {}
         self._joints: list[tuple[Joint, Node]] = []
-        self._vertices = 0
+        self._vertices = self._shapes = 0
         self._default_pose = default_pose
 
     def figure(self) -> HanimFigure:
@@ -112,8 +115,8 @@ class _Maker:
         while waiting:
             node, parent, offset = waiting.pop()
             visited += 1
-            if visited > MAX_NODES:
-                raise InputError(f"{node.place}: more than {MAX_NODES} nodes are shown")
+            if visited > MAX_VISITED:
+                raise InputError(f"{node.place}: more than {MAX_VISITED} nodes are shown")
             if node.kind == "Shape":
                 self._shape(node, parent, offset)
                 continue
@@ -129,18 +132,20 @@ class _Maker:
     def _transform(self, node: Node, parent: int, offset: Floats) -> tuple[int, Floats]:
         """The glTF node of a Transform, and what its origin is in the coordinates of the nodes inside."""
         placing = placing_of(node, self._scene.radian)
+        if len(self._draft.nodes) >= MAX_NODES:
+            raise InputError(f"{node.place}: the figure has more than {MAX_NODES} Transforms, joints and shapes")
         is_joint = node.kind == "HAnimJoint"
         rotation = quaternion.IDENTITY if is_joint and self._centred else placing.rotation
         made = self._draft.add_node(
             (node.text("name") if is_joint else "") or node.name or node.kind,
             parent,
             placing.translation + placing.center - offset,
-            quaternion.multiply(rotation, placing.stretch),
+            rotation if placing.stretch is quaternion.IDENTITY else quaternion.multiply(rotation, placing.stretch),
             placing.scale,
         )
         if is_joint:
             self._joints.append((Joint(made, node.text("name"), node.name, placing.center), node))
-        if not np.array_equal(placing.stretch, quaternion.IDENTITY):
+        if placing.stretch is not quaternion.IDENTITY:
             made = self._draft.add_node("", made, rotation=quaternion.conjugate(placing.stretch))
         return made, placing.center
 
@@ -161,8 +166,9 @@ class _Maker:
 
     def _add_mesh(self, node: Node, mesh: Mesh, weights: dict[str, int]) -> int:
         self._vertices += len(mesh.points)
-        if self._vertices > _MAX_VERTICES:
-            raise InputError(f"{node.place}: the shapes have more than {_MAX_VERTICES} vertices")
+        self._shapes += 1
+        if self._vertices > _MAX_VERTICES or self._shapes > _MAX_SHAPES:
+            raise InputError(f"{node.place}: more than {_MAX_SHAPES} shapes or {_MAX_VERTICES} vertices are shown")
         draft = self._draft
         attributes = {"POSITION": draft.add_vertices(mesh.points, bounds=True)} | weights
         if mesh.normals is not None:
@@ -228,8 +234,8 @@ def _shapes_in(nodes: Nodes) -> Iterator[Node]:
     while waiting:
         node = waiting.pop()
         visited += 1
-        if visited > MAX_NODES:
-            raise InputError(f"{node.place}: the skin has more than {MAX_NODES} nodes")
+        if visited > MAX_VISITED:
+            raise InputError(f"{node.place}: the skin has more than {MAX_VISITED} nodes")
         if node.kind == "Shape":
             yield node
         waiting += reversed(shown_parts(node))
@@ -244,7 +250,7 @@ def _is_centred(humanoid: Node | None) -> bool:
     """Whether the joints have their places by `center`, as H-Anim has it, and not by `translation`, as robots do."""
     waiting = humanoid.nodes("skeleton") or humanoid.nodes("humanoidBody") if humanoid else []
     waiting, visited = list(waiting), 0
-    while waiting and visited < MAX_NODES:
+    while waiting and visited < MAX_VISITED:
         node = waiting.pop()
         visited += 1
         if node.kind == "HAnimJoint" and node.vector("center", (0.0, 0.0, 0.0)).any():

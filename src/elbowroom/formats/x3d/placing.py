@@ -40,6 +40,8 @@ def placing_of(node: Node, radian: float = 1.0) -> Placing:
 
 def rotation_of(node: Node, name: str, radian: float = 1.0) -> Floats:
     """An SFRotation (axis and angle) as a quaternion; an axis without direction turns nothing."""
+    if not node.has(name):
+        return quaternion.IDENTITY
     x, y, z, angle = node.vector(name, (0.0, 0.0, 1.0, 0.0))
     length = float(np.sqrt(x * x + y * y + z * z))
     if length < 1e-12:

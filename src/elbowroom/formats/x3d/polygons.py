@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MOST_CORNERS = 400  # of a polygon whose ears are sought; a larger one is cut into a fan
-_MOST_WORK = 2_000_000  # corner tests in one mesh
+_MOST_CORNERS = 200  # of a polygon whose ears are sought; a larger one is cut into a fan
+_MOST_WORK = 400_000  # squares of corners, of the dented polygons of one mesh
 
 
 def split_polygons(index: Ints) -> tuple[Ints, Ints]:

@@ -20,7 +20,7 @@ def box(node: Node) -> Mesh:
     size = _positive(node, node.vector("size", (2.0, 2.0, 2.0)), "size")
     signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     quads = np.array(_BOX)
-    return _mesh(signs * size, quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1), 0.0)
+    return Mesh(signs * size, quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3), np.arange(8))
 
 
 def sphere(node: Node) -> Mesh:

@@ -12,7 +12,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MOST_POINTS = 1_000_000
+_MOST_POINTS = 300_000
 _SQUARE = (1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0)
 
 

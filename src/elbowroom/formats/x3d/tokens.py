@@ -2,8 +2,8 @@
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from elbowroom.formats.x3d.numbers import (
     without_comments,
 )
 
-_MAX_TOKENS = 1_500_000  # beside those in lists of numbers
+_MAX_TOKENS = 500_000  # beside those in lists of numbers
 
 _BLANK = r"(?:[\s,\ufeff]++|#[^\r\n]*+)*+"
 _TOKEN = re.compile(
@@ -39,8 +39,7 @@ class Kind(Enum):
     END = "the end of the file"
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(NamedTuple):
     """A word of the file; a text is given without its quotes."""
 
     kind: Kind

@@ -25,7 +25,7 @@ from elbowroom.formats.x3d.model import (
 )
 from elbowroom.formats.x3d.numbers import NotNumbersError, parse_number, parse_strings
 
-_MAX_ELEMENTS = 500_000
+_MAX_ELEMENTS = 300_000
 _OUTER = {"X3D", "Scene", "head", "Header", "ProtoInterface", "IS"}
 _UNSEEN = {"ROUTE", "IMPORT", "EXPORT", "component"}
 _NO_FIELDS = {"DEF", "USE", "containerField", "class", "id", "style"}
@@ -68,6 +68,8 @@ class _Builder:
         except expat.ExpatError as error:
             reason = expat.ErrorString(error.code)
             raise InputError(f"{self._file}: line {error.lineno}, column {error.offset + 1}: {reason}") from None
+        except InputError:
+            raise
         except (ValueError, LookupError):
             raise InputError(f"{self._file}: its text encoding is not known; save it as UTF-8") from None
         return self._scene
