@@ -24,7 +24,7 @@ from elbowroom.server.walk import Walk
 Report = Callable[[str, int], None]
 
 _FEW = 6  # kernels that may be missing (not every one is needed by a session) before a process of its own pays
-_TELLING = ("a", "c")  # scenes in which the walk meets what it does not in the open: ways round, blocked steps
+_TELLING = ("a", "c", "doorway", "traffic")  # where the walk meets what it does not in the open: ways round, evasions
 _WALK = [
     (45, Input(seq=1, forward=1.0)),  # past the first key frames, so that plans follow on plans
     (10, Input(seq=2, forward=1.0, direction=1.0, run=True)),
