@@ -108,7 +108,7 @@ def arm_clearance(humanoid: Humanoid, step: JointStep, depth: int, moment: int, 
     hips = posture_pelvis(humanoid, still)
     moved = capsules + np.tile(place - hips, 2)[None, :, None]
     radii = humanoid.capsules.radii[model.capsules_of(LOCAL_GROUPS[1 + side]).indices]
-    return float(clearance(moved, radii, step.around.boxes)[0])
+    return float(clearance(moved, radii, step.around.boxes[depth])[0])
 
 
 def posture_pelvis(humanoid: Humanoid, state: Floats) -> Floats:

@@ -166,6 +166,12 @@ class Dressing:
         around = surroundings(self.path.states, self.shelves.roots, self.roots, self.near.slices)
         return Blocked(depth, around, self.goals[depth, at], float(self.margins[depth]), waists)
 
+    def waist_at(self, depth: int) -> Floats:
+        """The waist (d,) that was chosen for itself at a key time that it reached."""
+        assert self._waist is not None
+        key: Floats = self._waist.keys[depth]
+        return key
+
     def joint_step(self, waist: GroupWay) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
         groups, task = self.shelves.groups, self._task(DofGroup.WAIST, self.roots, None, None)
