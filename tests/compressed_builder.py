@@ -31,9 +31,9 @@ def _parts(glb: bytes) -> tuple[dict[str, Any], bytearray]:
     return json_of(glb), bytearray(glb[28 + size :])
 
 
-def draco_file(damage: bytes | None = None) -> tuple[bytes, Any, Any]:
+def draco_file(damage: bytes | None = None, each: int = 20) -> tuple[bytes, Any, Any]:
     """An avatar whose mesh is compressed, its points and its joints."""
-    content, binary = _parts(build(Recipe(points=20)))
+    content, binary = _parts(build(Recipe(points=each)))
     views, accessors = content["bufferViews"], content["accessors"]
 
     def view(index: int, kind: str, width: int) -> Any:
