@@ -291,3 +291,15 @@ def test_an_address_that_is_not_ours_is_refused() -> None:
     for host in ("203.0.113.7", "no such host", ""):
         with pytest.raises(InputError, match="name"), listen(host, 0):
             pass
+
+
+def test_a_file_that_may_not_be_handed_out_is_shown_on_this_machine_only(library: Library) -> None:
+    from avatar_builder import Recipe, build
+
+    kept = library.avatars.add_upload(build(Recipe(vrm="1", mesh=False)), "kept.vrm")  # says nothing: forbidden
+    assert made(library).get(f"/avatars/{kept.id}.glb").status_code == 200
+    refused = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9").get(f"/avatars/{kept.id}.glb")
+    assert refused.status_code == 403
+    assert "forbids redistribution" in refused.json()["error"]
+    free = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9").get("/avatars/stock.glb")
+    assert free.status_code == 200

@@ -96,6 +96,7 @@ export class App implements SessionListener, MenuListener {
 
   avatar(message: AvatarMessage): void {
     this.bodyIsAvatar = message.url === null;
+    this.aboutAvatar(message);
     this.menu.addAvatar(message.id, message.title);
     this.subscribe();
     this.veil.download(true);
@@ -108,6 +109,14 @@ export class App implements SessionListener, MenuListener {
 
   clip(message: ClipMessage): void {
     this.menu.clips.show(message);
+  }
+
+  /** Author and licence, as the file states them. */
+  private aboutAvatar(message: AvatarMessage): void {
+    const by = message.authors.length > 0 ? `by ${message.authors.join(", ")}` : "";
+    const about = byId("avatar-about", HTMLElement);
+    about.textContent = [by, message.licence].filter(Boolean).join(" · ");
+    about.hidden = about.textContent === "";
   }
 
   avatarLost(id: string): void {
