@@ -35,8 +35,6 @@ class SelfPairs(NamedTuple):
     """One avatar's own body: K parts that are not of an arm, and the arms' parts, as indices of its capsules."""
 
     rest: Indices  # (K,) pelvis and legs, trunk, neck, head
-    carried: NDArray[np.bool_]  # (K,) rides on the chest frame: stands still seen from an arm
-    legs: NDArray[np.bool_]  # (K,) moves with the gait
     arms: tuple[Indices, Indices]  # (C,) left, right
     allowed: tuple[Floats32, Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
     between: Floats32  # (C, C) of left and right arm
@@ -50,7 +48,6 @@ def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None =
     """Measure the natural walk of a body, or what `goals` make of it."""
     rest = np.concatenate([model.roots.indices, model.trunk.indices])
     joints = np.concatenate([model.roots.joints, model.trunk.joints])
-    legs = np.concatenate([model.roots.joints != 0, np.zeros(len(model.trunk.joints), np.bool_)])
     arms = model.left_arm.indices, model.right_arm.indices
     natural = _natural_walk(model, goals or natural_walk())
     head = np.isin(joints, model.gaze)
@@ -64,7 +61,6 @@ def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None =
     limits = tuple(allowed(arm, rest) for arm in arms)
     for limit in limits:
         limit[0, ~head] = EXEMPT
-    carried = joints == model.spine[-1]
     between = allowed(*arms)
     listed = [
         (arm[c], rest[k], side, limit[c, k])
@@ -74,7 +70,7 @@ def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None =
     listed += [(arms[0][c], arms[1][k], 2, between[c, k]) for c, k in np.ndindex(between.shape)]
     first, second, kinds, least = zip(*listed, strict=True)
     return SelfPairs(
-        rest, carried, legs, arms, (limits[0], limits[1]), between, np.array(first), np.array(second),
+        rest, arms, (limits[0], limits[1]), between, np.array(first), np.array(second),
         np.array(kinds), np.array(least, np.float32),
     )  # fmt: skip
 

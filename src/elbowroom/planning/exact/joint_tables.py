@@ -52,21 +52,3 @@ def clearances_under(
                 box_in_frame(near[b], places[f, i], turns[f, i], moved[b])
             checks += lower_blocks(postures.lanes, postures.balls, moved, count, out[f])
     return out.reshape(places.shape[0], blocks * lanes), checks
-
-
-@exact_kernel
-def step_costs(before: Floats, after: Floats, shift: Floats, longest: float, weight: float) -> Floats32:
-    """What steps cost (V, U) from postures (V, d) to (U, d) while the goal moves by `shift` (d,).
-
-    `weight` times the squared change of the deviation from the goal; infinite where a step is longer than `longest`.
-    """
-    out = np.empty((before.shape[0], after.shape[0]), np.float32)
-    for v in range(before.shape[0]):
-        for u in range(after.shape[0]):
-            moved, changed = 0.0, 0.0
-            for i in range(before.shape[1]):
-                way = after[u, i] - before[v, i]
-                moved += way * way
-                changed += (way - shift[i]) * (way - shift[i])
-            out[v, u] = weight * changed if moved <= longest * longest * (1.0 + 1e-6) else np.inf
-    return out

@@ -113,19 +113,3 @@ def held_clearance(
     out = np.full((segments.shape[0], BLOCK), _FAR, np.float32)
     checks = capsule_clearances(lanes, near, count, out)
     return float(out.min()), checks
-
-
-@exact_kernel
-def any_free(postures: Postures, places: Floats, turns: Floats, boxes: Floats) -> Bools:
-    """Whether any of the postures touches nothing where the carrier is at each of `places` (F, 3), `turns` (F, 4)."""
-    free = np.ones(places.shape[0], np.bool_)
-    near, moved = np.empty_like(boxes), np.empty_like(boxes)
-    row = np.empty((postures.lanes.shape[0], BLOCK), np.float32)
-    for f in range(places.shape[0]):
-        count = boxes_around(boxes, places[f], postures.reach, near)
-        for b in range(count):
-            box_in_frame(near[b], places[f], turns[f], moved[b])
-        row[:] = _FAR
-        lower_blocks(postures.lanes, postures.balls, moved, count, row)
-        free[f] = row.max() >= 0.0
-    return free
