@@ -14,6 +14,8 @@ from elbowroom.planning.names import PLANNER_NAMES
 
 PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(PLANNER_NAMES)}."
 
+SCENE_HELP = "A scene by name (a, b, c, d, beam, doorway, traffic, empty), a course (gauntlet:5:1013) or a scene file."
+
 
 def print_json(result: Mapping[str, Any]) -> None:
     """One JSON object on stdout; what is no JSON number becomes null."""

@@ -12,7 +12,7 @@ import typer
 
 from elbowroom.cli import clip_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
-from elbowroom.cli.output import PLANNER_HELP
+from elbowroom.cli.output import PLANNER_HELP, SCENE_HELP
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def play(
     host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
-    scene: Annotated[str, typer.Option(help="Stock scene by name (a, b, c, d, beam, empty) or a scene file.")] = "a",
+    scene: Annotated[str, typer.Option(help=SCENE_HELP)] = "a",
     avatar: Avatar = None,
     bones: Bones = None,
     height: Height = None,

@@ -8,13 +8,14 @@ import typer
 
 from elbowroom.cli import clip_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
-from elbowroom.cli.output import PLANNER_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.cli.output import PLANNER_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.control.frame import Frame
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingResult, Listener
+    from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.planning.command import Command
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --swing my_walk.bvh"
@@ -24,7 +25,7 @@ _FRAMES_PER_UPDATE = 30
 
 def walk(
     *,
-    scene: Annotated[str, typer.Option(help="A stock scene by name (a, b, c, d, beam, empty) or a scene file.")] = "a",
+    scene: Annotated[str, typer.Option(help=SCENE_HELP)] = "a",
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     seed: Annotated[int, typer.Option(help="Varies the planner's chance, the start and the user's patience.")] = 0,
@@ -48,9 +49,8 @@ def walk(
     """
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
-    from elbowroom.world.scene import Scene
 
-    place = Scene.load(scene)
+    place = load_scene(scene)
     settings = CrossingSettings(planner, queue, seed, limit)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
     with progress_bar("Compiling kernels (the first run takes longest)", None, quiet):
@@ -102,6 +102,7 @@ def _report(result: "CrossingResult", record: Path | None, json: bool) -> None:
         "frames": str(result.frames),
         "frame ms, 99 %, worst": f"{result.frame_ms_p99:.2f}, {result.frame_ms_worst:.2f}",
         "least clearance": f"{1e3 * result.least_clearance:.1f} mm",
+        "change from plan to plan, 99 %": f"{result.replan_change_p99:.3f} rad",
     }
     if record is not None:
         row["recording"] = str(record)

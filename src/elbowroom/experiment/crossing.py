@@ -14,6 +14,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.experiment.pacing import is_realtime, late_frames
+from elbowroom.experiment.replans import Replans
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.rehearsal import rehearse
@@ -67,6 +68,7 @@ class CrossingResult:
     frame_ms_worst: float
     plan_ms_worst: float
     least_clearance: float  # metres, over all frames
+    replan_change_p99: float  # radians by which a plan's joints differ from those of the plan before
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +152,7 @@ class _Ledger:
         self._stuck_times = 0
         self._stuck = False
         self._clearance = np.inf
+        self._replans = Replans()
 
     def enter(self, frame: Frame, cost: float) -> None:
         """Add a frame that took `cost` seconds to compute."""
@@ -160,6 +163,7 @@ class _Ledger:
         self._stuck = frame.stuck
         if frame.plan is not None and frame.plan.number > len(self._found):
             self._found.append(frame.plan.found)
+            self._replans.enter(frame.plan)
             self._plan_costs.append(cost)
             self._checks += frame.plan.local.checks
 
@@ -170,7 +174,7 @@ class _Ledger:
     def result(self, scene: str, settings: CrossingSettings, passed: bool, seconds: float) -> CrossingResult:
         """The row of the trial."""
         success = float(np.mean(self._found)) if self._found else 0.0
-        costs = np.array(self._costs or [0.0])
+        costs, changes = np.array(self._costs or [0.0]), np.append(self._replans.changes, 0.0)
         return CrossingResult(
             scene=scene,
             planner=settings.planner,
@@ -191,4 +195,5 @@ class _Ledger:
             frame_ms_worst=round(1e3 * float(costs.max()), 3),
             plan_ms_worst=round(1e3 * max(self._plan_costs, default=0.0), 3),
             least_clearance=round(float(self._clearance), 6),
+            replan_change_p99=round(float(np.percentile(changes, 99)), 4),
         )

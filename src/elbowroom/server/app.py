@@ -86,7 +86,7 @@ class _Handlers:
     async def catalog(self, request: Request) -> Response:  # noqa: ARG002
         return JSONResponse(plain(self._library.catalog()))
 
-    async def scene(self, request: Request) -> Response:
+    def scene(self, request: Request) -> Response:
         try:
             return JSONResponse(plain(scene_message(self._library.find_scene(request.path_params["name"]))))
         except InputError as error:

@@ -63,7 +63,7 @@ class Changes:
 
     def _checks(self) -> dict[str, Callable[[str], object]]:
         library = self._library
-        return {"scene": library.find_scene, "avatar": library.avatars.check, "clip": library.clips.check}
+        return {"scene": library.check_scene, "avatar": library.avatars.check, "clip": library.clips.check}
 
     async def _configure(self, message: Configure) -> None:
         now = Wanted.of(self._stage.walk)

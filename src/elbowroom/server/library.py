@@ -8,6 +8,7 @@ from pathlib import Path
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.scenes import PREFIX, course_scene, load_scene, parse_name, random_names
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
@@ -46,7 +47,7 @@ class Library:
         read: LoadSettings | None = None,
     ) -> "Library":
         """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
-        first = Scene.load(scene)
+        first = load_scene(scene)
         scenes = {name: Scene.load(name) for name in Scene.stock_names()}
         avatars = AvatarStore()
         try:
@@ -69,14 +70,23 @@ class Library:
         self.avatars.close()
 
     def find_scene(self, name: str) -> Scene:
-        """A scene of this server; raises `InputError` if there is none of this name."""
-        if name not in self.scenes:
+        """A scene of this server, or a random course; one that is new takes a moment. Raises as `check_scene`."""
+        self.check_scene(name)
+        return self.scenes[name] if name in self.scenes else course_scene(name)
+
+    def check_scene(self, name: str) -> None:
+        """Raises `InputError` if there is no scene and no course of this name."""
+        if name in self.scenes:
+            return
+        if not name.startswith(PREFIX):
             raise InputError(f"scene {name[:40]!r} is not known here; there are {', '.join(self.scenes)}")
-        return self.scenes[name]
+        parse_name(name)
 
     @cached_property
     def _scene_choices(self) -> list[SceneChoice]:
-        return [SceneChoice(name, scene.title) for name, scene in self.scenes.items()]
+        known = [SceneChoice(name, scene.title) for name, scene in self.scenes.items()]
+        courses = {name: f"Random course, level {parse_name(name)[0]}" for name in random_names()}
+        return known + [SceneChoice(name, title) for name, title in courses.items() if name not in self.scenes]
 
     def catalog(self) -> Catalog:
         """What the menus offer now."""

@@ -15,7 +15,7 @@ from numba.core import event
 
 from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.planning.planner import PLANNERS
-from elbowroom.server.kernel_cache import kept_kernels, kernels
+from elbowroom.server.kernel_cache import is_warm, mark_warm
 from elbowroom.server.library import Library
 from elbowroom.server.messages import Input, Overlays
 from elbowroom.server.stage import STEP, Stage
@@ -23,7 +23,6 @@ from elbowroom.server.walk import Walk
 
 Report = Callable[[str, int], None]
 
-_FEW = 6  # kernels that may be missing (not every one is needed by a session) before a process of its own pays
 _TELLING = ("a", "c", "doorway", "traffic")  # where the walk meets what it does not in the open: ways round, evasions
 _WALK = [
     (45, Input(seq=1, forward=1.0)),  # past the first key frames, so that plans follow on plans
@@ -88,11 +87,11 @@ def _walk_a_moment(library: Library, planner: str, held_inputs: list[tuple[int, 
 
 
 def compile_apart(report: Report) -> None:
-    """Compile in a process of its own, unless (nearly) all kernels are kept on disk already.
+    """Compile in a process of its own, unless that was done for the present sources.
 
     Should that process fail, nothing is lost: what it did not compile is compiled where it is needed.
     """
-    if len(kernels()) - len(kept_kernels()) <= _FEW:
+    if is_warm():
         return
     command = [sys.executable, "-m", "elbowroom.server.warmup"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as compiler:
@@ -106,6 +105,7 @@ def main() -> None:
     for scene in _TELLING:
         with closing(Library.open(scene)) as library:
             warm_up(library, lambda kernel, number: print(kernel, flush=True))  # noqa: ARG005
+    mark_warm()
 
 
 if __name__ == "__main__":
