@@ -130,6 +130,7 @@ export class App implements SessionListener, MenuListener {
     const page = {
       fps: stats.fps, frameMsP50: stats.percentileMs(0.5), frameMsP95: stats.percentileMs(0.95),
       roundTripMs: this.session.roundTripMs, clearance: this.pose?.clearance ?? Infinity,
+      planner: this.session.settings?.planner ?? "",
     };
     this.hud.update(status, page, this.preferences.overlays.has("plan"));
   }

@@ -10,11 +10,13 @@ export interface PageNumbers {
   readonly frameMsP95: number;
   readonly roundTripMs: number;
   readonly clearance: number;
+  readonly planner: string;
 }
 
 const ROWS = [
   ["queue", "Queue", ""],
   ["planning", "Planning", ""],
+  ["answer", "Answer", "extra"],
   ["checks", "Checks", ""],
   ["serverFrame", "Server frame", "extra"],
   ["pageFrame", "Page frame", "extra"],
@@ -50,7 +52,8 @@ export class Hud {
 
   update(status: Status, page: PageNumbers, showPlan: boolean): void {
     this.showQueue(status.queueFill, status.queueSize);
-    this.set("planning", `${status.planningMs.toFixed(1)} ms`);
+    this.set("planning", `${page.planner} · ${status.planningMs.toFixed(1)} ms`);
+    this.set("answer", answerText(status));
     this.set("checks", status.checks.toLocaleString("en"));
     this.set("serverFrame", spread(status.frameMsP50, status.frameMsP95));
     this.set("pageFrame", `${page.fps.toFixed(0)} fps · ${spread(page.frameMsP50, page.frameMsP95)}`);
@@ -83,7 +86,8 @@ export class Hud {
       ["Phase", status.phase, ""],
       ["Root", status.rootKind.toLowerCase() || "–", ""],
       ["Plan", words(status.planStatus), tone(status.planStatus)],
-      ["Plans", `${status.plans - status.plansFailed} of ${status.plans} found`, ""],
+      ["Plans", plansText(status), ""],
+      ["Looks ahead", `${status.lookAhead.toFixed(1)} s`, ""],
     ];
     for (const group of status.groups) {
       const cost = `${group.checks.toLocaleString("en")} checks · ${group.ms.toFixed(1)} ms`;
@@ -97,6 +101,16 @@ export class Hud {
 
 function spread(p50: number, p95: number): string {
   return `${p50.toFixed(1)} / ${p95.toFixed(1)} ms`;
+}
+
+/** How long a new command waits until the motion is planned for it. */
+function answerText({ answerMs, lateMsP99 }: Status): string {
+  const answer = answerMs ? `${answerMs[0].toFixed(0)} ms` : "–";
+  return `${answer} · frames ${lateMsP99.toFixed(0)} ms late`;
+}
+
+function plansText({ plans, plansFailed, latePlans }: Status): string {
+  return `${plans - plansFailed} of ${plans} found` + (latePlans > 0 ? ` · ${latePlans} too late` : "");
 }
 
 function clearanceText(clearance: number): string {

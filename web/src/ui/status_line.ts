@@ -51,8 +51,8 @@ export class StatusLine {
     if (status?.blocked && settings.assist) return [blockedSentence(status.blocked), "bad"];
     if ((pose.flags & POSE_FLAGS.stuck) !== 0) return ["No room this way: back up with S and try another", "bad"];
     if (!this.everMoved) return [firstHint(), ""];
-    if (status?.rootKind === "STOPPED") return ["The way ahead is closed", ""];
-    if (status?.rootKind === "DETOUR") return ["Going round", ""];
+    if (status?.rootKind === "stopped") return ["The way ahead is closed", ""];
+    if (status?.rootKind === "detour") return ["Going round", ""];
     return ["", ""];
   }
 }
