@@ -289,7 +289,8 @@ class Controller:
     def _play(self, dt: float) -> None:
         """Flow B: interpolate, check, show; what touches is not shown, and leads to flow C, as does an empty queue."""
         ended = self._queue.empty and not self._is_continued()
-        self._queue.advance(dt, self._rate(dt))
+        rate = self._rate(dt)
+        self._queue.advance(dt, rate)
         if self._resting:
             return
         if ended:
@@ -304,6 +305,8 @@ class Controller:
                 break
         else:
             self._hold(dt)
+        if rate == 0.0 and self._halting:
+            self._clear()
         if self._queue.empty:
             self._next = Phase.RESET
 
@@ -314,10 +317,7 @@ class Controller:
     def _rate(self, dt: float) -> float:
         """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
         left = self._queue.left if self._queue.ends_moving else math.inf
-        rate = self._foresight.next_rate(left, dt, halting=self._halting)
-        if rate == 0.0 and self._halting:
-            self._clear()
-        return rate
+        return self._foresight.next_rate(left, dt, halting=self._halting)
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
