@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from elbowroom.control.frame import Frame
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingResult, Listener
-    from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.planning.command import Command
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --swing my_walk.bvh"
@@ -49,6 +48,7 @@ def walk(
     """
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
+    from elbowroom.experiment.gauntlet.scenes import load_scene
 
     place = load_scene(scene)
     settings = CrossingSettings(planner, queue, seed, limit)
