@@ -13,6 +13,8 @@ from elbowroom.body.bones import SPINE
 from elbowroom.formats.hanim.figure import Joint
 from elbowroom.formats.nodes import NodeTree
 
+BY_NAME, BY_DEF, ROBOT = "H-Anim name", "H-Anim DEF name", "robot names"
+
 _MIDDLE = {
     "hips": ("humanoid_root", "humanoidroot"),
     "neck": ("vc7", "vc4", "vc5", "vc6", "vc3", "vc2", "vc1"),
@@ -77,7 +79,7 @@ class NamedBones:
     """Bones that were told by their joints' names, and how."""
 
     nodes: dict[str, int]  # bone -> node
-    found_by: dict[str, str]  # bone -> what said so, e.g. "name l_elbow"
+    found_by: dict[str, str]  # bone -> what said so
     standard: bool  # by the names of H-Anim, not by those of robots
 
     @property
@@ -100,7 +102,7 @@ def hanim_bones(joints: Sequence[Joint], tree: NodeTree) -> NamedBones:
             standard=True,
         )
     robot = _robot(joints)
-    return NamedBones({b: j.node for b, j in robot.items()}, {b: _robot_how(j) for b, j in robot.items()}, False)
+    return NamedBones({b: j.node for b, j in robot.items()}, dict.fromkeys(robot, ROBOT), False)
 
 
 def _standard(joints: Sequence[Joint]) -> dict[str, tuple[Joint, str]]:
@@ -108,7 +110,7 @@ def _standard(joints: Sequence[Joint]) -> dict[str, tuple[Joint, str]]:
     found: dict[str, tuple[int, Joint, str]] = {}
     names = Counter(joint.name for joint in joints)
     for joint in joints:
-        told = [("name", joint.name), ("DEF", joint.definition)]
+        told = [(BY_NAME, joint.name), (BY_DEF, joint.definition)]
         for source, text in told if names[joint.name] == 1 else told[::-1]:
             word = _known_end(text)
             if word is None:
@@ -116,7 +118,7 @@ def _standard(joints: Sequence[Joint]) -> dict[str, tuple[Joint, str]]:
             bone = _BONE_OF[word]
             rank = _PRIORITY.get(word.removeprefix("l_").removeprefix("r_"), 0)
             if bone not in found or rank < found[bone][0]:
-                found[bone] = (rank, joint, f"{source} {text}")
+                found[bone] = (rank, joint, source)
             break
     return {bone: (joint, how) for bone, (_, joint, how) in found.items()}
 
@@ -159,7 +161,3 @@ def _robot(joints: Sequence[Joint]) -> dict[str, Joint]:
             if hits:
                 found[side + bone] = hits[0]
     return found
-
-
-def _robot_how(joint: Joint) -> str:
-    return f"robot joint {joint.definition or joint.name}"
