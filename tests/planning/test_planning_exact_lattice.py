@@ -46,7 +46,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
         own=rng.uniform(-0.5, 0.5, (horizon + 1, OWN, width)),
         goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
         price=price,
-        shut=rng.random(horizon) < 0.6,
+        masks=np.where(rng.random(horizon) < 0.6, np.arange(horizon), -1),
         closed=closed,
         kept=rng.integers(0, size, horizon + 1).astype(np.int32),
         step=STEP,
@@ -61,7 +61,8 @@ def work_for(lattice: Lattice) -> Work:
 def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What going from a node to one of the next depth costs, its own price included."""
     a, b = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target)
-    if np.linalg.norm(b - a) > STEP or (lattice.shut[depth] and lattice.closed[depth, source, target] > 0):
+    mask = lattice.masks[depth]
+    if np.linalg.norm(b - a) > STEP or (mask >= 0 and lattice.closed[mask, source, target] > 0):
         return np.inf
     change = (b - lattice.goals[depth + 1]) - (a - lattice.goals[depth])
     return float(lattice.price[depth + 1, target] + WEIGHT * change @ change)
@@ -108,7 +109,7 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
     work = work_for(lattice)
     if cheapest_way(lattice, work, 0)[0] < HORIZON:
         return
-    lattice.shut[1] = True
+    lattice.masks[1] = 1
     lattice.closed[1] = np.where(np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5, INF, 0.0)
     resumed, _ = cheapest_way(lattice, work, 1)
     fresh = work_for(lattice)
@@ -137,7 +138,7 @@ def test_who_follows_the_goal_pays_nothing() -> None:
     own, price = lattice.own.copy(), np.ones_like(lattice.price)
     own[:, BACK], own[0, HOLD] = lattice.goals, lattice.goals[0]
     price[:, BLOCK + BACK] = 0.0
-    lattice = lattice._replace(own=own, price=price, shut=np.zeros(HORIZON, np.bool_))
+    lattice = lattice._replace(own=own, price=price, masks=np.full(HORIZON, -1))
     work = work_for(lattice)
     reached, _ = cheapest_way(lattice, work, 0)
     assert reached == HORIZON

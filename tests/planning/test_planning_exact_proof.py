@@ -19,10 +19,11 @@ from elbowroom.planning.exact.ways import (
     LimbWays,
     RootWays,
     chain_of,
+    configurations_at,
     levers_of,
+    moves_between,
     new_limb_ways,
     new_root_ways,
-    rates_between,
     root_way,
 )
 from elbowroom.planning.limb import limb_of
@@ -99,7 +100,7 @@ def random_roots(rng: np.random.Generator) -> tuple[Floats, Floats]:
 
 
 def dense(ends: Ends, count: int) -> Floats:
-    return np.asarray(rates_between(ends, T, 0.0, 1.0, count)[0])
+    return np.asarray(configurations_at(ends, T, np.arange(count + 1.0) / count))
 
 
 def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
@@ -111,8 +112,7 @@ def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
         begin_round(body.roots.slots)
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         trunk, limb = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
-        _, waist_moves = rates_between(waist, T, 0.0, 1.0, SWEEP)
-        _, arm_moves = rates_between(arm, T, 0.0, 1.0, SWEEP)
+        waist_moves, arm_moves = moves_between(waist, T, SWEEP), moves_between(arm, T, SWEEP)
         lift = body.chain.lever * waist_moves[:, 0] + body.chain.lift * waist_moves[:, 1]
         for points, bound in (
             (trunk, body.roots.sway[root] + (waist_moves @ body.levers[DofGroup.WAIST].T).T),

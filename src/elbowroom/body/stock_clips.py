@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.clip_data import ClipData, parse_clips
 from elbowroom.body.dof import DofGroup
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -69,11 +70,33 @@ def arm_swing_goal(group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Flo
     """
     if group not in _ARMS:
         raise ValueError(f"{group.name} is not an arm")
-    phase, speed = np.asarray(phases, np.float64), np.asarray(speeds, np.float64)
-    own = phase + (0.0 if group is DofGroup.LEFT_ARM else 0.5) + np.where(speed < 0.0, 0.5, 0.0)
-    clip, pace = arm_swing(DofGroup.LEFT_ARM), np.abs(speed)[..., None]
-    t = np.clip((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0, 1.0)
-    single = t * t * (3.0 - 2.0 * t)
-    swing = single * clip.sample(own) + (1.0 - single) * clip.sample(2.0 * own)
-    goal: Floats = _HANGING + _FULL * (1.0 - np.exp(-pace / _GROWTH)) * (swing - _HANGING)
-    return goal
+    phase, speed = np.broadcast_arrays(np.asarray(phases, np.float64), np.asarray(speeds, np.float64))
+    starts, cubics = arm_swing(DofGroup.LEFT_ARM).cubics
+    ahead = 0.0 if group is DofGroup.LEFT_ARM else 0.5
+    goal = _swings(
+        starts, cubics, _HANGING, np.ascontiguousarray(phase.ravel()) + ahead, np.ascontiguousarray(speed.ravel())
+    )
+    return goal.reshape(*phase.shape, len(_HANGING))
+
+
+@exact_kernel
+def _swings(starts: Floats, cubics: Floats, hanging: Floats, phases: Floats, speeds: Floats) -> Floats:
+    """`arm_swing_goal` (n, 4) at phases and speeds (n,): curves `cubics` (4, K, 4) from `starts` (K+1,) on."""
+    out = np.empty((phases.shape[0], hanging.shape[0]))
+    for n in range(phases.shape[0]):
+        pace = abs(speeds[n])
+        phase = phases[n] + (0.5 if speeds[n] < 0.0 else 0.0)
+        t = min(max((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0), 1.0)
+        single, width = t * t * (3.0 - 2.0 * t), _FULL * (1.0 - np.exp(-pace / _GROWTH))
+        for once in range(2):
+            time = phase if once == 1 else 2.0 * phase
+            share = width * (single if once == 1 else 1.0 - single)
+            time -= np.floor(time)
+            k = 0
+            while k < cubics.shape[1] - 1 and starts[k + 1] <= time:
+                k += 1
+            u = time - starts[k]
+            for i in range(hanging.shape[0]):
+                value = ((cubics[0, k, i] * u + cubics[1, k, i]) * u + cubics[2, k, i]) * u + cubics[3, k, i]
+                out[n, i] = share * (value - hanging[i]) + (out[n, i] if once == 1 else hanging[i])
+    return out

@@ -19,18 +19,17 @@ from elbowroom.planning.exact.group_search import (
     Group,
     GroupTask,
     GroupWay,
-    Scratch,
     Weights,
     own_postures,
     search_group,
 )
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep
-from elbowroom.planning.exact.lattice import KEPT, OWN
+from elbowroom.planning.exact.lattice import KEPT, OWN, Work
 from elbowroom.planning.exact.near_boxes import NearBoxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.reaching import Blocked
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.tables import START, held_clearance
+from elbowroom.planning.exact.tables import HELD_AT_START, held_clearance
 from elbowroom.planning.exact.together import Guide, arm_nodes, guide, surroundings, waist_nodes
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
 from elbowroom.planning.exact.why_not import blockade
@@ -53,14 +52,14 @@ class Shelves(NamedTuple):
     """All that depends on the interval and the horizon."""
 
     groups: Mapping[DofGroup, Group]
-    scratch: Mapping[DofGroup, Scratch]
+    works: Mapping[DofGroup, Work]
     roots: RootWays
     chain: Chain
 
-    def with_group(self, group: DofGroup, made: Group, room: Scratch) -> "Shelves":
+    def with_group(self, group: DofGroup, made: Group, room: Work) -> "Shelves":
         """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
         kept = made._replace(ways=self.groups[group].ways)
-        return self._replace(groups={**self.groups, group: kept}, scratch={**self.scratch, group: room})
+        return self._replace(groups={**self.groups, group: kept}, works={**self.works, group: room})
 
 
 class Ways(NamedTuple):
@@ -187,7 +186,7 @@ class Dressing:
                     waists.places[at],
                     waists.turns[at],
                     self.near.intervals[0],
-                    START,
+                    HELD_AT_START,
                 )
                 most = max(0.5 * clearance, 0.0)
             arms.append(arm_nodes(groups[group], arm_task, self.weights.keeping, most))
@@ -317,7 +316,7 @@ class Ledger:
         shelves = self._shelves
         waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
         way: GroupWay = search_group(
-            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.scratch[group]
+            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.works[group]
         )
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
 from elbowroom.planning.exact.lattice import (
     BACK,
     GOAL,
@@ -27,11 +28,10 @@ from elbowroom.planning.exact.lattice import (
 )
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.proof import ENOUGH, limb_way
-from elbowroom.planning.exact.slots import begin_round
+from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 from elbowroom.planning.exact.steps import ban_near, close_steps, promising
-from elbowroom.planning.exact.tables import EARLY, LATE, START, Tables, held_clearance, table_of
+from elbowroom.planning.exact.tables import HELD_AT_START, HELD_EARLY, HELD_LATE, Tables, held_clearance, table_of
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
-from elbowroom.planning.interpolation import monotone_tangents
 from elbowroom.planning.limb import pose
 from elbowroom.planning.self_contact import clear_of_trunk
 
@@ -48,13 +48,25 @@ _SAME = 1e-9  # radians
 _INFINITE = np.float32(np.inf)
 
 
+class Masks(NamedTuple):
+    """Steps that were found to touch, by interval; the key is that of its table. So no plan has to find them again."""
+
+    slots: Slots
+    closed: Floats32  # (M, W+OWN, W+OWN) infinite where a step is closed, else 0
+    seen: Bools  # (M, W+OWN, W+OWN) steps that were looked at
+    slack: Floats  # (M,) squared radians: how much dearer ways were looked at
+
+
 class Group(NamedTuple):
     """One group for a key interval: what is known of it once and for all, and its shelves."""
 
     postures: Postures
     levers: Floats  # (C, 3) as `levers_of`
+    limits: Floats  # (d, 2) of the joints
+    acceleration: float  # the greatest over all components together, rad/s^2
     tables: Tables
     ways: LimbWays
+    masks: Masks
 
 
 class Weights(NamedTuple):
@@ -93,27 +105,14 @@ class GroupWay(NamedTuple):
     price: Floats32  # (n+1, W+OWN) of the nodes, infinite where one is not free
     checks: int  # capsules checked
     nodes: int
+    rounds: int  # motions that were tried
 
 
-class Scratch(NamedTuple):
-    """Room that searches of one group use again and again."""
-
-    work: Work
-    shut: Bools  # (n,)
-    closed: Floats32  # (n, W+OWN, W+OWN)
-    seen: Bools  # (n, W+OWN, W+OWN)
-
-
-def new_scratch(horizon: int, nodes: int) -> Scratch:
-    """Room for `horizon` key intervals and rows of `nodes` nodes."""
-    from elbowroom.planning.exact.lattice import new_work
-
-    square = (horizon, nodes, nodes)
-    return Scratch(
-        new_work(horizon + 1, nodes),
-        np.zeros(horizon, np.bool_),
-        np.zeros(square, np.float32),
-        np.zeros(square, np.bool_),
+def new_masks(count: int, size: int, nodes: int) -> Masks:
+    """Room for `count` intervals of a group with `size` components and rows of `nodes` nodes."""
+    square = (count, nodes, nodes)
+    return Masks(
+        new_slots(count, 1 + 2 * size), np.zeros(square, np.float32), np.zeros(square, np.bool_), np.zeros(count)
     )
 
 
@@ -168,7 +167,10 @@ def _known(postures: Postures, posture: Floats) -> int:
 
 @exact_kernel
 def _near(a: Floats, b: Floats) -> bool:
-    return bool(np.all(np.abs(a - b) <= _SAME))
+    apart = 0.0
+    for i in range(a.shape[0]):
+        apart = max(apart, abs(a[i] - b[i]))
+    return apart <= _SAME
 
 
 @exact_kernel
@@ -192,8 +194,8 @@ def _prices(
         for e in range(1, OWN):
             for end in range(2):
                 if needed[k + end, e]:
-                    moments = EARLY if end == 0 else LATE
-                    found, count = held_clearance(postures, own[k + end, e], places, turns, task.boxes[k], moments)
+                    part = HELD_EARLY if end == 0 else HELD_LATE
+                    found, count = held_clearance(postures, own[k + end, e], places, turns, task.boxes[k], part)
                     checks += count
                     clear[k + end, width + e] = min(clear[k + end, width + e], found)
     comfort, near = np.float32(weights.comfort), np.float32(weights.near)
@@ -230,64 +232,129 @@ def _unfold(postures: Postures, own: Floats, needed: Bools, price: Floats32) -> 
 
 
 @exact_kernel
+def _known_masks(masks: Masks, keys: Floats, kept: Ints) -> Longs:
+    """The masks (n,) of intervals with these keys (n, K), -1 where there is none.
+
+    What it says of postures that belonged to the last plan's key times alone is forgotten, and so is what it says of
+    the steps between the nodes `kept` (n+1,) of the last plan: they may be closed for being near to others only.
+    """
+    begin_round(masks.slots)
+    out = np.empty(keys.shape[0], np.int64)
+    for k in range(keys.shape[0]):
+        at = find(masks.slots, keys[k])
+        out[k] = at
+        if at >= 0:
+            own = masks.closed.shape[1] - OWN
+            for e in range(1, OWN):
+                masks.closed[at, own + e], masks.closed[at, :, own + e] = 0.0, 0.0
+                masks.seen[at, own + e], masks.seen[at, :, own + e] = False, False
+            masks.closed[at, kept[k], kept[k + 1]] = 0.0
+    return out
+
+
+@exact_kernel
+def _new_mask(masks: Masks, key: Floats) -> int:
+    at = admit(masks.slots, key)
+    masks.closed[at], masks.seen[at], masks.slack[at] = 0.0, False, 0.0
+    return int(at)
+
+
+@exact_kernel
+def _mask_keys(group: Group, roots: RootWays, waists: LimbWays, task: GroupTask) -> Floats:
+    """The keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
+    horizon, size = task.goals.shape[0] - 1, task.goals.shape[1]
+    keys = np.empty((horizon, 1 + 2 * size))
+    for k in range(horizon):
+        keys[k, 0] = _carrier(group, roots, waists, task, k)[0]
+        keys[k, 1 : 1 + size], keys[k, 1 + size :] = task.goals[k], task.goals[k + 1]
+    return keys
+
+
+@exact_kernel
+def _proven(
+    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, keys: Floats, tangents: Floats,
+    skins: Floats, slots: Longs,
+) -> tuple[int, Bools]:  # fmt: skip
+    """Prove the curve through `keys` (n+1, d) free: the capsules checked and the intervals (n,) in which it is not.
+
+    An interval fails too if its curve asks for too much. Not the first: it begins with a velocity that is given, and
+    may have to brake hard. The ways through the intervals are put into `slots` (n,).
+    """
+    is_waist, horizon, checks = group.postures.limb.is_waist, slots.shape[0], 0
+    touches = np.zeros(horizon, np.bool_)
+    begin_round(group.ways.slots)
+    for k in range(horizon):
+        ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
+        slots[k], count = limb_way(
+            group.ways, group.postures, group.levers, chain, roots, task.roots[k], waists,
+            0 if is_waist else task.carriers[k], ends, task.boxes[k], skins[k],
+        )  # fmt: skip
+        checks += count
+        asked = peak_acceleration(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval)
+        touches[k] = group.ways.least[slots[k]] < skins[k] or group.ways.proven[slots[k]] < ENOUGH
+        touches[k] |= k > 0 and asked > group.acceleration
+    return checks, touches
+
+
+@exact_kernel
 def search_group(
-    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, scratch: Scratch
+    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, work: Work
 ) -> GroupWay:
     """The cheapest way whose motion is free as shown, at every moment."""
-    postures, horizon = group.postures, task.goals.shape[0] - 1
+    postures, masks, horizon = group.postures, group.masks, task.goals.shape[0] - 1
     begin_round(group.tables.slots)
     own, needed, kept = own_postures(group, task)
     _, places, turns = _carrier(group, roots, waists, task, 0)
-    clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes[0], START)
+    clearance, checks = held_clearance(postures, task.start, places, turns, task.boxes[0], HELD_AT_START)
     most = max(0.5 * clearance, 0.0)
     price, count = _prices(group, roots, waists, task, weights, own, needed, kept, most)
     checks += count
-    shut, closed, seen = scratch.shut[:horizon], scratch.closed, scratch.seen
-    shut[:] = False
+    mask_keys = _mask_keys(group, roots, waists, task)
     lattice = Lattice(
-        postures.configurations, postures.columns, postures.moves, own, task.goals, price, shut, closed, kept,
-        postures.step, weights.step,
+        postures.configurations, postures.columns, postures.moves, own, task.goals, price,
+        _known_masks(masks, mask_keys, kept), masks.closed, kept, postures.step, weights.step,
     )  # fmt: skip
     skins = np.minimum(task.skins, most)
-    slots, slack = np.empty(horizon, np.int64), np.zeros(horizon)
-    times = task.interval * np.arange(horizon + 1.0)
+    slots, stiff = np.empty(horizon, np.int64), np.zeros(horizon + 1, np.bool_)
     nodes, begin, deepest = 0, 0, 0
     keys, tangents = np.empty_like(task.goals), np.empty_like(task.goals)
-    for _ in range(weights.rounds):
-        reached, count = cheapest_way(lattice, scratch.work, begin)
+    for rounds in range(weights.rounds):
+        reached, count = cheapest_way(lattice, work, begin)
         nodes += count
-        way = traced(lattice, scratch.work, reached)
+        way = traced(lattice, work, reached)
         for t in range(reached + 1):
             keys[t] = posture_of(lattice, t, way[t])
         if reached < horizon:
-            return GroupWay(reached, keys[: reached + 1], tangents[: reached + 1], slots, price, checks, nodes)
-        tangents[:] = monotone_tangents(times, keys, task.velocity)
-        begin_round(group.ways.slots)
-        first = horizon
-        for k in range(horizon - 1, -1, -1):
-            ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
-            carrier = task.carriers[k] if not postures.limb.is_waist else 0
-            slots[k], count = limb_way(
-                group.ways, postures, group.levers, chain, roots, task.roots[k], waists, carrier, ends, task.boxes[k],
-                skins[k],
-            )  # fmt: skip
+            return GroupWay(reached, keys[: reached + 1], tangents[: reached + 1], slots, price, checks, nodes, rounds)
+        first, farthest, stiff[:] = horizon, 0.0, False
+        for attempt in range(2):
+            tangents[:] = smooth_tangents(keys, task.interval, task.velocity, group.limits, stiff)
+            count, touches = _proven(group, roots, waists, chain, task, keys, tangents, skins, slots)
             checks += count
-            if group.ways.least[slots[k]] < skins[k] or group.ways.proven[slots[k]] < ENOUGH:
+            if attempt == 1 or not touches.any():
+                break
+            stiff[:-1] |= touches
+            stiff[1:] |= touches
+        for k in range(horizon - 1, -1, -1):
+            if touches[k]:
                 first = k
-                if not shut[k]:
-                    shut[k], closed[k], seen[k] = True, 0.0, False
+                if lattice.masks[k] < 0:
+                    lattice.masks[k] = _new_mask(masks, mask_keys[k])
                 ban_near(lattice, k, way[k], way[k + 1], _BAN_RADIUS)
-                slack[k] = max(2.0 * slack[k], _FIRST_SLACK)
+                slack = max(2.0 * masks.slack[lattice.masks[k]], _FIRST_SLACK)
+                masks.slack[lattice.masks[k]], farthest = slack, max(farthest, slack)
         if first == horizon:
-            return GroupWay(horizon, keys, tangents, slots, price, checks, nodes)
+            return GroupWay(horizon, keys, tangents, slots, price, checks, nodes, rounds + 1)
         deepest = max(deepest, first)
-        best = scratch.work.costs[horizon].min()
-        settle_backward(lattice, scratch.work, first, best + slack.max())
+        best = work.costs[horizon].min()
+        settle_backward(lattice, work, first, best + farthest)
         for k in range(first, horizon):
-            if shut[k]:
-                steps = promising(lattice, scratch.work, k, best + slack[k], seen[k])
+            at = lattice.masks[k]
+            if at >= 0:
+                steps = promising(lattice, work, k, best + masks.slack[at], masks.seen[at])
                 if len(steps):
                     _, places, turns = _carrier(group, roots, waists, task, k)
                     checks += close_steps(postures, lattice, k, steps, places, turns, task.boxes[k], skins[k])
         begin = first
-    return GroupWay(deepest, keys[: deepest + 1], tangents[: deepest + 1], slots, price, checks, nodes)
+    until = deepest + 1
+    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, checks, nodes, weights.rounds)

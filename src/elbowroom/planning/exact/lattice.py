@@ -21,7 +21,7 @@ from elbowroom.jit import exact_kernel
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
+Longs = NDArray[np.int64]
 
 OWN = 4  # postures of a key time alone
 GOAL, KEPT, HOLD, BACK = range(
@@ -41,8 +41,8 @@ class Lattice(NamedTuple):
     own: Floats  # (n+1, OWN, d); in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
     price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
-    shut: Bools  # (n,) whether steps of an interval are closed
-    closed: Floats32  # (n, W+OWN, W+OWN) infinite where a step is closed, else 0; used where `shut`
+    masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its steps are open
+    closed: Floats32  # (M, W+OWN, W+OWN) infinite where a step is closed, else 0
     kept: Ints  # (n+1,) the nodes that the last plan had
     step: float  # radians
     weight: float  # w
@@ -167,12 +167,13 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     square, known = np.float32(slopes_of(lattice, depth, depth, base)), work.costs[depth]
     for node in range(np.uint64(width + OWN)):
         base[node] = known[node] + base[node] + square if known[node] <= limit else _INFINITE
-    shut, closed = lattice.shut[depth], lattice.closed[depth]
+    mask = lattice.masks[depth]
+    closed = lattice.closed[mask]
     for node in range(width + OWN):
         if base[node] == _INFINITE:
             continue
         row = lattice.moves[node] if node < size else work.squares[depth, node - width]
-        if shut:
+        if mask >= 0:
             _relax_open(targets, target_origins, base[node], row, lattice.weight, node, closed[node, :width])
         else:
             _relax(targets, target_origins, base[node], row, lattice.weight, node)
@@ -192,13 +193,14 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     """The least cost of a step to an own posture of the next depth, and where it comes from."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
     best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
-    shut, closed = lattice.shut[depth], lattice.closed[depth]
+    mask = lattice.masks[depth]
+    closed = lattice.closed[mask]
     for node in range(width + OWN):
         if base[node] >= best:
             continue
         move = row[node] if node < width else np.float32(_own_move(lattice, depth, node - width, f))
         cost = base[node] + weight * move
-        if shut:
+        if mask >= 0:
             cost += closed[node, width + f]
         if cost < best:
             best, origin = cost, node
@@ -241,7 +243,8 @@ def _kept_way(lattice: Lattice) -> float:
 def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
-    if lattice.shut[depth] and lattice.closed[depth, source, target] == _INFINITE:
+    mask = lattice.masks[depth]
+    if mask >= 0 and lattice.closed[mask, source, target] == _INFINITE:
         return np.inf
     a, b, moved, changed = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target), 0.0, 0.0
     for i in range(lattice.goals.shape[1]):
@@ -304,7 +307,8 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
     work.left[lattice.goals.shape[0] - 1] = 0.0
     for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
         out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]
-        targets, price, closed = out[:width], lattice.price[depth + 1], lattice.closed[depth]
+        targets, price, mask = out[:width], lattice.price[depth + 1], lattice.masks[depth]
+        closed = lattice.closed[mask]
         out[:] = _INFINITE
         square = np.float32(slopes_of(lattice, depth, depth + 1, slopes))
         for node in range(np.uint64(width + OWN)):
@@ -314,7 +318,7 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
             if base[node] == _INFINITE:
                 continue
             row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
-            if lattice.shut[depth]:
+            if mask >= 0:
                 for source in range(width):
                     column[source] = closed[source, node]
                 _relax_open(targets, origins, base[node], row, weight, node, column)
@@ -324,7 +328,7 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
                 if work.costs[depth, width + e] < _INFINITE:
                     move = work.squares[depth, e, node] if node < size else _own_move(lattice, depth, e, node - width)
                     cost = np.float32(base[node] + weight * move)
-                    if lattice.shut[depth]:
+                    if mask >= 0:
                         cost += closed[width + e, node]
                     out[width + e] = min(out[width + e], cost)
         slopes_of(lattice, depth, depth, slopes)

@@ -8,10 +8,15 @@ class ExactSettings:
     """How far the planner looks, how fast limbs may move, and what it prefers. Metres, radians, seconds."""
 
     look_ahead: float = 2.4  # seconds, whatever the size of the queue
+    interval: float = 0.15  # seconds between key frames, for which posture sets are made in advance
     waist_samples: int = 6  # postures taken from each clip
     arm_samples: int = 10
     waist_speed: float = 2.7  # rad/s, over its components together: a quick bend, turn or crouch
     arm_speed: float = 5.0  # rad/s, over the four components together: a reach at ease is half as fast
+    # What the shown curve may ask for, over all components together. People move their joints nearly with minimum jerk
+    # (T. Flash & N. Hogan, J. Neuroscience 5, 1985), where a way D in the time T peaks at 1.9 D/T and 5.8 D/T^2.
+    waist_acceleration: float = 60.0  # rad/s^2: half a radian in 0.22 s
+    arm_acceleration: float = 150.0  # rad/s^2: a radian in 0.2 s, as in a reach as fast as can be
     margin: float = 0.01  # clearance of a posture around its key time
     skin: float = 0.006  # clearance of the motion that is shown
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near

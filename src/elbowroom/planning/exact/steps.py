@@ -15,7 +15,7 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int32]
 
-MOST_STEPS = 256  # looked at in one go
+MOST_STEPS = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
 
 
@@ -36,16 +36,16 @@ def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: flo
     before, after = np.empty(nodes, np.float32), np.empty(nodes, np.float32)
     _distances(lattice, depth, source, before)
     _distances(lattice, depth + 1, target, after)
-    kept = lattice.kept[depth + 1]
+    kept, closed = lattice.kept[depth + 1], lattice.closed[lattice.masks[depth]]
     for node in range(nodes):
         if before[node] <= most:
-            row, spared = lattice.closed[depth, node], lattice.closed[depth, node, kept]
+            row, spared = closed[node], closed[node, kept]
             for other in range(nodes):
                 if before[node] + after[other] <= most:
                     row[other] = _INFINITE
             if depth == 0 or node == lattice.kept[depth]:
                 row[kept] = spared
-    lattice.closed[depth, source, target] = _INFINITE
+    closed[source, target] = _INFINITE
 
 
 @exact_kernel
@@ -62,13 +62,13 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
         end[b] = work.left[depth + 1, b] + lattice.price[depth + 1, b] - end[b]
-    least = end.min()
+    least, closed = end.min(), lattice.closed[lattice.masks[depth]]
     for a in range(nodes):
         start = costs[a] + base[a] + square
         if not start + least <= limit:
             continue
         for b in range(nodes):
-            if not start + end[b] <= limit or seen[a, b] or lattice.closed[depth, a, b] == _INFINITE or a == b:
+            if not start + end[b] <= limit or seen[a, b] or closed[a, b] == _INFINITE or a == b:
                 continue
             if b >= width:
                 move = np.float32(np.sum((lattice.own[depth + 1, b - width] - posture_of(lattice, depth, a)) ** 2))
@@ -124,7 +124,7 @@ def close_steps(
     count_of_capsules = postures.limb.radii.shape[0]
     lanes = np.empty((count_of_capsules, 7, width), np.float32)
     out = np.empty((count_of_capsules, BLOCK), np.float32)
-    near, moved = np.empty_like(boxes), np.empty_like(boxes)
+    near, moved, closed = np.empty_like(boxes), np.empty_like(boxes), lattice.closed[lattice.masks[depth]]
     checks = 0
     for part in range(BETWEEN):
         look = (part + 1) * SWEEP // (BETWEEN + 1)
@@ -141,5 +141,5 @@ def close_steps(
             for k in range(block, min(block + BLOCK, steps.shape[0])):
                 for c in range(count_of_capsules):
                     if out[c, k - block] < skin:
-                        lattice.closed[depth, steps[k, 0], steps[k, 1]] = _INFINITE
+                        closed[steps[k, 0], steps[k, 1]] = _INFINITE
     return checks

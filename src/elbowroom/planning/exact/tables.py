@@ -29,7 +29,8 @@ Bools = NDArray[np.bool_]
 
 _MOMENTS = 4  # moments of an interval at which postures are looked at
 _STRIDE = SWEEP // _MOMENTS
-START, EARLY, LATE = (0, 1), (0, 3), (2, 4)  # of these moments: the first, those of the key time before, of that after
+HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
+_EARLY, _LATE = 3, 2  # of these moments, the first three belong to the key time before, the last two to that after
 _FAR = np.float32(1e3)
 
 
@@ -80,20 +81,21 @@ def table_of(
         row[:] = _FAR
         checks += lower_blocks(postures.lanes, postures.balls, moved, count, row)
         flat = row.reshape(width)
-        if i < EARLY[1]:
+        if i < _EARLY:
             early[:width] = np.minimum(early[:width], flat)
-        if i >= LATE[0]:
+        if i >= _LATE:
             late[:width] = np.minimum(late[:width], flat)
-    early[width], count = held_clearance(postures, goals[0], places, turns, boxes, EARLY)
-    late[width], more = held_clearance(postures, goals[1], places, turns, boxes, LATE)
+    early[width], count = held_clearance(postures, goals[0], places, turns, boxes, HELD_EARLY)
+    late[width], more = held_clearance(postures, goals[1], places, turns, boxes, HELD_LATE)
     return int(at), checks + count + more
 
 
 @exact_kernel
 def held_clearance(
-    postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, moments: tuple[int, int]
+    postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
 ) -> tuple[float, int]:
-    """The clearance of a single posture (d,) at some of an interval's moments, and the capsules that were checked."""
+    """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
+    begin, end = (0, 1) if part == HELD_AT_START else (0, _EARLY) if part == HELD_EARLY else (_LATE, _MOMENTS)
     origin = places[0].copy()
     near = np.empty_like(boxes)
     count = boxes_around(boxes, origin, postures.reach + 0.5, near)
@@ -101,12 +103,12 @@ def held_clearance(
         return float(_FAR), 0
     near[:count, :3] -= origin
     segments = pose(postures.limb, configuration.reshape(1, -1))
-    total = moments[1] - moments[0]
+    total = end - begin
     held = np.empty((segments.shape[0], 6, total), np.float32)
     at, frames = np.empty((total, 3)), np.empty((total, 4))
     for i in range(total):
         held[:, :, i] = segments[:, :, 0]
-        look = (moments[0] + i) * _STRIDE
+        look = (begin + i) * _STRIDE
         at[i], frames[i] = places[look] - origin, turns[look]
     lanes = np.empty((segments.shape[0], 7, BLOCK), np.float32)
     place_capsules(held, postures.limb.radii, at, frames, lanes)

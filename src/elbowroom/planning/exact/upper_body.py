@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.dressing import Dressing, Shelves
-from elbowroom.planning.exact.group_search import Group, Scratch, Weights, new_scratch
-from elbowroom.planning.exact.lattice import OWN
+from elbowroom.planning.exact.group_search import Group, Weights, new_masks
+from elbowroom.planning.exact.lattice import OWN, Work, new_work
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import Postures, postures_of
@@ -40,7 +40,7 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 _NEARLY = 0.5  # metres: more than any margin
-_SHELVES = 8  # times the horizon: results of key intervals that are kept
+_SHELVES, _MASKS = 8, 2  # times the horizon: results of key intervals that are kept, and closed steps of some of them
 _SPARE = 0.05  # metres
 
 
@@ -155,12 +155,15 @@ class UpperBody:
         for (interval, horizon), shelves in self._shelves.items():
             self._shelves[interval, horizon] = shelves.with_group(group, *self._shelf(group, interval, horizon))
 
-    def _shelf(self, group: DofGroup, interval: float, horizon: int) -> tuple[Group, Scratch]:
+    def _shelf(self, group: DofGroup, interval: float, horizon: int) -> tuple[Group, Work]:
         count, postures = _SHELVES * (horizon + 1), self.postures(group, interval)
         width, size = postures.moves.shape[1], group.size
         tables, ways = new_tables(count, size, width), new_limb_ways(count, size, carries=group is DofGroup.WAIST)
-        made = Group(postures, levers_of(self._model, postures.limb), tables, ways)
-        return made, new_scratch(horizon, width + OWN)
+        masks = new_masks(_MASKS * (horizon + 1), size, width + OWN)
+        settings = self.settings
+        most = settings.waist_acceleration if group is DofGroup.WAIST else settings.arm_acceleration
+        made = Group(postures, levers_of(self._model, postures.limb), limits(group), most, tables, ways, masks)
+        return made, new_work(horizon + 1, width + OWN)
 
     def _margins(self, path: RootPath) -> tuple[Floats, Floats]:
         """Clearances of nodes (n+1,) and of the motion in each interval (n,): less is asked for soon than later."""
@@ -177,10 +180,10 @@ class UpperBody:
     def _new_shelves(self, interval: float, horizon: int) -> Shelves:
         made = {group: self._shelf(group, interval, horizon) for group in LOCAL_GROUPS}
         groups = {group: shelf for group, (shelf, _) in made.items()}
-        scratch = {group: room for group, (_, room) in made.items()}
+        works = {group: room for group, (_, room) in made.items()}
         reach = max(groups[arm].postures.reach for arm in LOCAL_GROUPS[1:])
         chain = chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
-        return Shelves(groups, scratch, new_root_ways(_SHELVES * (horizon + 1)), chain)
+        return Shelves(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain)
 
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""

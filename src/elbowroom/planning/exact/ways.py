@@ -24,6 +24,7 @@ from elbowroom.planning.root_path import interpolate_root
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
+Ends = tuple[Floats, Floats, Floats, Floats]  # posture, velocity, posture, velocity: of a key interval
 
 SWEEP = 12  # parts of a key interval between two looks
 _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is smaller
@@ -209,37 +210,47 @@ def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sw
 
 
 @exact_kernel
-def rates_between(
-    keys: tuple[Floats, Floats, Floats, Floats], interval: float, first: float, last: float, count: int
-) -> tuple[Floats, Floats]:
-    """Configurations (count+1, d) of a limb at equal steps from one part of a key interval to another, and what its
-    components move at most between them, (count, 3): the first two together, the third, the fourth.
+def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
+    """Configurations (N, d) of a limb at parts (N,) of a key interval.
 
-    `keys` are posture, velocity, posture, velocity at the interval's ends.
+    `ends` are posture, velocity, posture, velocity at the interval's ends.
     """
-    q, m, p, n = keys
-    size = q.shape[0]
-    out, rates, jerks = np.empty((count + 1, size)), np.zeros((count + 1, 4)), np.zeros(4)
+    q, m, p, n = ends
+    out = np.empty((shares.shape[0], q.shape[0]))
+    for i in range(shares.shape[0]):
+        u = shares[i]
+        rest = 1.0 - u
+        for j in range(q.shape[0]):
+            out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * m[j] * interval) + u * u * (
+                (3.0 - 2.0 * u) * p[j] - rest * n[j] * interval
+            )
+    return out
+
+
+@exact_kernel
+def moves_between(ends: Ends, interval: float, count: int) -> Floats:
+    """What a limb's components move at most in each of `count` equal parts of a key interval, (count, 3).
+
+    The first two count together; then the third, the fourth.
+    """
+    q, m, p, n = ends
+    size, part = q.shape[0], interval / count
+    rates, jerks, moved = np.zeros((count + 1, 4)), np.zeros(4), np.empty((count, 3))
     for j in range(size):
         jerks[j] = _jerk(q[j], m[j], p[j], n[j], interval)
-    for i in range(count + 1):
-        u = first + (last - first) * i / count
-        rest = 1.0 - u
-        for j in range(size):
-            ta, tb = m[j] * interval, n[j] * interval
-            out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * ta) + u * u * ((3.0 - 2.0 * u) * p[j] - rest * tb)
+        for i in range(count + 1):
+            u = i / count
+            rest = 1.0 - u
             rates[i, j] = (
-                6.0 * u * rest * (p[j] - q[j]) + rest * (rest - 2.0 * u) * ta + u * (u - 2.0 * rest) * tb
-            ) / interval
-    part = interval * (last - first) / count
+                6.0 * u * rest * (p[j] - q[j]) / interval + rest * (rest - 2.0 * u) * m[j] + u * (u - 2.0 * rest) * n[j]
+            )
     bend = part * part / 8.0
-    moved = np.empty((count, 3))
     for i in range(count):
         swing = max(np.hypot(rates[i, 0], rates[i, 1]), np.hypot(rates[i + 1, 0], rates[i + 1, 1]))
         moved[i, 0] = part * (swing + np.hypot(jerks[0], jerks[1]) * bend)
         for j in range(2, 4):
             moved[i, j - 1] = part * (max(abs(rates[i, j]), abs(rates[i + 1, j])) + abs(jerks[j]) * bend)
-    return out, moved
+    return moved
 
 
 @exact_kernel

@@ -1,0 +1,147 @@
+"""What the exact planner shows over time: it depends on nothing computed before, is bounded, and returns quickly."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import RootState
+from elbowroom.planning.command import Command
+from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
+from elbowroom.planning.exact.planner import ExactPlanner
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.interpolation import hermite
+from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+T = 0.15
+
+
+@pytest.fixture(scope="module")
+def humanoid() -> Humanoid:
+    return proportional_humanoid(1.72)
+
+
+def scene_of(centers: list[list[float]], half_sizes: list[list[float]]) -> Scene:
+    boxes = Boxes(np.array(centers), np.tile([0.0, 0, 0, 1], (len(centers), 1)), np.array(half_sizes))
+    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(len(centers))))
+
+
+def walk(horizon: int, first: int = 0, speed: float = 1.1) -> RootPath:
+    states, times = np.zeros((horizon + 1, 7)), T * (first + np.arange(horizon + 1))
+    states[:, 1], states[:, 3], states[:, 6] = speed * times, speed, 0.9 * times
+    return RootPath(T * first, T, states)
+
+
+def posts() -> Scene:
+    return scene_of(
+        [[0.45, 1.0, 1.6], [-0.5, 1.2, 2.3], [0.1, 1.78, 3.0]], [[0.08, 0.3, 0.08]] * 2 + [[0.3, 0.05, 0.1]]
+    )
+
+
+def played(humanoid: Humanoid, scene: Scene, count: int) -> tuple[Floats, Floats, Floats, Floats]:
+    """Key frames, velocities, goals and places of a walk that is planned anew at every key frame."""
+    planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
+    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
+    keys, velocities, goals, places = [], [], [], []
+    for _ in range(count):
+        motion = planner.plan_motion(roots, query)
+        local = motion.local
+        assert len(local.configurations) > 1
+        assert local.velocities is not None
+        keys.append(local.configurations[0])
+        velocities.append(local.velocities[0])
+        goals.append(local.goals[0])
+        places.append(motion.root.path.states[0, :2])
+        query = query._replace(
+            time=query.time + T,
+            root=RootState(*motion.root.path.states[1].tolist()),
+            upper=local.configurations[1],
+            velocity=local.velocities[1],
+        )
+    return np.array(keys), np.array(velocities), np.array(goals), np.array(places)
+
+
+def test_what_was_computed_before_changes_no_plan(humanoid: Humanoid) -> None:
+    body = UpperBody(humanoid, posts(), ExactSettings())
+    start = goal_configurations(natural_walk(), walk(1, speed=0.0))[0]
+    kept, velocity, checks = None, np.zeros(LOCAL), []
+    for first in range(6):
+        path = walk(16, first)
+        plan = body.plan(path, start, velocity, kept).plan
+        fresh = UpperBody(humanoid, posts(), ExactSettings())
+        anew = fresh.plan(path, start, velocity, kept).plan
+        assert len(plan.configurations) == 17
+        assert plan.velocities is not None
+        assert anew.velocities is not None
+        assert np.allclose(plan.configurations, anew.configurations, atol=1e-9)
+        assert np.allclose(plan.velocities, anew.velocities, atol=1e-9)
+        again = UpperBody(humanoid, posts(), ExactSettings()).plan(path, start, velocity, kept).plan
+        assert np.array_equal(anew.configurations, again.configurations)
+        checks.append((plan.checks, anew.checks))
+        kept = np.concatenate([plan.configurations[1:], plan.configurations[-1:]])
+        start, velocity = plan.configurations[1], plan.velocities[1]
+    assert sum(known for known, _ in checks[1:]) < 0.5 * sum(anew for _, anew in checks[1:])
+
+
+def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> None:
+    chosen = ExactSettings()
+    keys, velocities, _, _ = played(humanoid, posts(), 30)
+    for group in LOCAL_GROUPS:
+        at = columns_of(group)
+        waist = group is DofGroup.WAIST
+        most = chosen.waist_acceleration if waist else chosen.arm_acceleration
+        speed = chosen.waist_speed if waist else chosen.arm_speed
+        low, high = limits(group).T
+        for k in range(len(keys) - 1):
+            ends = keys[k, at], velocities[k, at], keys[k + 1, at], velocities[k + 1, at]
+            assert peak_acceleration(*ends, T) <= 1.1 * most
+            assert np.linalg.norm(ends[2] - ends[0]) <= speed * T * (1 + 1e-6)
+            curve = [
+                hermite(np.array([0, T]), np.stack(ends[::2]), np.stack(ends[1::2]), u * T) for u in (0.25, 0.5, 0.75)
+            ]
+            assert max(float(np.linalg.norm(rate)) for _, rate in curve) <= 2.0 * speed
+            assert all(np.all((value >= low - 1e-6) & (value <= high + 1e-6)) for value, _ in curve)
+
+
+def test_back_in_the_natural_swing_half_a_second_after_a_lone_obstacle(humanoid: Humanoid) -> None:
+    scene = scene_of([[0.42, 0.95, 2.0]], [[0.1, 0.3, 0.1]])
+    keys, _, goals, places = played(humanoid, scene, 30)
+    away = np.linalg.norm(keys - goals, axis=1)
+    assert away.max() > 0.2  # it was evaded
+    past = int(np.argmax(places[:, 1] > 2.0 + 0.1 + 0.25))  # the body is behind it, a trunk's depth further
+    assert away[past + round(0.5 / T) + 1 :].max() < 0.1
+
+
+@settings(deadline=None, max_examples=50)
+@given(st.integers(0, 10_000))
+def test_the_law_of_the_curve_s_acceleration(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    values, wide = rng.uniform(-1, 1, (8, 3)), np.tile([-9.0, 9.0], (3, 1))
+    slopes = np.diff(values, axis=0) / T
+    tangents = smooth_tangents(values, T, slopes[0], wide, np.zeros(8, np.bool_))
+    bound = 3.0 * np.abs(np.diff(slopes, axis=0)).max(axis=0) / T
+    for k in range(1, 6):
+        for i in range(3):
+            one = slice(i, i + 1)
+            ends = values[k, one], tangents[k, one], values[k + 1, one], tangents[k + 1, one]
+            assert peak_acceleration(*ends, T) <= bound[i] + 1e-9
+    narrow = np.stack([values.min(axis=0), values.max(axis=0)], axis=1)
+    inside = smooth_tangents(values, T, np.zeros(3), narrow, np.zeros(8, np.bool_))
+    times = T * np.arange(8.0)
+    for time in np.linspace(0.0, times[-1], 200):
+        value, _ = hermite(times, values, inside, float(time))
+        assert np.all((value >= narrow[:, 0] - 1e-9) & (value <= narrow[:, 1] + 1e-9))
