@@ -118,7 +118,7 @@ def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> 
 
 
 def test_back_in_the_natural_swing_half_a_second_after_a_lone_obstacle(humanoid: Humanoid) -> None:
-    scene = scene_of([[0.42, 0.95, 2.0]], [[0.1, 0.3, 0.1]])
+    scene = scene_of([[0.36, 0.95, 2.0]], [[0.1, 0.3, 0.1]])
     keys, _, goals, places = played(humanoid, scene, 30)
     away = np.linalg.norm(keys - goals, axis=1)
     assert away.max() > 0.2  # it was evaded

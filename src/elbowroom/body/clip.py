@@ -39,13 +39,13 @@ class MotionClip:
         rows = np.concatenate([self.configurations[-3:-1], self.configurations, self.configurations[1:3]])
         return MonotoneCubic(times, rows)
 
-    @property
+    @cached_property
     def cubics(self) -> tuple[Floats, Floats]:
         """Where the segments of the curve begin and end (S+1,), and their coefficients (4, S, d), highest power first.
 
         A loop's segments begin before its start and end after its end.
         """
-        return np.asarray(self._curve.x, np.float64), np.ascontiguousarray(self._curve.c, np.float64)
+        return self._curve.cubics
 
     def sample(self, t: ArrayLike) -> Floats:
         """Configurations (..., d) at times `t` (...): a loop goes on for ever, any other clip rests at its ends."""

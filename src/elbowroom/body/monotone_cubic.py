@@ -19,6 +19,14 @@ class MonotoneCubic:
         self._times, self._values = np.asarray(times, np.float64), np.asarray(values, np.float64)
         self._tangents = _tangents(np.diff(self._times)[:, None], np.diff(self._values, axis=0))
 
+    @property
+    def cubics(self) -> tuple[Floats, Floats]:
+        """The times (K,), and the segments' coefficients (4, K-1, d): of the time since each began, cubed first."""
+        width, tangents = np.diff(self._times)[:, None], self._tangents
+        rise, m, n = np.diff(self._values, axis=0), width * tangents[:-1], width * tangents[1:]
+        rows = (m + n - 2.0 * rise) / width**3, (3.0 * rise - 2.0 * m - n) / width**2, tangents[:-1], self._values[:-1]
+        return self._times, np.ascontiguousarray(np.stack(rows))
+
     def __call__(self, at: Floats) -> Floats:
         """Values (..., d) at times `at` (...); beyond the ends the last cubics go on."""
         k = np.clip(np.searchsorted(self._times, at, side="right") - 1, 0, len(self._times) - 2)

@@ -4,9 +4,9 @@ Cubic Hermite segments, as `interpolation.hermite` plays them. The velocity at a
 before and after it. With slopes s and their changes d = s' - s, the acceleration at a segment's ends is then
 (2 d - d')/h and (2 d' - d)/h, so it is never more than three times the greatest change of slope over an interval:
 half of what tangents cost that are zero at every bend. Such a curve may swing past its key postures, by at most 4/27 of
-the interval times the velocities at both ends; that is part of what is proven free. Where it could leave the range of a joint, or where it has
-turned out to touch, the tangents are monotone, zero at every bend (F. N. Fritsch & J. Butland, SIAM J. Sci. Stat.
-Comput. 5, 1984): they pass nothing.
+the interval times the velocities at both ends; that is part of what is proven free. Where it could leave the range of
+a joint, or where it has turned out to touch, the tangents are monotone, zero at every bend (F. N. Fritsch & J. Butland,
+SIAM J. Sci. Stat. Comput. 5, 1984): they pass nothing.
 """
 
 import numpy as np

@@ -25,7 +25,6 @@ from elbowroom.planning.limb import pose
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-Bools = NDArray[np.bool_]
 
 _MOMENTS = 4  # moments of an interval at which postures are looked at
 _STRIDE = SWEEP // _MOMENTS
