@@ -31,7 +31,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 _MAX_VERTICES = 2_000_000
-_MAX_SHAPES = 5_000  # different ones
+_MAX_SHAPES = 3_000  # different ones
 
 
 @dataclass(frozen=True, eq=False)

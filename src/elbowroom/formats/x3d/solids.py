@@ -1,5 +1,8 @@
 """Box, Sphere, Cylinder and Cone as triangles (ISO/IEC 19775-1, 13.3: centred, axis along Y)."""
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,30 +29,47 @@ def box(node: Node) -> Mesh:
 def sphere(node: Node) -> Mesh:
     """A Sphere."""
     radius = _positive(node, node.vector("radius", (1.0,)), "radius")[0]
-    angles = np.linspace(0.5 * np.pi, -0.5 * np.pi, _UP + 1)
-    rings = [_ring(radius * np.cos(angle), radius * np.sin(angle)) for angle in angles]
-    return _mesh(np.concatenate(rings), np.concatenate([_band(i) for i in range(_UP)]), np.pi)
+    return _stretched(_unit_sphere(), np.full(3, radius))
 
 
 def cylinder(node: Node) -> Mesh | None:
     """A Cylinder; None if all its parts are switched off."""
     radius = _positive(node, node.vector("radius", (1.0,)), "radius")[0]
     height = _positive(node, node.vector("height", (2.0,)), "height")[0]
-    return _tapered(node, radius, radius, height, ("side", "top", "bottom"))
+    parts = tuple(part for part in ("side", "top", "bottom") if node.flag(part, True))
+    return _stretched(_unit_tapered(1.0, parts), np.array([radius, height, radius])) if parts else None
 
 
 def cone(node: Node) -> Mesh | None:
     """A Cone; None if both its parts are switched off."""
     radius = _positive(node, node.vector("bottomRadius", (1.0,)), "bottomRadius")[0]
     height = _positive(node, node.vector("height", (2.0,)), "height")[0]
-    return _tapered(node, 0.0, radius, height, ("side", "", "bottom"))
+    parts = tuple(part for part in ("side", "bottom") if node.flag(part, True))
+    return _stretched(_unit_tapered(0.0, parts), np.array([radius, height, radius])) if parts else None
 
 
-def _tapered(node: Node, top: float, bottom: float, height: float, parts: tuple[str, str, str]) -> Mesh | None:
-    points = np.concatenate([_ring(top, 0.5 * height), _ring(bottom, -0.5 * height)])
+@cache
+def _unit_sphere() -> Mesh:
+    angles = np.linspace(0.5 * np.pi, -0.5 * np.pi, _UP + 1)
+    rings = [_ring(np.cos(angle), np.sin(angle)) for angle in angles]
+    return _mesh(np.concatenate(rings), np.concatenate([_band(i) for i in range(_UP)]), np.pi)
+
+
+@cache
+def _unit_tapered(top: float, parts: tuple[str, ...]) -> Mesh:
+    """Parts of a cylinder or cone of radius 1 below, radius `top` above, and height 1."""
     faces = {"side": _band(0), "top": _lid(0)[::-1], "bottom": _lid(_AROUND)}
-    shown = [faces[part] for part in parts if part and node.flag(part, True)]
-    return _mesh(points, np.concatenate(shown), _CREASE) if shown else None
+    points = np.concatenate([_ring(top, 0.5), _ring(1.0, -0.5)])
+    return _mesh(points, np.concatenate([faces[part] for part in parts]), _CREASE)
+
+
+def _stretched(mesh: Mesh, scale: Floats) -> Mesh:
+    """The mesh scaled along the axes; normals turn the other way."""
+    if mesh.normals is None:
+        return replace(mesh, points=mesh.points * scale)
+    normals = mesh.normals / scale
+    unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    return replace(mesh, points=mesh.points * scale, normals=unit)
 
 
 def _ring(radius: float, y: float) -> Floats:
