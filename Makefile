@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test lint types unit web-test browser clean format
+.PHONY: help env run test test-long lint types unit web-test browser clean format
 
 help:
 	@sed -n '1,2s/^# //p' Makefile
@@ -53,7 +53,11 @@ types: $(VENV)/developer
 
 unit: $(VENV)/developer
 	@echo "==> Tests"
-	@$(BIN)/python -m pytest -m "not browser" -n 2 --dist loadgroup $(ARGS)
+	@$(BIN)/python -m pytest -m "not browser and not long" -n 2 --dist loadgroup $(ARGS)
+
+test-long: $(VENV)/developer
+	@echo "==> Long walks"
+	@$(BIN)/python -m pytest -m long -n 2 $(ARGS)
 
 web-test: $(VENV)/developer
 	@echo "==> Tests of the page's modules"

@@ -9,7 +9,7 @@ import urllib.request
 from types import TracebackType
 from typing import Self
 
-START_SECONDS = 180.0  # the first start compiles the kernels
+START_SECONDS = 600.0  # the first start compiles the kernels
 
 
 class LiveServer:

@@ -36,7 +36,10 @@ def any_command(rng: np.random.Generator) -> Command:
     }[str(kind)]
 
 
-@pytest.mark.parametrize(("scene", "seed"), [("b", 1), ("c", 2), ("d", 3), ("doorway", 4)])
+_LONG = [pytest.param(scene, seed, marks=pytest.mark.long) for scene, seed in (("b", 1), ("c", 2), ("doorway", 4))]
+
+
+@pytest.mark.parametrize(("scene", "seed"), [("d", 3), *_LONG])
 def test_no_sequence_of_commands_leads_into_an_obstacle_or_a_dead_end(scene: str, seed: int) -> None:
     pytest.importorskip("coal")
     rng, place = np.random.default_rng(seed), Scene.load(scene)
