@@ -175,10 +175,11 @@ def test_who_stands_or_turns_by_hand_is_not_led_aside(command: Command) -> None:
 
 
 def test_who_lets_go_while_turned_still_means_the_way_he_went() -> None:
-    planner, start = RootPlanner(AVATAR, Scene.load("doorway")), RootState(z=1.2, forward=1.1)
-    first = next(iter(planner.candidates(start, FORWARD, 16, 0.15)))
-    turned = RootState(*first.path.states[9].tolist())
-    assert abs(turned.heading) > math.radians(30.0)
+    planner, start = RootPlanner(AVATAR, Scene.load("doorway")), RootState(z=0.8, forward=1.1)
+    first = next(iter(planner.candidates(start, FORWARD, 20, 0.15)))
+    turns = np.abs(first.path.states[:, 2]) > math.radians(40.0)
+    assert turns.any()
+    turned = RootState(*first.path.states[np.argmax(turns)].tolist())
     stop = next(iter(planner.candidates(turned, Command(), 16, 0.15)))
     standing = RootState(*stop.path.states[-1].tolist())
     on = next(iter(planner.candidates(standing, FORWARD, 16, 0.15)))

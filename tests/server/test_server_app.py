@@ -64,7 +64,8 @@ def test_the_catalog_and_the_scenes(page: Page) -> None:
     assert catalog["queueSizes"] == [3, 4, 5, 6, 7]
     for choice in catalog["scenes"]:
         scene = page.get(f"/api/scenes/{choice['name']}").json()
-        assert scene["title"] == choice["title"]
+        course = choice["name"].startswith("gauntlet:")  # its title is known once it is made
+        assert course or scene["title"] == choice["title"]
         assert all(len(box["size"]) == 3 for box in scene["boxes"])
     assert page.get("/api/scenes/nowhere").status_code == 404
 
@@ -89,7 +90,7 @@ def test_every_answer_carries_the_security_headers(page: Page) -> None:
         headers = page.get(path).headers
         assert headers["x-content-type-options"] == "nosniff"
         assert "default-src 'self'" in headers["content-security-policy"]
-        assert "unsafe-eval" not in headers["content-security-policy"]
+        assert "'unsafe-eval'" not in headers["content-security-policy"]  # 'wasm-unsafe-eval' is: mesh decoders
         assert "server" not in headers
 
 

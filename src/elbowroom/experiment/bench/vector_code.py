@@ -16,7 +16,7 @@ _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
 @cache
 def clearance_loop_code() -> str:
     """The assembly of the hot loop, compiled anew: what comes from the disk cache cannot be read."""
-    kernel = cast(Any, clearance)._lower_to_box
+    kernel = cast(Any, clearance.lower_to_box)
     options = {key: value for key, value in kernel.targetoptions.items() if key != "nopython"}
     fresh = numba.njit(**options)(kernel.py_func)
     fresh(np.zeros((7, 16), np.float32), np.zeros(15, np.float32), np.zeros(16, np.float32))
