@@ -98,7 +98,7 @@ def test_arrow_keys_turn_towards_the_side_of_the_picture(open_page: Open) -> Non
 
 
 def test_assist_off_goes_through_things(open_page: Open) -> None:
-    live = open_page("scene=a")
+    live = open_page("scene=d")
     live.page.click("#assist")
     live.wait("s.settings.assist === false")
     live.page.keyboard.press("Escape")
