@@ -1,4 +1,4 @@
-"""three.js and three-vrm-animation in a headless browser, as judges of animations. The page sees no network."""
+"""three.js, three-vrm and three-vrm-animation in a headless browser, as judges of poses. The page sees no network."""
 
 import base64
 import mimetypes
@@ -76,6 +76,27 @@ async ([avatar, vrma, times]) => {
 }
 """
 
+_POSES = """
+async ([avatar, poses]) => {
+  const { THREE, load } = window.judge;
+  const vrm = (await load(avatar)).userData.vrm;
+  const names = Object.keys(vrm.humanoid.humanBones).filter((name) => vrm.humanoid.getRawBoneNode(name));
+  const place = new THREE.Vector3(), turn = new THREE.Quaternion();
+  const shown = poses.map(({ rotations, hips }) => {
+    for (const [name, rotation] of Object.entries(rotations))
+      vrm.humanoid.getNormalizedBoneNode(name)?.quaternion.fromArray(rotation);
+    vrm.humanoid.getNormalizedBoneNode("hips").position.fromArray(hips);
+    vrm.humanoid.update();
+    vrm.scene.updateMatrixWorld(true);
+    return Object.fromEntries(names.map((name) => {
+      const node = vrm.humanoid.getRawBoneNode(name);
+      return [name, [...node.getWorldPosition(place).toArray(), ...node.getWorldQuaternion(turn).toArray()]];
+    }));
+  });
+  return { version: vrm.meta.metaVersion, shown };
+}
+"""
+
 
 class ThreeJudge:
     """A page with three.js in it."""
@@ -96,6 +117,15 @@ class ThreeJudge:
     def bones(self, avatar: bytes, vrma: bytes, times: list[float]) -> list[dict[str, list[float]]]:
         """Normalised local rotation and position of every bone of a VRM that plays a VRM animation."""
         found: list[dict[str, list[float]]] = self._page.evaluate(_BONES, [_text(avatar), _text(vrma), times])
+        return found
+
+    def poses(self, avatar: bytes, poses: list[dict[str, Any]]) -> dict[str, Any]:
+        """World position and rotation of every bone's own node of a VRM in some poses of three-vrm.
+
+        A pose has `rotations`, normalised and local by bone, and `hips`, where the normalised hips are. The answer has
+        `version`, "0" or "1", and `shown`, by pose and bone.
+        """
+        found: dict[str, Any] = self._page.evaluate(_POSES, [_text(avatar), poses])
         return found
 
     def close(self) -> None:
