@@ -18,12 +18,24 @@ _BOMB = 4096  # repeats of a piece that is nested or copied
 
 
 @dataclass(frozen=True)
+class Container:
+    """A file format that wraps others and says how long they are, or what their checksum is.
+
+    Damage to the whole file mostly stops at the wrapping; so every other input has a part damaged and wrapped anew.
+    """
+
+    unpack: Callable[[bytes], list[bytes]]
+    pack: Callable[[list[bytes]], bytes]
+
+
+@dataclass(frozen=True)
 class Reader:
     """A reader under test."""
 
     read: Callable[[bytes], object]  # raises InputError, or returns what it read
     seeds: tuple[bytes, ...]  # good files, small ones first
     words: tuple[bytes, ...] = ()  # pieces of the grammar that are thrown in
+    container: Container | None = None
 
 
 class BrokenPromiseError(AssertionError):
@@ -44,7 +56,16 @@ def answer(reader: Reader, data: bytes) -> str:
 
 def damaged(reader: Reader, rng: np.random.Generator) -> bytes:
     """One of the seeds after one to four random accidents."""
-    data = reader.seeds[int(rng.integers(len(reader.seeds)))]
+    data = _pick(reader.seeds, rng)
+    if reader.container is None or rng.random() < 0.5:
+        return _hurt(data, reader, rng)
+    parts = reader.container.unpack(data)
+    which = int(rng.integers(len(parts)))
+    parts[which] = _hurt(parts[which], reader, rng)
+    return reader.container.pack(parts)
+
+
+def _hurt(data: bytes, reader: Reader, rng: np.random.Generator) -> bytes:
     for _ in range(int(min(rng.geometric(0.6), 4))):
         accident = _ACCIDENTS[int(rng.integers(len(_ACCIDENTS)))]
         data = accident(data, reader, rng) if data else data

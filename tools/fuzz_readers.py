@@ -7,8 +7,10 @@ The same seed throws the same files. Exit code 1 if any input broke a promise; `
 """
 
 import argparse
+import gzip
 import resource
 import signal
+import struct
 import sys
 import time
 from collections import Counter
@@ -21,11 +23,33 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
-from fuzzing import Reader, answer, damaged
+from fuzzing import Container, Reader, answer, damaged
 
 LONGEST = 2.0  # seconds of processor time that one input may take
 _GIVEN_UP = 20.0  # seconds after which it is stopped
 MEMORY = 2**30  # bytes that one input may need beyond what the process has when it starts
+
+
+def _chunks(data: bytes) -> list[bytes]:
+    """The contents of a good GLB's chunks."""
+    chunks, at = [], 12
+    while at < len(data):
+        size = int.from_bytes(data[at : at + 4], "little")
+        chunks.append(data[at + 8 : at + 8 + size])
+        at += 8 + size
+    return chunks
+
+
+def _glb(chunks: list[bytes]) -> bytes:
+    """A GLB of JSON and one buffer, whatever is in them."""
+    kinds = (b"JSON", b"BIN\0")
+    even = [chunk + b" " * (-len(chunk) % 4) for chunk in chunks]
+    body = b"".join(struct.pack("<I", len(chunk)) + kind + chunk for chunk, kind in zip(even, kinds, strict=False))
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
+
+
+GLB = Container(_chunks, _glb)
+GZIP = Container(lambda data: [gzip.decompress(data)], lambda parts: gzip.compress(parts[0], 1))
 
 
 def glb_reader() -> Reader:
@@ -45,7 +69,7 @@ def glb_reader() -> Reader:
         b'"count":1e9',
         b"null",
     )
-    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words)
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), tuple(map(build, recipes)), words, GLB)
 
 
 def compressed_reader() -> Reader:
@@ -65,7 +89,7 @@ def compressed_reader() -> Reader:
     seeds = (meshopt_file(2), draco_file(each=3)[0])
     decode_triangles(np.zeros(1, np.uint8), 3)  # compiled before the clock runs
     decode_sequence(np.zeros(1, np.uint8), 1)
-    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), seeds, words)
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), seeds, words, GLB)
 
 
 def bones_reader() -> Reader:
@@ -109,7 +133,7 @@ def animation_reader() -> Reader:
         for name in library.clips:
             planning_motion(library.clip(name).motion)
 
-    return Reader(read, (animated_glb(), animated_glb(vrma=True), animated_glb(mode="CUBICSPLINE")), words)
+    return Reader(read, (animated_glb(), animated_glb(vrma=True), animated_glb(mode="CUBICSPLINE")), words, GLB)
 
 
 def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
@@ -183,7 +207,8 @@ def packed_reader() -> Reader:
 
     encodings = ("xml", "classic", "vrml")
     seeds = tuple(build_hanim(HanimRecipe(encoding, points=4, packed=True)) for encoding in encodings)
-    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrz"), seeds, (b"\x1f\x8b\x08\x00", b"\x00" * 9))
+    words = (b"\x1f\x8b\x08\x00", b"\x00" * 9)
+    return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrz"), seeds, words, GZIP)
 
 
 READERS: dict[str, Callable[[], Reader]] = {

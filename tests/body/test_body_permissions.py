@@ -1,8 +1,12 @@
 """What a file forbids is not done."""
 
+import numpy as np
 import pytest
 
+from avatar_builder import Recipe, build
+from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
 from elbowroom.body.permissions import Permissions, Use, of_vrm_0, of_vrm_1
+from shared_data import SHARED, needs_shared
 
 
 @pytest.mark.parametrize(
@@ -37,3 +41,16 @@ def test_what_is_said_is_shown() -> None:
     assert old.lines()["credit"] == "required"
     assert old.lines()["violent acts"] == "forbidden"
     assert Permissions().lines() == {}
+
+
+@pytest.mark.parametrize("recipe", [Recipe(vrm="1", spin=True), Recipe(vrm="0", heading=np.pi, unit=2.0)])
+def test_a_vrm_is_never_changed(recipe: Recipe) -> None:
+    data = build(recipe)
+    assert load_humanoid_bytes(data, "mine.vrm").glb == data
+
+
+@needs_shared
+def test_vrms_of_others_are_never_changed() -> None:
+    assert SHARED is not None
+    for path in sorted(SHARED.glob("avatars/vrm[01]/*.vrm")):
+        assert load_humanoid(path).glb == path.read_bytes()

@@ -304,3 +304,14 @@ def test_a_file_that_may_not_be_handed_out_is_shown_on_this_machine_only(library
     assert "forbids redistribution" in refused.json()["error"]
     free = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9").get("/avatars/stock.glb")
     assert free.status_code == 200
+
+
+def test_who_sent_a_file_from_elsewhere_sees_it_there_and_nobody_else(library: Library) -> None:
+    from avatar_builder import Recipe, build
+
+    here, base = "0.0.0.0", "http://192.168.1.5:8765"
+    sender, other = made(library, here, base, "192.168.1.9"), made(library, here, base, "192.168.1.10")
+    data = build(Recipe(vrm="1", mesh=False))
+    choice = sender.post("/api/avatars?name=mine.vrm", content=data, headers={"origin": base}).json()["avatar"]
+    assert sender.get(f"/avatars/{choice['id']}.glb").content == data
+    assert other.get(f"/avatars/{choice['id']}.glb").status_code == 403

@@ -16,6 +16,7 @@ from starlette.websockets import WebSocket
 from elbowroom import __version__
 from elbowroom.body.permissions import Use
 from elbowroom.errors import InputError
+from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.codec import encode, plain
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.library import Library
@@ -98,7 +99,7 @@ class _Handlers:
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
         refusal = avatar.humanoid.meta.permissions.refusal(Use.HAND_OUT)
-        if refusal is not None and not _is_here(request):
+        if refusal is not None and not _has_the_file(request, avatar):
             return JSONResponse({"error": f"{refusal}; it is shown on the machine that has its file"}, 403)
         if avatar.glb is None or not avatar.glb.is_file():
             return JSONResponse({"error": "this avatar has no file"}, 404)
@@ -118,9 +119,9 @@ class _Handlers:
             self._sessions -= 1
 
 
-def _is_here(request: Request) -> bool:
-    """Whether the client is on this machine: what it sees then is not handed out."""
-    return request.client is not None and is_loopback(request.client.host)
+def _has_the_file(request: Request, avatar: StoredAvatar) -> bool:
+    """Whether the client is on this machine or on the one that sent the file: what it sees then is not handed out."""
+    return request.client is not None and (is_loopback(request.client.host) or request.client.host == avatar.sender)
 
 
 class _Page(StaticFiles):

@@ -4,7 +4,7 @@ import secrets
 import tempfile
 import threading
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -26,6 +26,7 @@ class StoredAvatar:
     id: str
     humanoid: Humanoid
     glb: Path | None  # None for a humanoid without a file
+    sender: str = ""  # address of the machine that it was sent from: there it is no stranger's
 
     @property
     def title(self) -> str:
@@ -78,12 +79,12 @@ class AvatarStore:
         """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
         return self._keep(secrets.token_hex(8), Humanoid.load(path, read))
 
-    def add_upload(self, data: bytes, name: str) -> StoredAvatar:
-        """Keep an avatar that was sent as bytes; raises `InputError` if they hold no humanoid."""
+    def add_upload(self, data: bytes, name: str, sender: str = "") -> StoredAvatar:
+        """Keep an avatar that was sent as bytes from an address; raises `InputError` if they hold no humanoid."""
         from elbowroom.body.loading import load_humanoid_bytes
 
         humanoid = load_humanoid_bytes(data, name)
-        avatar = self._stored(secrets.token_hex(8), humanoid)
+        avatar = replace(self._stored(secrets.token_hex(8), humanoid), sender=sender)
         with self._lock:
             self._uploads[avatar.id] = avatar
             while len(self._uploads) > 1 and self._too_many():

@@ -39,7 +39,8 @@ class UploadDesk:
             try:
                 data = await _body(request)
                 name = request.query_params.get("name", "avatar")[:_NAME]
-                uploaded = await asyncio.to_thread(self._read, data, name)
+                sender = request.client.host if request.client else ""
+                uploaded = await asyncio.to_thread(self._read, data, name, sender)
             except _TooLargeError:
                 return _refused(413, f"the file is larger than {MAX_UPLOAD // 2**20} MiB")
             except InputError as error:
@@ -51,12 +52,12 @@ class UploadDesk:
                 return _refused(500, "the file could not be read; the server's log says more")
         return JSONResponse(plain(uploaded), 201)
 
-    def _read(self, data: bytes, name: str) -> Uploaded:
+    def _read(self, data: bytes, name: str, sender: str) -> Uploaded:
         """By content: a motion, an avatar, or an avatar with motions of its own."""
         clips = self._library.clips
         if is_motion_only(data, name):
             return Uploaded(None, [ClipChoice(clip.id, clip.title) for clip in clips.add_upload(data, name)])
-        avatar = self._library.avatars.add_upload(data, name)
+        avatar = self._library.avatars.add_upload(data, name, sender)
         own: list[StoredClip] = []
         if has_animations(data, name):
             with contextlib.suppress(InputError):
