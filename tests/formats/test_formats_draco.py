@@ -1,10 +1,15 @@
 """Draco meshes: the same avatar with and without compression; damaged data is one line."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
 from compressed_builder import draco_file
+from compressed_vrm import with_draco, with_meshopt
+from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf, read_gltf
 from elbowroom.formats.meshes import surface_points
@@ -46,3 +51,17 @@ def test_a_real_draco_file_has_its_triangles() -> None:
     assert SHARED is not None
     gltf = read_gltf(SHARED / "scenes" / "chess-board.glb")
     assert len(triangle_mesh(gltf, read_nodes(gltf)).triangles) == 178_848
+
+
+@pytest.mark.parametrize("compressed", [with_draco, with_meshopt])
+def test_a_compressed_vrm_keeps_its_surface(compressed: Callable[[bytes], bytes]) -> None:
+    data = stock_avatar_path().read_bytes()
+    np.testing.assert_allclose(middles(compressed(data)), middles(data), atol=5e-5)
+
+
+def middles(data: bytes) -> NDArray[np.float64]:
+    """The middle of every triangle, (T, 3), in the terms of the nodes that carry it."""
+    gltf = parse_gltf(data, "a.vrm")
+    mesh = triangle_mesh(gltf, read_nodes(gltf))
+    corners = mesh.offsets[mesh.triangles, 0]
+    return np.asarray(corners.mean(axis=1))
