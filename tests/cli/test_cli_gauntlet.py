@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from elbowroom.body.stock import stock_avatar_path
 from elbowroom.cli.main import app
 from elbowroom.world.scene import Scene
 from gauntlet_courses import course
@@ -75,3 +76,17 @@ def test_a_wrong_call_ends_with_2_and_one_line(arguments: list[str]) -> None:
     outcome = RUNNER.invoke(app, ["gauntlet", "--courses", "2", "-q", *arguments])
     assert outcome.exit_code == 2
     assert not outcome.stdout
+
+
+def test_another_avatar_gets_courses_of_its_own_and_its_mesh_is_judged(tmp_path: Path) -> None:
+    avatar = ["--avatar", str(stock_avatar_path()), "--height", "1.9"]
+    arguments = ["gauntlet", "--level", "1", "--courses", "1", "--jobs", "1", "--judge", "-q", *avatar]
+    report = json.loads(RUNNER.invoke(app, [*arguments, "--json"]).stdout)
+    assert report["settings"]["avatar"]["height"] == 1.9
+    assert report["trials"][0]["fingerprint"] != course(1, 0).fingerprint
+    assert report["mesh_touching"] == report["judged_touching"] == 0
+    assert report["mesh_clearance"] > 0.0
+    path = tmp_path / "tall.json"
+    RUNNER.invoke(app, ["gauntlet", "--level", "1", "--save", "0", str(path), "-q", *avatar])
+    assert Scene.load(path).name == "gauntlet-1-0"
+    assert Scene.load(path).to_dict() != course(1, 0).scene.to_dict()

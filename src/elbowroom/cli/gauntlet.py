@@ -2,16 +2,19 @@
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.output import PLANNER_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
+    from elbowroom.body.humanoid import Humanoid
+    from elbowroom.control.avatar_reference import AvatarReference
     from elbowroom.experiment.gauntlet.course import Course
     from elbowroom.experiment.gauntlet.runner import GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = (
     "Examples:  elbowroom gauntlet --level 3 --courses 50  |  elbowroom gauntlet --level 5 --show 2  |  "
-    "elbowroom gauntlet --level 4 --save 7 course.json"
+    "elbowroom gauntlet --level 4 --save 7 course.json  |  elbowroom gauntlet --level 3 --avatar alice.vrm --judge"
 )
 FELL_SHORT = 1
 
@@ -33,7 +36,13 @@ def gauntlet(
     queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
     jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
-    judge: Annotated[bool, typer.Option("--judge", help="Have every walk judged by another library, coal.")] = False,
+    judge: Annotated[
+        bool, typer.Option("--judge", help="Have every walk judged by another library, coal: capsules and mesh.")
+    ] = False,
+    avatar: Avatar = None,
+    bones: Bones = None,
+    height: Height = None,
+    include_hair: IncludeHair = False,
     save: Annotated[
         tuple[int, Path] | None, typer.Option(metavar="K FILE", help="Write course K as a scene file instead.")
     ] = None,
@@ -41,7 +50,7 @@ def gauntlet(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Walk random courses, each with a proof that it can be crossed, and count.
+    """Walk random courses, each with a proof that this avatar's body can cross it, and count.
 
     Crossed: through in time; straight: and never stuck; stuck: at least once; stopped: not through, but never touching.
     Exit code 0: all crossed and nothing touched, 1: not.
@@ -51,12 +60,13 @@ def gauntlet(
     from elbowroom.experiment.gauntlet.trial import TrialSettings
     from elbowroom.experiment.parallel import usable_cores
 
-    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge)
+    walker = _Walker(avatar, bones, height, include_hair)
+    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference())
     if save is not None:
-        _save(_course(settings, save[0], quiet), save[1])
+        _save(_course(settings, walker, save[0], quiet), save[1])
         return
     if show is not None:
-        _show(_course(settings, show, quiet), settings)
+        _show(_course(settings, walker, show, quiet), settings, walker)
         return
     processes = min(courses, usable_cores()) if jobs is None else jobs
     with time_left_bar("Courses", quiet) as move:
@@ -69,17 +79,36 @@ def gauntlet(
         print_json(document | _trials(results))
     else:
         _print(settings, summary)
-    good = summary.crossed == summary.courses and not summary.touching_frames and not summary.judged_touching
+    touching = summary.touching_frames or summary.judged_touching or summary.mesh_touching
+    good = summary.crossed == summary.courses and not touching
     raise typer.Exit(0 if good else FELL_SHORT)
 
 
-def _course(settings: "GauntletSettings", k: int, quiet: bool) -> "Course":
-    from elbowroom.experiment.gauntlet.course import make_course
+class _Walker(NamedTuple):
+    """The avatar that the options ask for."""
+
+    avatar: Path | None
+    bones: Path | None
+    height: float | None
+    include_hair: bool
+
+    def load(self) -> "Humanoid":
+        return chosen_avatar(self.avatar, self.bones, self.height, self.include_hair)
+
+    def reference(self) -> "AvatarReference | None":
+        """How a process finds it; None for the stock avatar as it is."""
+        from elbowroom.control.avatar_reference import AvatarReference
+
+        return AvatarReference.of(self.load()) if any(option for option in self) else None
+
+
+def _course(settings: "GauntletSettings", walker: _Walker, k: int, quiet: bool) -> "Course":
+    from elbowroom.experiment.gauntlet.course import CourseMaker
 
     if k < 0:
         raise InputError(f"course {k}: courses are counted from 0")
     with progress_bar("Making the course", None, quiet):
-        return make_course(settings.level, settings.seed + k)
+        return CourseMaker.of(walker.load()).course(settings.level, settings.seed + k)
 
 
 def _save(course: "Course", path: Path) -> None:
@@ -94,7 +123,7 @@ def _write(path: Path, text: str) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 
 
-def _show(course: "Course", settings: "GauntletSettings") -> None:
+def _show(course: "Course", settings: "GauntletSettings", walker: _Walker) -> None:
     from elbowroom.cli.play import play
 
     with TemporaryDirectory() as folder:
@@ -105,7 +134,7 @@ def _show(course: "Course", settings: "GauntletSettings") -> None:
             port=8765,
             open_page=True,
             scene=str(path),
-            avatar=None,
+            **walker._asdict(),
             planner=settings.trial.planner,
             queue=settings.trial.queue_size,
         )
@@ -168,6 +197,11 @@ def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
     if summary.judged_poses is not None:
         rows["touching poses, by the judge"] = f"{summary.judged_touching} of {summary.judged_poses}"
         rows["poses that touch themselves"] = str(summary.judged_self_touching)
+    if summary.mesh_touching is not None and summary.mesh_deepest is not None:
+        deepest = f", up to {1e3 * summary.mesh_deepest:.1f} mm deep" if summary.mesh_touching else ""
+        rows["poses in which the mesh touches"] = f"{summary.mesh_touching} of {summary.judged_poses}{deepest}"
+        if summary.mesh_clearance is not None:
+            rows["least clearance of the mesh"] = f"{1e3 * summary.mesh_clearance:.1f} mm"
     last = settings.seed + settings.courses - 1
     about = f"level {settings.level} ({100 * level_of(settings.level).margin:.0f} cm), seeds {settings.seed} to {last}"
     trial = settings.trial

@@ -22,7 +22,7 @@ class AvatarReference:
     path: str  # where the file was; empty for an avatar without one
     height: float | None = None  # metres that were asked for
     include_hair: bool = False
-    bones: dict[str, int | None] = field(default_factory=dict)  # nodes that the user told
+    bones: dict[str, int | None] = field(default_factory=dict, hash=False)  # nodes that the user told
 
     @classmethod
     def of(cls, humanoid: Humanoid) -> "AvatarReference":

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from elbowroom import __version__
+from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.recording import this_machine
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
@@ -34,6 +35,7 @@ class GauntletSettings:
     seed: int = 0
     trial: TrialSettings = field(default_factory=TrialSettings)
     judge: bool = False  # whether another library judges every walk
+    avatar: AvatarReference | None = None  # who walks courses made for its body; None: the stock avatar
 
     def __post_init__(self) -> None:
         level_of(self.level)
@@ -47,7 +49,8 @@ class GauntletSettings:
 
     def tasks(self) -> list[CourseTask]:
         """A task for every course."""
-        return [CourseTask(self.level, self.seed + k, self.trial, self.judge) for k in range(self.courses)]
+        seeds = range(self.seed, self.seed + self.courses)
+        return [CourseTask(self.level, seed, self.trial, self.judge, self.avatar) for seed in seeds]
 
 
 def identity(settings: GauntletSettings) -> dict[str, Any]:
@@ -60,6 +63,7 @@ def identity(settings: GauntletSettings) -> dict[str, Any]:
         **asdict(settings.trial),
         "interval": ControlSettings.interval,
         "judge": settings.judge,
+        "avatar": "stock" if settings.avatar is None else asdict(replace(settings.avatar, path="")),
         "machine": this_machine() | {"kind": machine_kind()},
     }
 

@@ -28,12 +28,18 @@ class GauntletSummary:
     judged_poses: int | None  # None unless the judge looked at every walk
     judged_touching: int | None
     judged_self_touching: int | None  # poses with parts of the body in each other
+    mesh_touching: int | None  # of the judged poses; None unless the avatar's own surface was judged too
+    mesh_deepest: float | None  # metres
+    mesh_clearance: float | None  # metres, the least over all courses
 
     @classmethod
     def of(cls, results: Sequence[TrialResult]) -> "GauntletSummary":
         """Add up results."""
         figures = [result.judge for result in results if result.judge is not None]
         judged = len(figures) == len(results) > 0
+        meshes = [figure.mesh_touching for figure in figures if figure.mesh_touching is not None]
+        mesh_judged = judged and len(meshes) == len(figures)
+        gaps = [figure.mesh_clearance for figure in figures if figure.mesh_clearance is not None]
         costs = [cost for result in results for cost in result.plan_ms]
         return cls(
             courses=len(results),
@@ -53,4 +59,7 @@ class GauntletSummary:
             judged_poses=sum(figure.poses for figure in figures) if judged else None,
             judged_touching=sum(figure.touching for figure in figures) if judged else None,
             judged_self_touching=sum(figure.self_touching for figure in figures) if judged else None,
+            mesh_touching=sum(meshes) if mesh_judged else None,
+            mesh_deepest=max(figure.mesh_deepest or 0.0 for figure in figures) if mesh_judged else None,
+            mesh_clearance=min(gaps) if mesh_judged and gaps else None,
         )

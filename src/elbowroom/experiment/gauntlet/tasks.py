@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT, warm_up
 from elbowroom.experiment.gauntlet.course import Course, CourseMaker
@@ -25,6 +27,7 @@ class CourseTask:
     seed: int
     settings: TrialSettings
     judge: bool = False
+    avatar: AvatarReference | None = None  # None: the stock one
 
     @property
     def key(self) -> str:
@@ -33,7 +36,7 @@ class CourseTask:
 
     def run(self) -> Record:
         """The result as a plain record, see `result_of`."""
-        humanoid, maker = _opened()
+        humanoid, maker = _opened(self.avatar)
         course = maker.course(self.level, self.seed)
         controller = controller_on(humanoid, course, self.settings)
         warm_up(controller)
@@ -57,21 +60,23 @@ def result_of(record: Mapping[str, Any]) -> TrialResult:
 
 
 @lru_cache(maxsize=1)
-def _opened() -> tuple[Humanoid, CourseMaker]:
-    """The stock avatar and the maker of its courses, once in a process."""
-    humanoid = Humanoid.default()
+def _opened(avatar: AvatarReference | None) -> tuple[Humanoid, CourseMaker]:
+    """An avatar and the maker of its courses, once in a process."""
+    if avatar is None:
+        humanoid = Humanoid.default()
+    else:
+        humanoid = avatar.load(Path(avatar.path) if avatar.path else None)
     return humanoid, CourseMaker.of(humanoid)
 
 
 def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigures:
-    """What another library says about the capsules of all that was shown."""
+    """What another library says about capsules and mesh in all that was shown."""
     from elbowroom.experiment.judge.motion import ShownMotion
-    from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+    from elbowroom.experiment.judge.verdict import judge
 
     q, roots = np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown])
-    motion = ShownMotion.at_rate(q, roots, 1.0 / DT)
-    verdict = judge(motion, humanoid, course.scene, JudgeSettings(mesh=False))
-    least = verdict.capsules.least
+    verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), humanoid, course.scene)
+    least, mesh = verdict.capsules.least, verdict.mesh
     return JudgeFigures(
         poses=verdict.poses,
         touching=verdict.capsules.touching,
@@ -79,4 +84,7 @@ def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigu
         least_clearance=None if least is None else least.clearance,
         self_touching=verdict.itself.touching,
         self_deepest=verdict.itself.deepest,
+        mesh_touching=None if mesh is None else mesh.touching,
+        mesh_deepest=None if mesh is None else mesh.deepest,
+        mesh_clearance=None if mesh is None or mesh.least is None else mesh.least.clearance,
     )

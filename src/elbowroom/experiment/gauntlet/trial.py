@@ -36,6 +36,9 @@ class JudgeFigures:
     least_clearance: float | None  # metres
     self_touching: int = 0  # poses with parts of the body deeper in each other than in the natural walk
     self_deepest: float = 0.0  # metres
+    mesh_touching: int | None = None  # poses in which the avatar's own surface touches; None where it has none
+    mesh_deepest: float | None = None  # metres
+    mesh_clearance: float | None = None  # metres, the least
 
 
 @dataclass(frozen=True)
