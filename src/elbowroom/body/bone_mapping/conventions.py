@@ -31,6 +31,15 @@ class Convention:
 
 
 _TORSO = {"neck": "Neck", "head": "Head", "jaw": "Jaw"}
+_JOINTS = {
+    "Shoulder": "{}Collar",
+    "UpperArm": "{}Shoulder",
+    "LowerArm": "{}Elbow",
+    "Hand": "{}Wrist",
+    "UpperLeg": "{}Hip",
+    "LowerLeg": "{}Knee",
+    "Foot": "{}Ankle",
+}
 
 CONVENTIONS = (
     Convention(
@@ -189,16 +198,7 @@ CONVENTIONS = (
         ("Left", "Right"),
         {"hips": "Hips"} | _TORSO,
         "Chest|Chest2|Chest3|Chest4|CS_BVH",
-        {
-            "Shoulder": "{}Collar",
-            "UpperArm": "{}Shoulder",
-            "LowerArm": "{}Elbow",
-            "Hand": "{}Wrist",
-            "UpperLeg": "{}Hip",
-            "LowerLeg": "{}Knee",
-            "Foot": "{}Ankle",
-            "Toes": "{}Toe",
-        },
+        _JOINTS | {"Toes": "{}Toe"},
     ),
     Convention(
         "mocopi",
@@ -221,16 +221,7 @@ CONVENTIONS = (
         ("L_", "R_"),
         {"hips": "Pelvis"} | _TORSO,
         "Spine1|Spine2|Spine3",
-        {
-            "Shoulder": "{}Collar",
-            "UpperArm": "{}Shoulder",
-            "LowerArm": "{}Elbow",
-            "Hand": "{}Wrist",
-            "UpperLeg": "{}Hip",
-            "LowerLeg": "{}Knee",
-            "Foot": "{}Ankle",
-            "Toes": "{}Foot",
-        },
+        _JOINTS | {"Toes": "{}Foot"},
     ),
     Convention(
         "VRoid",
