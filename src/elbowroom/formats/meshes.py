@@ -11,7 +11,7 @@ from elbowroom.formats.accessors import read_accessor
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.nodes import NodeTree
-from elbowroom.formats.primitives import Primitive
+from elbowroom.formats.primitives import Primitive, morphs_of
 
 _MAX_POINTS = 5_000_000
 _MAX_PRIMITIVES = 100_000
@@ -40,7 +40,7 @@ def surface_points(gltf: Gltf, tree: NodeTree) -> SurfacePoints:
     parts: list[tuple[NDArray[np.int64], NDArray[np.float64], bool]] = []
     total = 0
     for node, field in _shown(gltf, tree):
-        primitive = Primitive(gltf, field)
+        primitive = Primitive(gltf, field, morphs_of(gltf, node, int(tree.meshes[node])))
         points = primitive.positions()
         total += len(points)
         if total > _MAX_POINTS:

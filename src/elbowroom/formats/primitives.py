@@ -1,5 +1,8 @@
 """A primitive's vertices and triangles, however they are stored."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,21 +17,45 @@ Ints = NDArray[np.int64]
 
 _SETS = 2  # of JOINTS_n / WEIGHTS_n that are read: eight joints for a vertex
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6  # primitive modes with a surface
+_MOST_TARGETS = 10_000  # morph targets of a mesh
+_MOST_MORPHS = 16  # that are on at once; of more those with the greatest weights count
+_UNMOVED: Mapping[int, float] = MappingProxyType({})
+
+
+def morphs_of(gltf: Gltf, node: int, mesh: int) -> dict[int, float]:
+    """The morph targets that the file has on for the mesh of a node, and their weights; raises `InputError`."""
+    weights = gltf.root.at("nodes").pick(Field(node, gltf.name)).at("weights")
+    if not weights.present:
+        weights = gltf.root.at("meshes").pick(Field(mesh, gltf.name)).at("weights")
+    values = weights.vector(len(weights.items(_MOST_TARGETS))) if weights.present else np.zeros(0)
+    greatest = np.argsort(-np.abs(values), kind="stable")[:_MOST_MORPHS]
+    return {int(number): float(values[number]) for number in greatest if values[number]}
 
 
 class Primitive:
     """Reads one primitive; Draco's data is decoded once, when it is first asked for."""
 
-    def __init__(self, gltf: Gltf, field: Field) -> None:
+    def __init__(self, gltf: Gltf, field: Field, morphs: Mapping[int, float] = _UNMOVED) -> None:
         self.field = field
+        self._morphs = morphs
         self.attributes = field.at("attributes")
         self._gltf = gltf
         self._packed = field.at("extensions").at(EXTENSION)
         self._draco: DracoMesh | None = None
 
     def positions(self) -> Floats:
-        """Vertices (V, 3)."""
-        return self._attribute("POSITION", "VEC3")
+        """Vertices (V, 3), moved by the morph targets that are on; raises `InputError`."""
+        points = self._attribute("POSITION", "VEC3")
+        targets = self.field.at("targets").items(_MOST_TARGETS) if self._morphs else []
+        for number, weight in self._morphs.items():
+            moves = targets[number].at("POSITION") if number < len(targets) else None
+            if moves is None or not moves.present:
+                continue
+            moved = read_accessor(self._gltf, moves, "VEC3")
+            if len(moved) != len(points):
+                raise InputError(f"{moves.place} has {len(moved)} vertices: {len(points)} are needed")
+            points = points + weight * moved
+        return points
 
     def triangles(self, count: int) -> Ints:
         """Vertex indices (T, 3) of a primitive with `count` vertices; raises `InputError`."""

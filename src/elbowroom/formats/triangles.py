@@ -11,7 +11,7 @@ from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.meshes import Skin, read_skin
 from elbowroom.formats.nodes import NodeTree
-from elbowroom.formats.primitives import Primitive
+from elbowroom.formats.primitives import Primitive, morphs_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -61,7 +61,7 @@ def _surfaces(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
 
 
 def _part(gltf: Gltf, tree: NodeTree, node: int, field: Field, skins: dict[int, Skin]) -> TriangleMesh:
-    primitive = Primitive(gltf, field)
+    primitive = Primitive(gltf, field, morphs_of(gltf, node, int(tree.meshes[node])))
     points = primitive.positions()
     triangles = primitive.triangles(len(points))
     index = int(tree.skins[node])

@@ -5,7 +5,6 @@ gives each node a place relative to its parent. A joint therefore becomes a node
 moved back by that center. The figure stands in H-Anim's default pose, in which all joints are unturned.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +14,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.hanim.displacers import Displacer, displacers_in
+from elbowroom.formats.hanim.humanoid_node import coord_of, info_of, is_centred, loa_of, path_to_humanoid, shapes_in
 from elbowroom.formats.hanim.skin import skin_weights
 from elbowroom.formats.nodes import MAX_NODES
 from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
@@ -83,14 +84,15 @@ class _Maker:
         self._looks = Looks(self._draft, library, notes)
         self._meshes: dict[int, tuple[int, Mesh] | None] = {}
         self._joints: list[tuple[Joint, Node]] = []
+        self._displacers: dict[int, tuple[Displacer, ...]] = {}  # by the Coordinate node whose points they move
         self._vertices = self._shapes = 0
         self._default_pose = default_pose
 
     def figure(self) -> HanimFigure:
         top = self._draft.add_node("figure", scale=np.full(3, self._scene.metre))
-        path = _path_to_humanoid(self._roots)
+        path = path_to_humanoid(self._roots)
         humanoid = path[-1] if path else None
-        self._centred = self._default_pose and _is_centred(humanoid)
+        self._centred = self._default_pose and is_centred(humanoid)
         parent, offset = top, np.zeros(3)
         for above in path[:-1]:
             if above.kind in TRANSFORMS:
@@ -103,8 +105,8 @@ class _Maker:
             joints=tuple(joint for joint, _ in self._joints),
             name=humanoid.text("name") if humanoid else "",
             version=humanoid.text("version") if humanoid else "",
-            loa=_loa(humanoid),
-            info=_info(self._scene, humanoid),
+            loa=loa_of(humanoid),
+            info=info_of(self._scene, humanoid),
             notes=tuple(self._notes.lines),
         )
 
@@ -122,6 +124,8 @@ class _Maker:
                 continue
             if node.kind in TRANSFORMS:
                 parent, offset = self._transform(node, parent, offset)
+            if node.kind == "HAnimSegment":
+                self._displace(node.node("coord"), [node])
             if node.kind == "HAnimHumanoid":
                 before = len(self._joints)
                 self._walk(node.nodes("skeleton") or node.nodes("humanoidBody"), parent, offset)
@@ -156,21 +160,23 @@ class _Maker:
         if made is not None:
             self._draft.add_node(node.name, parent, -offset, mesh=made[0])
 
-    def _mesh(self, node: Node, weights: dict[str, int] | None = None) -> tuple[int, Mesh] | None:
+    def _mesh(self, node: Node) -> tuple[int, Mesh] | None:
         """The glTF mesh of a Shape; None without faces."""
         geometry = node.node("geometry")
         mesh = triangles_of(geometry) if geometry else None
         if mesh is None or not len(mesh.triangles):
             return None
-        return self._add_mesh(node, mesh, weights or {}), mesh
+        return self._add_mesh(node, mesh, {}), mesh
 
-    def _add_mesh(self, node: Node, mesh: Mesh, weights: dict[str, int]) -> int:
-        self._vertices += len(mesh.points)
+    def _add_mesh(self, node: Node, mesh: Mesh, skinning: dict[str, int]) -> int:
+        moving = self._displacers.get(id(coord_of(node)), ())
+        targets = [(each, target) for each in moving if (target := each.target(mesh.sources)) is not None]
+        self._vertices += len(mesh.points) * (1 + len(targets))
         self._shapes += 1
         if self._vertices > _MAX_VERTICES or self._shapes > _MAX_SHAPES:
             raise InputError(f"{node.place}: more than {_MAX_SHAPES} shapes or {_MAX_VERTICES} vertices are shown")
         draft = self._draft
-        attributes = {"POSITION": draft.add_vertices(mesh.points, bounds=True)} | weights
+        attributes = {"POSITION": draft.add_vertices(mesh.points, bounds=True)} | skinning
         if mesh.normals is not None:
             attributes["NORMAL"] = draft.add_vertices(mesh.normals)
         if mesh.colours is not None:
@@ -181,18 +187,28 @@ class _Maker:
             node.node("appearance"), mesh.colours is not None, mesh.uvs is not None, mesh.two_sided
         )
         primitive = {"attributes": attributes, "indices": draft.add_indices(mesh.triangles), "material": material}
-        return draft.add("meshes", {"primitives": [primitive]})
+        if not targets:
+            return draft.add("meshes", {"primitives": [primitive]})
+        primitive["targets"] = [{"POSITION": draft.add_vertices(target, bounds=True)} for _, target in targets]
+        weights, names = [each.weight for each, _ in targets], [each.name for each, _ in targets]
+        return draft.add("meshes", {"primitives": [primitive], "weights": weights, "extras": {"targetNames": names}})
+
+    def _displace(self, coord: Node | None, holders: Nodes) -> None:
+        """Remember the displacers of joints or a segment for the shapes that have these points."""
+        if coord is not None and id(coord) not in self._displacers:
+            self._displacers[id(coord)] = displacers_in(holders, len(coord.vectors("point", 3)))
 
     def _skin(self, humanoid: Node, joints: list[tuple[Joint, Node]], parent: int, offset: Floats) -> None:
         """The shapes in `skin`: those that share the points of `skinCoord` follow the joints, others the humanoid."""
-        shapes = list(_shapes_in(humanoid.nodes("skin")))
-        coord = humanoid.node("skinCoord") or next((c for shape in shapes if (c := _coord(shape))), None)
-        moving = [shape for shape in shapes if coord is not None and _coord(shape) is coord]
+        shapes = list(shapes_in(humanoid.nodes("skin")))
+        coord = humanoid.node("skinCoord") or next((c for shape in shapes if (c := coord_of(shape))), None)
+        moving = [shape for shape in shapes if coord is not None and coord_of(shape) is coord]
         for shape in shapes:
             if shape not in moving:
                 self._shape(shape, parent, offset)
         if coord is None or not moving or not joints:
             return
+        self._displace(coord, [node for _, node in joints])
         weights = skin_weights([node for _, node in joints], len(coord.vectors("point", 3)))
         binds = np.tile(np.eye(4), (len(joints), 1, 1))
         binds[:, :3, 3] = [-joint.centre for joint, _ in joints]
@@ -213,62 +229,3 @@ class _Maker:
                 "WEIGHTS_0": self._draft.add_vertices(weights.weights[mesh.sources]),
             }
             self._draft.add_node(shape.name or "skin", mesh=self._add_mesh(shape, mesh, attributes), skin=skin)
-
-
-def _path_to_humanoid(roots: Nodes) -> Nodes:
-    """The nodes from a root down to the first HAnimHumanoid, both included; empty if there is none."""
-    waiting: list[tuple[Node, tuple[Node, ...]]] = [(node, ()) for node in reversed(roots)]
-    seen: set[int] = set()
-    while waiting:
-        node, above = waiting.pop()
-        if node.kind == "HAnimHumanoid":
-            return [*above, node]
-        if id(node) not in seen:
-            seen.add(id(node))
-            waiting += [(part, (*above, node)) for part in reversed(shown_parts(node))]
-    return []
-
-
-def _shapes_in(nodes: Nodes) -> Iterator[Node]:
-    waiting, visited = list(reversed(nodes)), 0
-    while waiting:
-        node = waiting.pop()
-        visited += 1
-        if visited > MAX_VISITED:
-            raise InputError(f"{node.place}: the skin has more than {MAX_VISITED} nodes")
-        if node.kind == "Shape":
-            yield node
-        waiting += reversed(shown_parts(node))
-
-
-def _coord(shape: Node) -> Node | None:
-    geometry = shape.node("geometry")
-    return geometry.node("coord") if geometry else None
-
-
-def _is_centred(humanoid: Node | None) -> bool:
-    """Whether the joints have their places by `center`, as H-Anim has it, and not by `translation`, as robots do."""
-    waiting = humanoid.nodes("skeleton") or humanoid.nodes("humanoidBody") if humanoid else []
-    waiting, visited = list(waiting), 0
-    while waiting and visited < MAX_VISITED:
-        node = waiting.pop()
-        visited += 1
-        if node.kind == "HAnimJoint" and node.vector("center", (0.0, 0.0, 0.0)).any():
-            return True
-        waiting += shown_parts(node)
-    return False
-
-
-def _loa(humanoid: Node | None) -> int | None:
-    loa = int(humanoid.number("loa", -1.0)) if humanoid else -1
-    return loa if 0 <= loa <= 4 else None
-
-
-def _info(scene: X3dScene, humanoid: Node | None) -> dict[str, str]:
-    """The header's `meta` and the humanoid's `info`, which is written "key=value"."""
-    info = dict(scene.meta)
-    for line in humanoid.strings("info")[:100] if humanoid else ():
-        key, equals, value = line.partition("=")
-        if equals:
-            info.setdefault(key.strip()[:100], " ".join(value.split())[:200])
-    return info
