@@ -17,7 +17,6 @@ from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.displacers import Displacer, displacers_in
 from elbowroom.formats.hanim.humanoid_node import coord_of, info_of, is_centred, loa_of, path_to_humanoid, shapes_in
 from elbowroom.formats.hanim.skin import skin_weights
-from elbowroom.formats.nodes import MAX_NODES
 from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
 from elbowroom.formats.x3d.expand import expand
 from elbowroom.formats.x3d.files import Library, parse_x3d, read_bytes
@@ -31,6 +30,7 @@ from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
 
+_MAX_NODES = 10_000  # Transforms, joints and shapes, those that USE repeats counted each time
 _MAX_VERTICES = 2_000_000
 _MAX_SHAPES = 3_000  # different ones
 
@@ -136,8 +136,8 @@ class _Maker:
     def _transform(self, node: Node, parent: int, offset: Floats) -> tuple[int, Floats]:
         """The glTF node of a Transform, and what its origin is in the coordinates of the nodes inside."""
         placing = placing_of(node, self._scene.radian)
-        if len(self._draft.nodes) >= MAX_NODES:
-            raise InputError(f"{node.place}: the figure has more than {MAX_NODES} Transforms, joints and shapes")
+        if len(self._draft.nodes) >= _MAX_NODES:
+            raise InputError(f"{node.place}: the figure has more than {_MAX_NODES} Transforms, joints and shapes")
         is_joint = node.kind == "HAnimJoint"
         rotation = quaternion.IDENTITY if is_joint and self._centred else placing.rotation
         made = self._draft.add_node(
