@@ -18,7 +18,7 @@ from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.joint_step import JointStep
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.exact.upper_body import Effort, UpperBody
 from elbowroom.planning.goal import goal_configurations
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.boxes import Boxes
@@ -42,7 +42,7 @@ def walk(horizon: int, begin: float) -> RootPath:
 def dressing_of(body: UpperBody, path: RootPath) -> Dressing:
     """A plan's dressing along a path that begins in the natural walk; nothing searched yet."""
     start = goal_configurations(body.goals, path)[0]
-    return body.plan(path, start, np.zeros_like(start), refine=False).dressing
+    return body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT).dressing
 
 
 def shade(share: float) -> str:

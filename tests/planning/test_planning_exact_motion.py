@@ -117,6 +117,34 @@ def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> 
             assert all(np.all((value >= low - 1e-6) & (value <= high + 1e-6)) for value, _ in curve)
 
 
+def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoid: Humanoid) -> None:
+    wall = scene_of([[0.0, 1.25, 1.6]], [[3.0, 0.1, 0.6]])  # legs pass, nobody else does
+    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
+    checks = []
+    for _ in range(40):
+        motion = planner.plan_motion(roots, query)
+        local = motion.local
+        assert local.velocities is not None
+        assert motion.root.path.start_time == query.time
+        checks.append(local.checks)
+        query = query._replace(
+            time=query.time + T,
+            root=RootState(*motion.root.path.states[1].tolist()),
+            upper=local.configurations[1],
+            velocity=local.velocities[1],
+        )
+    assert checks[0] > 0
+    assert checks[-10:] == [0] * 10
+    assert local.blockade is not None
+    assert local.blockade.boxes == (0,)
+    assert query.time - T < local.blockade.time < query.time + 3.0
+    back = planner.plan_motion(roots, query._replace(command=Command(forward=-1.0)))
+    assert back.root.path.states[-1, 1] < query.root.z - 0.1
+    assert back.local.blockade is None
+
+
 def test_back_in_the_natural_swing_half_a_second_after_a_lone_obstacle(humanoid: Humanoid) -> None:
     scene = scene_of([[0.36, 0.95, 2.0]], [[0.1, 0.3, 0.1]])
     keys, _, goals, places = played(humanoid, scene, 30)

@@ -14,7 +14,7 @@ from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.joint_step import JointStep
 from elbowroom.planning.exact.own_body import SPARE
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.exact.upper_body import Effort, UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.result import BlockadeKind, PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -57,7 +57,7 @@ def walk(horizon: int = 8) -> RootPath:
 def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> Dressing:
     body = UpperBody(humanoid, scene, SETTINGS)
     start = goal_configurations(natural_walk(), path)[0]
-    return body.plan(path, start, np.zeros_like(start), refine=False).dressing
+    return body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT).dressing
 
 
 def step_of(dressing: Dressing) -> JointStep:
@@ -166,10 +166,10 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     plans = []
     for _ in range(2):
         body = UpperBody(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
-        coarse = body.plan(path, start, np.zeros_like(start), refine=False)
+        coarse = body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT)
         plans.append(body.plan(path, start, np.zeros_like(start)))
         body.reset()
-        again = body.plan(path, start, np.zeros_like(start), refine=False)
+        again = body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT)
         assert again.reached == coarse.reached
     assert coarse.reached < path.horizon
     assert plans[0].reached == path.horizon

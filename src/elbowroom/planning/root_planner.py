@@ -62,6 +62,7 @@ class RootPlanner:
         self._line: TravelLine | None = None
         self._last: Floats | None = None
         self._evading: Evading = None
+        self._offered: list[Candidate] = []
 
     @property
     def moving(self) -> MovingBoxes:
@@ -113,9 +114,29 @@ class RootPlanner:
     ) -> Iterator[RootPlan]:
         """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
 
-        The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Whoever
-        takes one asks for no more: the last one that was given is the one that is being followed.
+        The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. The last one
+        that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
         """
+        self._offered.clear()
+        for plan in self._candidates(start, command, horizon, interval, start_time, paces):
+            self._offered.append((plan, self._evading))
+            yield plan
+
+    def follow(self, plan: RootPlan) -> None:
+        """Take one of the paths that `candidates` gave last."""
+        for offered, evading in self._offered:
+            if offered is plan:
+                self._taken(offered, evading)
+
+    def _candidates(
+        self,
+        start: RootState,
+        command: Command,
+        horizon: int,
+        interval: float,
+        start_time: float,
+        paces: Sequence[float],
+    ) -> Iterator[RootPlan]:
         commanded = self.plan(start, command, horizon, interval, start_time)
         known = self._evading
         slow = wanted_speed(command, self.settings.motion) < _SLOW

@@ -14,7 +14,8 @@ from numba.core.dispatcher import Dispatcher
 
 def kernels() -> list[Any]:
     """The kernels of our modules imported so far that are kept on disk once they are compiled."""
-    found: list[Any] = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
+    # By `type`, not `isinstance`: that would ask weak proxies for their class, and some of them have lost their object.
+    found: list[Any] = [thing for thing in gc.get_objects() if issubclass(type(thing), Dispatcher)]
     ours = (kernel for kernel in found if kernel.__module__.startswith("elbowroom."))
     return [kernel for kernel in ours if not isinstance(kernel._cache, NullCache)]
 

@@ -95,12 +95,12 @@ class Dressing:
         self._waist: GroupWay | None = None
         self._crouching = self._none(DofGroup.WAIST)  # infinite where the legs have no room to crouch as a node does
 
-    def motion(self, *, held: bool) -> LocalPlan | None:
-        """The motion, if there is one; `held`: the last plan's waist may be tried."""
+    def motion(self, *, held: bool, joint: bool) -> LocalPlan | None:
+        """The motion, if there is one; `held`: the last plan's waist may be tried, `joint`: all groups together."""
         found = self.apart()
         if found.failed is not None and held:
             found = self.with_kept_waist()
-        if found.failed is not None:
+        if found.failed is not None and joint:
             found = self.together()
         if found.failed is not None:
             return None
@@ -143,7 +143,7 @@ class Dressing:
             if len(ways.ways) == len(LOCAL_GROUPS):
                 break
             failed, at = len(ways.ways), min(self.last_reached, self.path.horizon - 1)
-            step.steps[failed][at, answer.nodes[at, failed], answer.nodes[at + 1, failed]] = np.inf
+            step.close(failed, at, answer.nodes[at : at + 2, failed])
         return ways
 
     def blockade(self) -> Blockade:

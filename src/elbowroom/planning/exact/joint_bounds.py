@@ -100,7 +100,7 @@ def _behind(prices: Floats32, steps: Floats32) -> Floats32:
             onward[u] = out[t + 1, u] + prices[t + 1, u]
         for v in range(prices.shape[1]):
             row, best = steps[t, v], np.float32(np.inf)
-            for u in range(prices.shape[1]):
+            for u in range(np.uint64(prices.shape[1])):
                 best = min(best, row[u] + onward[u])
             out[t, v] = best
     return out

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.kinematics import chest_frames
+from elbowroom.jit import kernel
 from elbowroom.planning.axis_gaps import arm_clearances
 from elbowroom.planning.exact.joint import JointWay, joint_way
 from elbowroom.planning.exact.joint_bounds import Problem, way_costs
@@ -30,6 +31,7 @@ Indices = NDArray[np.int64]
 
 _FIRST = 8  # waists of each slice that are filled in at first
 _GROWTH = 3
+_ALIKE = 0.1  # radians, of both ends together: steps so near to one that touches are ruled out with it
 _INFINITE = np.float32(np.inf)
 
 
@@ -82,12 +84,14 @@ class JointStep:
         self.filled = np.zeros((depths, waists), np.bool_)
         self.prices = [np.full((depths, waists, arm.base.shape[1]), _INFINITE, np.float32) for arm in arms]
         self._lanes: dict[tuple[int, int], Lanes] = {}
+        self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
 
     def search(self) -> JointWay:
         """The cheapest way for all three groups; nodes count as in `GroupNodes`."""
-        alone = way_costs(self.nodes[0].base, self.steps[0])
-        for group, steps in zip(self.nodes[1:], self.steps[1:], strict=True):
-            alone = alone + way_costs(group.base, steps).min()
+        for g in range(len(self.nodes)):
+            if g not in self._alone:
+                self._alone[g] = way_costs(self.nodes[g].base, self.steps[g])
+        alone = self._alone[0] + self._alone[1].min() + self._alone[2].min()
         count = _FIRST
         while True:
             whole = count >= alone.shape[1]
@@ -179,6 +183,15 @@ class JointStep:
             self._lanes[group, depth] = Lanes(*both, known.reach)
         return self._lanes[group, depth]
 
+    def close(self, group: int, depth: int, nodes: Indices) -> None:
+        """Rule out the step of a group between two nodes (2,) from `depth` to the next, and those that are like it."""
+        near = []
+        for at, node in enumerate(nodes):
+            known = self.configurations(group, depth + at)
+            near.append(np.sum((known - known[node]) ** 2, axis=1))
+        self.steps[group][depth][near[0][:, None] + near[1] <= _ALIKE * _ALIKE] = np.inf
+        self._alone.pop(group, None)
+
     @cached_property
     def steps(self) -> list[Floats32]:
         """What the groups' steps cost, each (n, W+E, W+E)."""
@@ -221,26 +234,38 @@ def _padded_segments(postures: Postures) -> Floats32:
 
 def _steps(group: GroupNodes, weight: float) -> Floats32:
     """What steps cost, (n, W+E, W+E): `weight` times the squared change of the deviation from the goal."""
-    known, own = _padded(group.postures), group.own
-    width, extra = len(known), own.shape[1]
-    depths = len(own)
     longest = group.postures.step**2 * (1.0 + 1e-6)
-    moves = np.full((width, width), np.inf, np.float32)
-    moves[: len(group.postures.moves)] = group.postures.moves
-    out = np.empty((depths - 1, width + extra, width + extra), np.float32)
-    for t in range(depths - 1):
-        row = out[t]
-        row[:width, :width] = moves
-        before, after = np.concatenate([known, own[t]]), np.concatenate([known, own[t + 1]])
-        row[width:] = _squares(own[t], after)
-        row[:width, width:] = _squares(known, own[t + 1])
-        way = group.goals[t + 1] - group.goals[t]
-        cost = weight * (row + 2.0 * (before @ way)[:, None] - 2.0 * (after @ way) + way @ way)
-        row[:] = np.where(row <= longest, np.maximum(cost, 0.0), np.inf)
+    return _step_costs(_padded(group.postures), group.postures.moves, group.own, group.goals, longest, weight)
+
+
+@kernel
+def _step_costs(known: Floats, moves: Floats32, own: Floats, goals: Floats, longest: float, weight: float) -> Floats32:
+    """`_steps` for postures (W, d) with the squared lengths `moves` (V, W) of their steps, and `own` (n+1, E, d)."""
+    width, size, extra = known.shape[0], known.shape[1], own.shape[1]
+    nodes = width + extra
+    out = np.empty((own.shape[0] - 1, nodes, nodes), np.float32)
+    ends, slopes = np.empty((2, nodes, size)), np.empty((2, nodes))
+    ends[:, :width] = known
+    for t in range(own.shape[0] - 1):
+        square = 0.0
+        slopes[:] = 0.0
+        for i in range(2):
+            ends[i, width:] = own[t + i]
+        for j in range(size):
+            way = goals[t + 1, j] - goals[t, j]
+            square += weight * way * way
+            for i in range(2):
+                for v in range(nodes):
+                    slopes[i, v] += 2.0 * weight * way * ends[i, v, j]
+        for v in range(nodes):
+            row = out[t, v]
+            for u in range(nodes):
+                move = 0.0
+                if v < width and u < width:
+                    move = moves[v, u] if v < moves.shape[0] else np.inf
+                else:
+                    for j in range(size):
+                        move += (ends[1, u, j] - ends[0, v, j]) ** 2
+                cost = max(weight * move + square + slopes[0, v] - slopes[1, u], 0.0)
+                row[u] = cost if move <= longest else np.inf
     return out
-
-
-def _squares(first: Floats, second: Floats) -> Floats:
-    away = first[:, None] - second
-    squares: Floats = np.einsum("vui,vui->vu", away, away)
-    return squares

@@ -86,6 +86,7 @@ class OwnBody:
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
         self._prices: dict[tuple[int, int], Floats32] = {}
         self._known: dict[bytes, int] = {}
+        self._held: dict[tuple[int, int, bytes], _Around] = {}
         self.alert = 0  # plans to come that look at the body from the beginning, as one before ran into it
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
@@ -167,10 +168,43 @@ class OwnBody:
         rows = np.flatnonzero(~natural | (np.abs(own - own[:, :1]).max(axis=(1, 2)) > _SAME))
         if not len(rows):
             return out
-        parts = self.parts(side, waists[rows], states[rows], None if other is None else other[rows])
+        around = self._around(side, postures, waists[rows], states[rows], None if other is None else other[rows])
         segments = pose(postures.limb, own[rows].reshape(len(rows) * extra, -1))
-        _mark(postures.lanes, postures.balls, segments, parts.axes, parts.allowed, rows, natural, out)
+        held = np.stack([one.axes for one in around])
+        out[rows, width:] = _own_folded(segments, held, around[0].allowed, natural[rows])
+        for row, one in zip(rows, around, strict=True):
+            if not natural[row]:
+                out[row, :width] |= one.folded
         return out
+
+    def _around(
+        self, side: int, postures: Postures, waists: Floats, states: Floats, other: Floats | None
+    ) -> list["_Around"]:
+        """The body around arm `side` at N waists, root states and postures of the other arm, if it is to be minded.
+
+        A row that was looked at for an earlier plan is known by its content.
+        """
+        content = np.concatenate([waists, states[:, 3:], *([] if other is None else [other])], axis=1)
+        group = side, id(postures.configurations)
+        names = [(*group, row.tobytes()) for row in np.round(content, 6) + 0.0]
+        if len(self._held) > _REMEMBERED:
+            self._held.clear()
+        missing = [n for n, name in enumerate(names) if name not in self._held]
+        if missing:
+            parts = self.parts(side, waists[missing], states[missing], None if other is None else other[missing])
+            found = _rows_folded(postures.lanes, postures.balls, parts.axes, parts.allowed)
+            for n, axes, marks in zip(missing, parts.axes, found, strict=True):
+                self._held[names[n]] = _Around(postures, axes, parts.allowed, marks)
+        return [self._held[name] for name in names]
+
+
+class _Around(NamedTuple):
+    """An arm's postures among the other parts of the body, held still."""
+
+    postures: Postures  # kept, so that no other set takes its number
+    axes: Floats32  # (P, 6) as in `Parts`
+    allowed: Floats32  # (C, P)
+    folded: Bools  # (W,) which postures come too near
 
 
 @exact_kernel
@@ -190,29 +224,27 @@ def _looked_at(states: Floats, keys: Floats, rates: Floats, interval: float, cho
 
 
 @exact_kernel
-def _mark(
-    lanes: Floats32,
-    balls: Floats,
-    own: Floats32,
-    axes: Floats32,
-    allowed: Floats32,
-    rows: Indices,
-    natural: Bools,
-    out: Bools,
-) -> None:
-    """Mark in `out` (n+1, W + E) the nodes that are folded in some rows (R,): known ones, and `own` (C, 6, R E).
+def _rows_folded(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats32) -> Bools:
+    """`folded` for parts `axes` (R, P, 6) of some rows: shape (R, 16 B)."""
+    out = np.empty((axes.shape[0], lanes.shape[0] * BLOCK), np.bool_)
+    for i in range(axes.shape[0]):
+        out[i] = folded(lanes, balls, axes[i], allowed, SPARE)
+    return out
 
-    `axes` (R, P, 6) are what is in the way in each of them.
+
+@exact_kernel
+def _own_folded(own: Floats32, axes: Floats32, allowed: Floats32, natural: Bools) -> Bools:
+    """Which of each row's own postures (C, 6, R E), row after row, come too near to the parts `axes` (R, P, 6): (R, E).
+
+    The first of a row, the goal's, does not where the others are `natural` (R,).
     """
-    width = lanes.shape[0] * BLOCK
-    extra = own.shape[2] // rows.shape[0]
+    extra = own.shape[2] // axes.shape[0]
+    out = np.empty((axes.shape[0], extra), np.bool_)
     every, gaps = np.ones(axes.shape[1], np.bool_), np.empty(extra, np.float32)
-    for i in range(rows.shape[0]):
-        row = out[rows[i]]
-        if not natural[rows[i]]:
-            row[:width] |= folded(lanes, balls, axes[i], allowed, SPARE)
+    for i in range(axes.shape[0]):
         gaps[:] = np.inf
         mine = own[:, :, i * extra : (i + 1) * extra].copy()
         lower_to_body(mine, axes[i], allowed, every, gaps)
         for e in range(extra):
-            row[width + e] = gaps[e] < SPARE and not (e == 0 and natural[rows[i]])
+            out[i, e] = gaps[e] < SPARE and not (e == 0 and natural[i])
+    return out

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
+from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
+from elbowroom.planning.exact.whole import Stand, Whole, first_part, part, stands
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -30,14 +31,15 @@ Floats = NDArray[np.float64]
 _EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that has no way, at which braking is tried
 _FARTHER = 0.05  # metres that a slower way must get beyond the place where a faster one failed
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
+_FAR_OFF = 1.2  # seconds until a place that is not asked about yet
 _STANDING = 0.02  # metres: a path that is shorter stands
 
 
-class _Whole(NamedTuple):
-    """A motion over the whole look-ahead."""
+class _Tried(NamedTuple):
+    """A root path and how far the upper body got on it."""
 
     root: RootPlan
-    local: LocalPlan
+    upper: UpperPlan
 
 
 class ExactPlanner:
@@ -48,12 +50,16 @@ class ExactPlanner:
     ) -> None:
         self.settings = settings or ExactSettings()
         self._body = UpperBody(humanoid, scene, self.settings, motions)
-        self._last: _Whole | None = None
+        self._last: Whole | None = None
+        self._stand: Stand | None = None
         self._blockade: Blockade | None = None
+        self._turn = self._paths = 0  # of the paths that are thought through one after the other, plan by plan
+        self._thought_of: tuple[float, float] | None = None  # the place that ended the commanded path when it was
 
     def reset(self) -> None:
         """Forget the last plan and the postures that were added."""
-        self._last = self._blockade = None
+        self._last = self._stand = self._blockade = None
+        self._turn = 0
         self._body.reset()
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
@@ -63,47 +69,79 @@ class ExactPlanner:
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
-        whole = self._whole(root_planner, query)
+        stand, alone = self._stand, not len(root_planner.moving)
+        again = alone and stand is not None and stand.answers(query, self._body.versions)
+        if again and stand is not None and stand.left == 0:
+            whole = stand.at(query.time)
+        else:
+            before = self._body.versions
+            whole = self._whole(root_planner, query)
+            left = stand.left - 1 if again and stand is not None else max(self._paths - 1, 0)
+            known = alone and self._body.versions == before and stands(whole, query)
+            self._stand = Stand(query, before, whole, left) if known else None
         self._last = whole
-        return _first_part(whole, query.horizon)
+        return first_part(whole, query.horizon)
 
-    def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> _Whole:
+    def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
         horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
-        first: tuple[RootPlan, UpperPlan] | None = None
-        blocked_at = 0.0
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
+        tried: list[_Tried] = []
+        blocked_at = 0.0
         for root in root_planner.candidates(*at):
-            if (
-                first is not None
-                and not len(root_planner.moving)
-                and root.kind is not RootPlanKind.EVASION
-                and _way(root.path, horizon) < blocked_at + _FARTHER
-            ):
+            if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
-            upper = self._dress(root.path, query, refine=first is None)
+            upper = self._dress(root.path, query, Effort.QUICK)
+            if not tried and upper.reached < horizon and self._is_new(upper):
+                upper = self._dress(root.path, query, Effort.REFINED)
             if upper.reached == horizon:
-                return _Whole(root, upper.plan)
-            if first is None or (len(root_planner.moving) and upper.reached > first[1].reached):
-                first = root, upper
+                self._turn, self._thought_of = (self._turn, self._thought_of) if tried else (0, None)
+                return Whole(root, upper.plan)
+            tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
-        assert first is not None
-        return self._stop(root_planner, query, *first)
+        return self._thought_through(root_planner, query, tried) or self._stop(root_planner, query, tried)
 
-    def _stop(self, root_planner: RootPlanner, query: MotionQuery, root: RootPlan, upper: UpperPlan) -> _Whole:
+    def _is_new(self, upper: UpperPlan) -> bool:
+        """Whether the path as commanded ends at another place than the one that it was thought through for."""
+        place = _blocked_place(upper)
+        if self._thought_of is not None and math.dist(place, self._thought_of) < _SAME_PLACE:
+            return False
+        self._thought_of, self._turn = place, 0
+        return True
+
+    def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole | None:
+        """A path on which there is a way after all: in each plan another one is thought through with all means.
+
+        The commanded one as soon as it is blocked, then the one that leads farthest, and so on.
+        """
+        ranked = [0, *sorted(range(1, len(tried)), key=lambda i: -tried[i].upper.reached)]
+        turn, self._paths, self._turn = self._turn % len(tried), len(tried), self._turn + 1
+        if self._turn == 1:
+            return None
+        root = tried[ranked[turn]].root
+        upper = self._dress(root.path, query, Effort.JOINT if turn else Effort.REFINED)
+        if upper.reached < root.path.horizon:
+            return None
+        root_planner.follow(root)
+        return Whole(root, upper.plan)
+
+    def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole:
         """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind."""
-        why = self._why(upper)
-        for moving in _moving(upper.reached):
+        root, upper = max(tried, key=lambda one: one.upper.reached) if len(root_planner.moving) else tried[0]
+        root_planner.follow(root)
+        why = self._why(upper, query)
+        brakings = [(moving, Effort.QUICK) for moving in _moving(upper.reached)] + [(0, Effort.JOINT)]
+        for moving, effort in brakings:
             states = root.path.states.copy()
             brake(states, moving, query.interval, root_planner.bounds)
             path = replace(root.path, states=states)
-            stopping = self._dress(path, query)
+            stopping = self._dress(path, query, effort)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                return _Whole(replace(root, path=path, kind=kind), replace(stopping.plan, blockade=why))
-        whole = self._continued(query) or _Whole(root, upper.plan)
+                return Whole(replace(root, path=path, kind=kind), replace(stopping.plan, blockade=why))
+        whole = self._continued(query) or Whole(root, upper.plan)
         return whole._replace(local=replace(whole.local, blockade=why))
 
-    def _continued(self, query: MotionQuery) -> _Whole | None:
+    def _continued(self, query: MotionQuery) -> Whole | None:
         """What is left of the last plan, if it led to where this one starts."""
         if self._last is None or not len(self._last.local.configurations):
             return None
@@ -112,22 +150,32 @@ class ExactPlanner:
         if not 0 <= at < len(root.path.states) - 1 or not np.allclose(root.path.states[at], query.root, atol=1e-9):
             return None
         path = RootPath(query.time, query.interval, root.path.states[at:])
-        rest = _part(local, slice(at, None))
-        return _Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
+        rest = part(local, slice(at, None))
+        return Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
 
-    def _why(self, upper: UpperPlan) -> Blockade:
-        """Why there is no way; an earlier answer for the same place where this one names no obstacles.
+    def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:
+        """Why there is no way; None as long as that is far off: most of it is solved when it has come nearer.
 
-        Near the end of a way it is now and then only the motion between free postures that touches.
+        On the way to a place that was asked about before it is the answer of then; one who has come to a stand asks
+        anew. Near the end of a way it is now and then only the motion between free postures that touches: the earlier
+        answer, which names obstacles, says more.
         """
-        why, last = upper.dressing.blockade(), self._blockade
-        if why.kind is BlockadeKind.MOTION and last is not None and math.dist(why.place, last.place) < _SAME_PLACE:
-            why = replace(last, ahead=why.ahead)
+        path, depth, last = upper.dressing.path, upper.dressing.blocked[1], self._blockade
+        place, moves = _blocked_place(upper), bool(query.root.forward or query.root.lateral)
+        near = last is not None and math.dist(place, last.place) < _SAME_PLACE
+        if moves and not near and depth * path.interval > _FAR_OFF:
+            return None
+        if last is not None and near and moves:
+            why = replace(last, time=path.start_time + path.interval * depth, ahead=_way(path, depth))
+        else:
+            why = upper.dressing.blockade()
+            if last is not None and near and why.kind is BlockadeKind.MOTION:
+                why = replace(last, time=why.time, ahead=why.ahead)
         self._blockade = why
         return why
 
-    def _dress(self, path: RootPath, query: MotionQuery, *, refine: bool = False) -> UpperPlan:
-        return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, refine=refine)
+    def _dress(self, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
+        return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, effort)
 
     def _kept(self, path: RootPath) -> Floats | None:
         """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""
@@ -142,6 +190,21 @@ class ExactPlanner:
         return kept
 
 
+def _blocked_place(upper: UpperPlan) -> tuple[float, float]:
+    """Where the root is, x and z, at the key time that the upper body did not reach."""
+    x, z = upper.dressing.path.states[upper.dressing.blocked[1], :2].tolist()
+    return x, z
+
+
+def _leads_nowhere_new(root: RootPlan, root_planner: RootPlanner, least: float) -> bool:
+    """Whether a path along the same line is shorter than `least` metres, among things that stand still."""
+    return (
+        not len(root_planner.moving)
+        and root.kind is not RootPlanKind.EVASION
+        and _way(root.path, root.path.horizon) < least
+    )
+
+
 def _moving(reached: int) -> Iterator[int]:
     """Key frames at which to begin to brake, latest first; at last at once."""
     yield from (reached - earlier for earlier in _EARLIER if reached - earlier > 0)
@@ -151,16 +214,3 @@ def _moving(reached: int) -> Iterator[int]:
 def _way(path: RootPath, depth: int) -> float:
     """Metres walked until a key frame."""
     return float(np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum())
-
-
-def _first_part(whole: _Whole, horizon: int) -> Motion:
-    """The first `horizon` key intervals."""
-    path, local = whole.root.path, whole.local
-    shown = replace(path, states=path.states[: horizon + 1])
-    return Motion(replace(whole.root, path=shown), _part(local, slice(horizon + 1)))
-
-
-def _part(local: LocalPlan, rows: slice) -> LocalPlan:
-    """Some key times of a plan."""
-    velocities = None if local.velocities is None else local.velocities[rows]
-    return replace(local, configurations=local.configurations[rows], goals=local.goals[rows], velocities=velocities)

@@ -5,6 +5,7 @@ way then, postures are added where it was blocked, and it is tried again.
 """
 
 from collections.abc import Iterator
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,14 @@ _SHELVES, _MASKS = 8, 2  # times the horizon: results of key intervals that are 
 _SPARE = 0.05  # metres
 
 
+class Effort(Enum):
+    """What is tried before it is said that there is no way."""
+
+    QUICK = "quick"  # the groups one after the other
+    JOINT = "joint"  # then all together
+    REFINED = "refined"  # then with more postures
+
+
 class UpperPlan(NamedTuple):
     """A local plan and how far it got."""
 
@@ -79,6 +88,11 @@ class UpperBody:
         self._boxes, self._moving = scene.boxes.table, scene.moving
         self._legs = LoweredLegs(self._model, scene.boxes)
 
+    @property
+    def versions(self) -> tuple[int, ...]:
+        """How often postures were added to each group; a number that is the same means the same posture sets."""
+        return tuple(pool.version for pool in self._pools.values())
+
     def plan(
         self,
         path: RootPath,
@@ -86,21 +100,20 @@ class UpperBody:
         velocity: Floats,
         kept: Floats | None = None,
         others: MovingBoxes | None = None,
-        *,
-        refine: bool = True,
+        effort: Effort = Effort.REFINED,
     ) -> UpperPlan:
         """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's.
 
-        `others` move besides the scene's own. Postures are added where it is blocked if `refine`.
+        `others` move besides the scene's own.
         """
         moving = self._moving if others is None else self._moving + others
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
         for attempt in range(self.settings.refinements + 1):
             dressing = self._dressing(path, start, velocity, kept, near)
-            found = dressing.motion(held=kept is not None)
+            found = dressing.motion(held=kept is not None, joint=effort is not Effort.QUICK)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing)
-            if not refine or attempt == self.settings.refinements or not self._refine(dressing):
+            if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
                 break
         ledger, goals = dressing.ledger, dressing.goals
         plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence(), joint=ledger.joint)

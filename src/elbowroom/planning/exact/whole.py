@@ -1,0 +1,66 @@
+"""A motion over the whole look-ahead: what is handed over of it, and when it answers a later query too."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowroom.planning.motion import Motion, MotionQuery
+from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root_plan import RootPlan
+
+
+class Whole(NamedTuple):
+    """A motion over the whole look-ahead."""
+
+    root: RootPlan
+    local: LocalPlan
+
+
+def first_part(whole: Whole, horizon: int) -> Motion:
+    """The first `horizon` key intervals."""
+    path, local = whole.root.path, whole.local
+    shown = replace(path, states=path.states[: horizon + 1])
+    return Motion(replace(whole.root, path=shown), part(local, slice(horizon + 1)))
+
+
+def part(local: LocalPlan, rows: slice) -> LocalPlan:
+    """Some key times of a plan."""
+    velocities = None if local.velocities is None else local.velocities[rows]
+    return replace(local, configurations=local.configurations[rows], goals=local.goals[rows], velocities=velocities)
+
+
+class Stand(NamedTuple):
+    """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
+
+    query: MotionQuery
+    versions: tuple[int, ...]  # of the posture sets
+    whole: Whole
+    left: int  # paths that have not had their turn to be thought through
+
+    def answers(self, query: MotionQuery, versions: tuple[int, ...]) -> bool:
+        """Whether this is the answer to `query` too."""
+        known, asked = self.query, query
+        same = known.root == asked.root and known.command == asked.command and versions == self.versions
+        same &= known.horizon == asked.horizon and known.interval == asked.interval
+        return same and bool(
+            np.array_equal(known.upper, asked.upper) and np.array_equal(known.velocity, asked.velocity)
+        )
+
+    def at(self, time: float) -> Whole:
+        """The answer at another time, for which nothing was searched."""
+        root, local = self.whole.root, self.whole.local
+        later = time - self.query.time
+        evidence = tuple(replace(row, checks=0, nodes=0, enhanced=0, nanoseconds=0) for row in local.evidence)
+        why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + later)
+        path = replace(root.path, start_time=time)
+        return Whole(
+            replace(root, path=path, checks=0, nanoseconds=0),
+            replace(local, evidence=evidence, joint=None, blockade=why),
+        )
+
+
+def stands(whole: Whole, query: MotionQuery) -> bool:
+    """Whether a plan leaves all as it is."""
+    still = not np.any(whole.root.path.states[:, 3:6]) and not np.any(query.velocity)
+    return still and bool((whole.local.configurations == query.upper).all())
