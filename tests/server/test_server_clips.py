@@ -19,7 +19,7 @@ from elbowroom.server.avatar_store import STOCK
 from elbowroom.server.clip_store import MAX_FILES, ClipStore
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
-from elbowroom.server.messages import Configure
+from elbowroom.server.schema.commands import Configure
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import WalkSettings
 from elbowroom.server.wanted import Wanted

@@ -13,23 +13,12 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from elbowroom.server import app, changes, session
 from elbowroom.server.library import Library
-from elbowroom.server.messages import (
-    MAX_MESSAGE,
-    AvatarMessage,
-    ClockMessage,
-    Configure,
-    Crossed,
-    Hello,
-    Loading,
-    Overlays,
-    Ping,
-    Plan,
-    Reset,
-    SceneMessage,
-    Settings,
-    Status,
-)
 from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.schema.bounds import MAX_MESSAGE
+from elbowroom.server.schema.commands import ClockMessage, Configure, Overlays, Ping, Reset
+from elbowroom.server.schema.menus import Hello, Settings
+from elbowroom.server.schema.picture import AvatarMessage, SceneMessage
+from elbowroom.server.schema.progress import Crossed, Loading, Plan, Status
 from elbowroom.server.walk import Walk
 from live_session import Client, client_of, running
 

@@ -13,8 +13,8 @@ from elbowroom.body.stock import stock_avatar_path
 from elbowroom.formats.gltf import read_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.geometry import quaternion
-from elbowroom.server.messages import Placement
 from elbowroom.server.pose import Poser, placement
+from elbowroom.server.schema.picture import Placement
 from shared_data import SHARED, needs_shared
 
 FILES = [

@@ -14,7 +14,10 @@ from hypothesis import strategies as st
 from elbowroom.errors import InputError
 from elbowroom.server import typescript
 from elbowroom.server.codec import decode_client, decode_server, encode, tag
-from elbowroom.server.messages import ClientMessage, Configure, Input, Length, Notice, Range, ServerMessage
+from elbowroom.server.messages import ClientMessage, ServerMessage
+from elbowroom.server.schema.bounds import Length, Range
+from elbowroom.server.schema.commands import Configure, Input
+from elbowroom.server.schema.progress import Notice
 
 GENERATED = Path(__file__).parents[2] / "web" / "src" / "generated" / "messages.ts"
 

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.library import Library
-from elbowroom.server.messages import ClockMessage, Input, Notice, Overlays, Plan, Pong
 from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
 from elbowroom.server.pose_frame import parse
 from elbowroom.server.rate_limit import TokenBucket
+from elbowroom.server.schema.commands import ClockMessage, Input, Overlays
+from elbowroom.server.schema.progress import Notice, Plan, Pong
 from elbowroom.server.stage import STEP, Stage
 from elbowroom.server.walk import Walk, WalkSettings, at_speed
 from elbowroom.server.warmup import warm_up

@@ -18,7 +18,8 @@ from websockets.sync.client import ClientConnection, connect
 
 from elbowroom.errors import InputError
 from elbowroom.server.codec import decode_server, encode
-from elbowroom.server.messages import Input, Reset, Status
+from elbowroom.server.schema.commands import Input, Reset
+from elbowroom.server.schema.progress import Status
 
 CPU_BUDGET = 25.0  # percent of one core
 RESIDENT_BUDGET = 400.0  # MB

@@ -20,8 +20,8 @@ from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.codec import encode, plain
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.library import Library
-from elbowroom.server.messages import Notice
 from elbowroom.server.reports import scene_message
+from elbowroom.server.schema.progress import Notice
 from elbowroom.server.session import Session
 from elbowroom.server.uploads import UploadDesk
 from elbowroom.server.usage import process_usage

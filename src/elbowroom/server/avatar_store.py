@@ -11,8 +11,8 @@ from pathlib import Path
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.errors import InputError
-from elbowroom.server.messages import AvatarChoice
 from elbowroom.server.pose import Poser
+from elbowroom.server.schema.menus import AvatarChoice
 
 STOCK = "stock"
 MAX_UPLOADS = 8  # the one that was used least recently goes first

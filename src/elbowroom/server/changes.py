@@ -9,10 +9,11 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
-from elbowroom.server.messages import Configure, Notice
 from elbowroom.server.outbox import Outbox
 from elbowroom.server.planning_thread import PlanningThread
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
+from elbowroom.server.schema.commands import Configure
+from elbowroom.server.schema.progress import Notice
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import Walk
 from elbowroom.server.wanted import Wanted

@@ -9,7 +9,7 @@ from functools import cached_property
 from elbowroom.clips.clip import Clip
 from elbowroom.clips.files import MotionFile, parse_motion
 from elbowroom.errors import InputError
-from elbowroom.server.messages import ClipChoice
+from elbowroom.server.schema.menus import ClipChoice
 
 MAX_FILES = 8  # dropped on the page; the one that was used least recently goes first
 MAX_OFFERED = 200  # clips of one file

@@ -9,7 +9,8 @@ from functools import cache
 from typing import Annotated, Any, Literal, NoReturn, Union, cast, get_args, get_origin, get_type_hints
 
 from elbowroom.errors import InputError
-from elbowroom.server.messages import ClientMessage, Length, Range, ServerMessage
+from elbowroom.server.messages import ClientMessage, ServerMessage
+from elbowroom.server.schema.bounds import Length, Range
 
 
 def tag(kind: type) -> str:

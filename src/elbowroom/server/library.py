@@ -12,7 +12,8 @@ from elbowroom.experiment.gauntlet.scenes import PREFIX, course_scene, load_scen
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
-from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS, Catalog, SceneChoice
+from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
+from elbowroom.server.schema.menus import Catalog, SceneChoice
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
 

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.server.messages import Nearest, Vector
+from elbowroom.server.schema.bounds import Vector
+from elbowroom.server.schema.progress import Nearest
 from elbowroom.world.clearance import pairwise_clearance
 from elbowroom.world.scene import Scene
 

@@ -6,7 +6,8 @@ from collections import deque
 from starlette.websockets import WebSocket
 
 from elbowroom.server.codec import encode
-from elbowroom.server.messages import Plan, ServerMessage, Status
+from elbowroom.server.messages import ServerMessage
+from elbowroom.server.schema.progress import Plan, Status
 
 MAX_WAITING = 256  # messages; a client that lets so many pile up is given up
 _REPLACED = (Status, Plan)  # of these only the newest matters

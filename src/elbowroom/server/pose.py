@@ -9,7 +9,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, hips_position, local_rotations, posture_capsules
 from elbowroom.body.rig import Rig
 from elbowroom.geometry import quaternion
-from elbowroom.server.messages import Placement
+from elbowroom.server.schema.picture import Placement
 
 Floats = NDArray[np.float64]
 

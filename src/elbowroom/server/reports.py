@@ -11,24 +11,21 @@ from elbowroom.control.frame import Frame, PlanReport
 from elbowroom.planning.result import BlockadeKind
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.clip_store import StoredClip
-from elbowroom.server.messages import (
+from elbowroom.server.pose import placement
+from elbowroom.server.schema.bounds import GroupName, Reason
+from elbowroom.server.schema.picture import (
     AvatarCapsule,
     AvatarMessage,
-    Blocked,
     Bone,
     Box,
     ClipMessage,
     Gate,
     Ground,
-    GroupName,
-    GroupReport,
     MovingBox,
     Place,
-    Plan,
-    Reason,
     SceneMessage,
 )
-from elbowroom.server.pose import placement
+from elbowroom.server.schema.progress import Blocked, GroupReport, Plan
 from elbowroom.world.moving import Track
 from elbowroom.world.scene import Scene
 

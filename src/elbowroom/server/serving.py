@@ -11,7 +11,7 @@ import uvicorn
 from elbowroom.errors import InputError
 from elbowroom.server.app import make_app
 from elbowroom.server.library import Library
-from elbowroom.server.messages import MAX_MESSAGE
+from elbowroom.server.schema.bounds import MAX_MESSAGE
 
 _PORTS_TRIED = 50
 _SEND_BUFFER = 128 * 1024  # bytes in the kernel's hands: a slow client must not collect seconds of old frames

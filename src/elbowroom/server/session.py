@@ -15,25 +15,14 @@ from elbowroom.server.changes import Changes, make_walk
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.codec import decode_client, encode
 from elbowroom.server.library import Library
-from elbowroom.server.messages import (
-    INPUT_TIMEOUT,
-    PROTOCOL,
-    ClientMessage,
-    ClockMessage,
-    Configure,
-    Hello,
-    Input,
-    Loading,
-    Notice,
-    Overlays,
-    Ping,
-    Pong,
-    Reset,
-    ServerMessage,
-)
+from elbowroom.server.messages import ClientMessage, ServerMessage
 from elbowroom.server.outbox import Outbox, SlowClientError
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
+from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
+from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Overlays, Ping, Reset
+from elbowroom.server.schema.menus import Hello
+from elbowroom.server.schema.progress import Loading, Notice, Pong
 from elbowroom.server.stage import Stage
 from elbowroom.server.wanted import Wanted
 

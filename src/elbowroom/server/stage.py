@@ -9,11 +9,13 @@ from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.server import pose_frame
 from elbowroom.server.clip_walk import ClipWalk
-from elbowroom.server.messages import ClockMessage, Crossed, Input, Nearest, Overlays, Plan, Settings, Status
 from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.punctuality import Punctuality
 from elbowroom.server.reports import blocked_message, finite, group_reports, plan_message
+from elbowroom.server.schema.commands import ClockMessage, Input, Overlays
+from elbowroom.server.schema.menus import Settings
+from elbowroom.server.schema.progress import Crossed, Nearest, Plan, Status
 from elbowroom.server.walk import Walk
 
 STEP = 1.0 / 60.0  # seconds of a single step

@@ -12,7 +12,8 @@ from elbowroom.errors import InputError
 from elbowroom.server.clip_store import StoredClip
 from elbowroom.server.codec import plain
 from elbowroom.server.library import Library
-from elbowroom.server.messages import MAX_UPLOAD, AvatarChoice, ClipChoice, Uploaded
+from elbowroom.server.schema.bounds import MAX_UPLOAD
+from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
 
 LOG = logging.getLogger("elbowroom.server")
 

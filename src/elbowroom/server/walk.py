@@ -14,8 +14,8 @@ from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.messages import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.server.pose import NodePose
+from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.world.scene import Scene
 
 _MOTION = RootMotionSettings()

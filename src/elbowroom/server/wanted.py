@@ -3,7 +3,8 @@
 from dataclasses import dataclass, replace
 
 from elbowroom.server.clip_walk import ClipWalk
-from elbowroom.server.messages import Configure, Loading
+from elbowroom.server.schema.commands import Configure
+from elbowroom.server.schema.progress import Loading
 from elbowroom.server.walk import Walk, WalkSettings
 
 

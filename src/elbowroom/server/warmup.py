@@ -17,7 +17,7 @@ from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.server.kernel_cache import is_warm, mark_warm
 from elbowroom.server.library import Library
-from elbowroom.server.messages import Input, Overlays
+from elbowroom.server.schema.commands import Input, Overlays
 from elbowroom.server.stage import STEP, Stage
 from elbowroom.server.walk import Walk
 

@@ -1,0 +1,37 @@
+"""What fields may hold, and the limits of a session."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+PROTOCOL = 1  # raised with every change that an older client would misread
+MAX_MESSAGE = 64 * 1024  # bytes in a client's text message
+MAX_UPLOAD = 64 * 1024 * 1024  # bytes in an avatar file dropped on the page
+QUEUE_SIZES = (3, 4, 5, 6, 7)
+WALK_SPEEDS = (0.2, 2.0)  # m/s, slowest and fastest
+INPUT_TIMEOUT = 1.0  # seconds without any message after which the keys count as released
+
+
+@dataclass(frozen=True)
+class Range:
+    """Bounds of a number, both included."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Length:
+    """The most characters of a text or items of a list."""
+
+    most: int
+
+
+Heading = Annotated[float, Range(-1e4, 1e4)]
+Share = Annotated[float, Range(-1.0, 1.0)]
+Sequence = Annotated[int, Range(0, 2**32 - 1)]
+Name = Annotated[str, Length(128)]
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+GroupName = Literal["root", "waist", "leftArm", "rightArm"]
+PhaseName = Literal["plan", "play", "reset"]
+Reason = Literal["noPosture", "outOfReach", "motion"]

@@ -1,0 +1,130 @@
+"""What is to be drawn: the scene, the avatar, the clip that it plays."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from elbowroom.server.schema.bounds import GroupName, Quaternion, Vector
+
+
+@dataclass(frozen=True)
+class ClipMessage:
+    """The clip that is played, and what was recognised in it."""
+
+    id: str
+    title: str
+    format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
+    up: str  # the file's axis that points up
+    unit: str  # "cm", ...; "body": taken from the height of the body
+    metres: float  # a unit of the file
+    fps: float
+    frames: int
+    seconds: float
+    speed: float  # m/s of the walk in it; 0 where nobody walks
+    trunk_degrees: float  # what planning loses of the trunk, on average
+    arm_degrees: float  # and of the directions of the arms' bones
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The floor, at height 0."""
+
+    center: tuple[float, float]  # x, z
+    size: tuple[float, float]  # extents along x and z
+
+
+@dataclass(frozen=True)
+class Box:
+    """An obstacle."""
+
+    name: str
+    center: Vector
+    size: Vector  # whole edge lengths
+    rotation: Quaternion
+
+
+@dataclass(frozen=True)
+class Gate:
+    """The finish: passed when the avatar crosses its line."""
+
+    x: float
+    z: float
+    heading: float  # direction in which it is passed
+    width: float  # length of the line
+
+
+@dataclass(frozen=True)
+class Place:
+    """A standing place on the ground."""
+
+    x: float
+    z: float
+    heading: float
+
+
+@dataclass(frozen=True)
+class MovingBox:
+    """An upright box on a track: its place and its turn about Y change evenly from key pose to key pose."""
+
+    name: str
+    size: Vector  # whole edge lengths
+    times: list[float]  # of the key poses, in simulated seconds since the last reset
+    centers: list[Vector]
+    yaws: list[float]  # radians
+    repeat: Literal["once", "loop", "pingpong"]  # then: it stays, begins anew, goes back the same way
+
+
+@dataclass(frozen=True)
+class SceneMessage:
+    """The world to draw; the following frames happen in it."""
+
+    name: str
+    title: str
+    description: str
+    ground: Ground
+    boxes: list[Box]
+    moving: list[MovingBox]
+    start: Place
+    finish: Gate | None
+
+
+@dataclass(frozen=True)
+class Bone:
+    """A bone that the pose frames move."""
+
+    name: str  # VRM 1.0 bone name
+    node: int  # node index in the avatar's file
+
+
+@dataclass(frozen=True)
+class AvatarCapsule:
+    """A capsule of the collision body; its end points come in the pose frames."""
+
+    name: str
+    radius: float
+    group: GroupName
+
+
+@dataclass(frozen=True)
+class Placement:
+    """How the file's scene stands in the root's frame (metres, facing +Z): scale, then turn about +Y, then move."""
+
+    position: Vector
+    heading: float
+    scale: float
+
+
+@dataclass(frozen=True)
+class AvatarMessage:
+    """Whom to draw; the following frames with this revision pose it."""
+
+    id: str
+    revision: int  # as in the pose frames that belong to it
+    title: str
+    authors: list[str]
+    licence: str
+    format: str
+    url: str | None  # of the GLB, relative to the page; None for an avatar without a file: draw the capsules
+    bones: list[Bone]  # in the order of the rotations in a pose frame
+    placement: Placement
+    capsules: list[AvatarCapsule]  # in the order of the capsules in a pose frame
+    height: float  # of the head joint above the ground
