@@ -10,6 +10,7 @@ from rich.table import Table
 
 from elbowroom.experiment.paper_table import PaperCell, paper_table
 from elbowroom.experiment.table1.cells import CannedCell, Cell, Estimate, scene_label
+from elbowroom.experiment.table1.columns import our_texts, paper_texts
 from elbowroom.experiment.table1.table import Table1
 
 _WIDTH = 118  # characters: of the widest table
@@ -44,17 +45,8 @@ def _beside_paper(table: Table1, planner: str, cells: Sequence[Cell]) -> Table:
 
 
 def _row(cell: Cell, paper: PaperCell | None) -> list[str]:
-    ours = [
-        f"{cell.pass_rate.value:.2f}",
-        f"{cell.straight_rate.value:.2f}",
-        _number(cell.passed.stuck_times, ".1f"),
-        _number(cell.passed.time_s, ".1f"),
-        _number(cell.passed.plans_total, ".0f"),
-        _number(cell.passed.plan_success_rate, ".2f"),
-        _number(cell.passed.checks_per_plan, ".0f"),
-        "yes" if cell.realtime else "no",
-    ]
-    theirs = [""] * len(ours) if paper is None else _paper_row(paper)
+    ours = our_texts(cell, _plain)
+    theirs = [""] * len(ours) if paper is None else paper_texts(paper, _plain)
     widths = [max(len(text) for text in _papers_texts(place)) for place in range(len(ours))]
     beside = [f"{our} [dim]{text:>{width}}[/]" for our, text, width in zip(ours, theirs, widths, strict=True)]
     return [scene_label(cell.scene), str(cell.queue_size), *beside, str(cell.late_frames)]
@@ -62,21 +54,11 @@ def _row(cell: Cell, paper: PaperCell | None) -> list[str]:
 
 def _papers_texts(place: int) -> list[str]:
     """One column of the paper's table."""
-    return [_paper_row(paper)[place] for paper in paper_table().values()]
+    return [paper_texts(paper, _plain)[place] for paper in paper_table().values()]
 
 
-def _paper_row(paper: PaperCell) -> list[str]:
-    numbers = (
-        (paper.straight_rate, ".2f"),
-        (paper.stuck_times, ".1f"),
-        (paper.passed_time_s, ".1f"),
-        (paper.plans_total, ".0f"),
-        (paper.plan_success_rate, ".2f"),
-        (paper.checks_per_plan, ".0f"),
-    )
-    texts = ["-" if value is None else format(value, form) for value, form in numbers]
-    realtime = "-" if paper.realtime is None else "yes" if paper.realtime else "no"
-    return [f"{paper.pass_rate:.2f}", *texts, realtime]
+def _plain(value: float | None, form: str) -> str:
+    return "-" if value is None else format(value, form)
 
 
 def _over_all(planner: str, cells: Sequence[Cell]) -> Table:
@@ -131,10 +113,6 @@ def _canned(cells: Sequence[CannedCell]) -> Table:
 
 def _table(title: str) -> Table:
     return Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-
-
-def _number(estimate: Estimate | None, form: str) -> str:
-    return "-" if estimate is None else format(estimate.value, form)
 
 
 def _bounded(estimate: Estimate | None, form: str) -> str:

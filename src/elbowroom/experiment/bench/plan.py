@@ -10,6 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
 from elbowroom.geometry import quaternion
+from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.scene import Scene
 
@@ -73,10 +74,11 @@ def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) ->
     """Cross the scene `rounds` times, then once for each horizon, then the lane once for each number of posts."""
     humanoid, scene = Humanoid.default(), Scene.load(settings.scene)
     done = 0
+    rehearse(humanoid)  # load what is compiled, as a session does before it begins
+    list(crossing_calls(humanoid, scene, settings.key_frames))
 
     def measured(where: Scene, key_frames: int, rounds: int) -> CallCosts:
         nonlocal done
-        list(crossing_calls(humanoid, where, key_frames, most=4))  # load what is compiled, and forget it
         calls: list[PlanCall] = []
         for _ in range(rounds):
             calls += crossing_calls(humanoid, where, key_frames)

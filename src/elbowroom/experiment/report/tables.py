@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from elbowroom.experiment.paper_table import PaperCell
 from elbowroom.experiment.report.svg import tag
 from elbowroom.experiment.table1.cells import Cell, Estimate, scene_label
+from elbowroom.experiment.table1.columns import our_texts, paper_texts
 from elbowroom.experiment.table1.table import Table1
 
 _BESIDE = ("crossed", "straight", "stuck", "time, s", "calls", "found", "checks a call", "real time")
@@ -20,8 +20,8 @@ def comparison_table(table: Table1) -> str:
     rows = []
     for cell in table.cells:
         paper = table.paper(cell)
-        theirs = _papers(paper) if paper is not None else [""] * len(_BESIDE)
-        pairs = zip(_ours(cell), theirs, strict=True)
+        theirs = paper_texts(paper, _written) if paper is not None else [""] * len(_BESIDE)
+        pairs = zip(our_texts(cell, _written), theirs, strict=True)
         beside = [tag("td", ours) + tag("td", paper, class_="paper") for ours, paper in pairs]
         late = f"{cell.late_frames:,}".replace(",", " ")
         times = [tag("td", text) for text in (late, f"{cell.frame_ms.p99:.1f}", f"{cell.frame_ms.worst:.0f}")]
@@ -41,7 +41,7 @@ def everything_table(table: Table1) -> str:
             _bounded(cell.all.stuck_times, ".1f"),
             _bounded(cell.all.time_s, ".1f"),
             _bounded(cell.all.plans_total, ".0f"),
-            _bounded(cell.all.checks_per_plan, ",.0f"),
+            _bounded(cell.all.checks_per_plan, ".0f"),
         )
         rows.append(_row(table, cell, [tag("td", text) for text in texts]))
     return _table(head, rows)
@@ -75,42 +75,19 @@ def _row(table: Table1, cell: Cell, cells: Sequence[str]) -> str:
     return tag("tr", tag("th", name), tag("th", str(cell.queue_size)), *cells, class_="first" if first else None)
 
 
-def _ours(cell: Cell) -> list[str]:
-    return [
-        f"{cell.pass_rate.value:.2f}",
-        f"{cell.straight_rate.value:.2f}",
-        _value(cell.passed.stuck_times, ".1f"),
-        _value(cell.passed.time_s, ".1f"),
-        _value(cell.passed.plans_total, ".0f"),
-        _value(cell.passed.plan_success_rate, ".2f"),
-        _value(cell.passed.checks_per_plan, ",.0f"),
-        "yes" if cell.realtime else "no",
-    ]
-
-
-def _papers(paper: PaperCell) -> list[str]:
-    numbers = (
-        (paper.straight_rate, ".2f"),
-        (paper.stuck_times, ".1f"),
-        (paper.passed_time_s, ".1f"),
-        (paper.plans_total, ".0f"),
-        (paper.plan_success_rate, ".2f"),
-        (paper.checks_per_plan, ",.0f"),
-    )
-    texts = ["–" if value is None else _spaced(format(value, form)) for value, form in numbers]
-    realtime = "–" if paper.realtime is None else "yes" if paper.realtime else "no"
-    return [f"{paper.pass_rate:.2f}", *texts, realtime]
+def _written(value: float | None, form: str) -> str:
+    return "–" if value is None else _spaced(format(value, form.replace(".0f", ",.0f")))
 
 
 def _value(estimate: Estimate | None, form: str) -> str:
-    return "–" if estimate is None else _spaced(format(estimate.value, form))
+    return _written(None if estimate is None else estimate.value, form)
 
 
 def _bounded(estimate: Estimate | None, form: str) -> str:
     text = _value(estimate, form)
     if estimate is None or not math.isfinite(estimate.high):
         return text
-    ends = f"{_spaced(format(estimate.low, form))} to {_spaced(format(estimate.high, form))}"
+    ends = f"{_written(estimate.low, form)} to {_written(estimate.high, form)}"
     return text + tag("small", ends)
 
 

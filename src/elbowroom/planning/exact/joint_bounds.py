@@ -11,6 +11,9 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
 
+_LANES = 16  # least values that are kept side by side
+
+
 class Problem(NamedTuple):
     """The product of three groups' postures over n+1 slices; prices and steps in squared radians, infinite: closed.
 
@@ -92,15 +95,24 @@ def _ahead(prices: Floats32, steps: Floats32) -> Floats32:
 
 @kernel
 def _behind(prices: Floats32, steps: Floats32) -> Floats32:
-    """The least cost (n+1, V) of the way on to the last depth, without the posture's own price."""
-    out = np.zeros(prices.shape, np.float32)
-    onward = np.empty(prices.shape[1], np.float32)
+    """The least cost (n+1, V) of the way on to the last depth, without the posture's own price; of open postures."""
+    out, size = np.zeros(prices.shape, np.float32), prices.shape[1]
+    onward, best = np.empty(size, np.float32), np.empty(_LANES, np.float32)
+    whole = size // _LANES * _LANES
     for t in range(steps.shape[0] - 1, -1, -1):
-        for u in range(prices.shape[1]):
+        for u in range(np.uint64(size)):
             onward[u] = out[t + 1, u] + prices[t + 1, u]
-        for v in range(prices.shape[1]):
-            row, best = steps[t, v], np.float32(np.inf)
-            for u in range(np.uint64(prices.shape[1])):
-                best = min(best, row[u] + onward[u])
-            out[t, v] = best
+        for v in range(size):
+            if prices[t, v] == np.inf:
+                out[t, v] = np.inf
+                continue
+            row = steps[t, v]
+            best[:] = np.float32(np.inf)
+            for first in range(0, whole, _LANES):
+                for lane in range(np.uint64(_LANES)):
+                    best[lane] = min(best[lane], row[first + lane] + onward[first + lane])
+            least = best.min()
+            for u in range(whole, size):
+                least = min(least, row[u] + onward[u])
+            out[t, v] = least
     return out
