@@ -95,13 +95,13 @@ class Dressing:
         self._waist: GroupWay | None = None
         self._crouching = self._none(DofGroup.WAIST)  # infinite where the legs have no room to crouch as a node does
 
-    def motion(self, *, held: bool, joint: bool) -> LocalPlan | None:
-        """The motion, if there is one; `held`: the last plan's waist may be tried, `joint`: all groups together."""
+    def motion(self, *, held: bool, rounds: int) -> LocalPlan | None:
+        """The motion, if there is one; `held`: the last plan's waist may be tried; `rounds` of the joint step."""
         found = self.apart()
         if found.failed is not None and held:
             found = self.with_kept_waist()
-        if found.failed is not None and joint:
-            found = self.together()
+        if found.failed is not None and rounds > 0:
+            found = self.together(rounds)
         if found.failed is not None:
             return None
         keys = np.concatenate([way.keys for way in found.ways], axis=1)
@@ -124,15 +124,15 @@ class Dressing:
         prices[:, prices.shape[1] - OWN + KEPT] = 0.0
         return self._arms(self._waist_way(prices + self._crouching), None)
 
-    def together(self) -> Ways:
-        """All groups at once, guided by the joint step."""
+    def together(self, rounds: int) -> Ways:
+        """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
         waist = self._waist
         assert waist is not None
         if waist.reached < self.path.horizon:
             return Ways((), waist)
         step = self.joint_step(waist)
         ways = Ways((), waist)
-        for _ in range(self.settings.guided_rounds):
+        for _ in range(rounds):
             began = perf_counter_ns()
             answer = step.search()
             self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)

@@ -109,20 +109,23 @@ class ExactPlanner:
         return True
 
     def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole | None:
-        """A path on which there is a way after all: in each plan another one is thought through with all means.
+        """A path on which all groups together have a way after all.
 
-        The commanded one as soon as it is blocked, then the one that leads farthest, and so on.
+        Every path gets the joint step's first answer. In each plan one of them is thought through with all means: the
+        commanded one as soon as it is blocked, then the one that leads farthest, and so on.
         """
         ranked = [0, *sorted(range(1, len(tried)), key=lambda i: -tried[i].upper.reached)]
         turn, self._paths, self._turn = self._turn % len(tried), len(tried), self._turn + 1
-        if self._turn == 1:
-            return None
-        root = tried[ranked[turn]].root
-        upper = self._dress(root.path, query, Effort.JOINT if turn else Effort.REFINED)
-        if upper.reached < root.path.horizon:
-            return None
-        root_planner.follow(root)
-        return Whole(root, upper.plan)
+        for place, number in enumerate(ranked):
+            if number == 0 and self._turn == 1:
+                continue  # it was thought through just now
+            effort = Effort.GLANCE if place != turn else Effort.JOINT if number else Effort.REFINED
+            root = tried[number].root
+            upper = self._dress(root.path, query, effort)
+            if upper.reached == root.path.horizon:
+                root_planner.follow(root)
+                return Whole(root, upper.plan)
+        return None
 
     def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole:
         """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind."""

@@ -32,5 +32,5 @@ def rehearse(humanoid: Humanoid) -> None:
         body = UpperBody(humanoid, scene, ExactSettings())
         start = goal_configurations(body.goals, path)[0]
         dressing = body.plan(path, start, np.zeros_like(start)).dressing
-        dressing.together()
+        dressing.together(1)
         dressing.blockade()

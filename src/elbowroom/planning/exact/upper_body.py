@@ -49,6 +49,7 @@ class Effort(Enum):
     """What is tried before it is said that there is no way."""
 
     QUICK = "quick"  # the groups one after the other
+    GLANCE = "glance"  # then all together, at first sight
     JOINT = "joint"  # then all together
     REFINED = "refined"  # then with more postures
 
@@ -108,9 +109,10 @@ class UpperBody:
         """
         moving = self._moving if others is None else self._moving + others
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
+        rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
             dressing = self._dressing(path, start, velocity, kept, near)
-            found = dressing.motion(held=kept is not None, joint=effort is not Effort.QUICK)
+            found = dressing.motion(held=kept is not None, rounds=rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
