@@ -12,7 +12,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_evasion import EvasionFinder, EvasionSettings, _cheapest, _Prices
+from elbowroom.planning.root_cells import Prices, cheapest
+from elbowroom.planning.root_evasion import EvasionFinder, EvasionSettings
 from elbowroom.planning.root_line import new_line
 from elbowroom.planning.root_motion import MotionBounds, RootMotionSettings
 from elbowroom.planning.root_plan import RootPlan, RootPlanKind
@@ -84,9 +85,9 @@ def test_the_search_finds_the_optimum_of_all_ways() -> None:
     for _ in range(12):
         clear = rng.uniform(-0.02, 0.06, (3, 5, 3, 3)).astype(np.float32)
         clear[:, 0, 1, 1] = 0.06
-        prices = _Prices(0.0, 0.01, 0.06, 0.3, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
+        prices = Prices(0.0, 0.01, 0.06, 0.3, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
         standing, favoured = rng.uniform(0.0, 0.3, 3), rng.integers(0, 3, (5, 2))
-        way, cost = _cheapest(clear, standing, prices, np.array([1, 1]), favoured)
+        way, cost = cheapest(clear, standing, prices, np.array([1, 1]), favoured)
         costs = [_cost_of(list(cells), clear, standing, prices, favoured) for cells in _ways()]
         best = min(costs)
         assert math.isfinite(best) == (len(way) == 5)

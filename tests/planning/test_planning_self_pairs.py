@@ -139,3 +139,15 @@ def test_arms_through_body_and_through_each_other_are_found() -> None:
     assert found[0] < 0.0
     assert found[1] < 0.0
     assert found[2] > 0.0
+
+
+@pytest.mark.parametrize("forward", [0.0, 0.5, 1.1, -0.7])
+def test_hands_keep_off_the_legs_of_who_steps_sideways(forward: float) -> None:
+    model, goals = body_model(Humanoid.default()), natural_walk()
+    pairs = self_pairs(model, goals)
+    phases = np.arange(24) / 24
+    for lateral in (-0.6, -0.3, 0.15, 0.45, 0.8):
+        roots = np.zeros((len(phases), 7))
+        roots[:, 3], roots[:, 4], roots[:, 6] = forward, lateral, phases
+        uppers = goal_configurations(goals, RootPath(0.0, 1.0, roots))
+        assert self_clearances(model, pairs, roots, uppers).min() > 0.0

@@ -21,7 +21,7 @@ from elbowroom.control.foresight import Foresight
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
-from elbowroom.control.prediction import predicted
+from elbowroom.control.prediction import predicted, slimmer
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
@@ -40,6 +40,7 @@ LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each
 LONGEST_STEP = 60.0  # seconds
 _SAME = 1e-6  # radians
 _SAME_TIME = 1e-9  # seconds
+_LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 _FAR_MOVING = 0.6  # the same where things move by themselves
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
@@ -146,7 +147,7 @@ class Controller:
         self._check.moving = self.scene.moving + moving
 
     def prediction(self) -> MovingBoxes:
-        """Where this avatar will be, as far as is planned and then straight on: for others' `others`."""
+        """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
         now, coming = self._shown, self._queue.unplayed()
         keys = KeyFrames(
             np.append(self._queue.time, coming.times),
@@ -223,8 +224,11 @@ class Controller:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
         time, start = self._planning_start(at_once)
         root, settings = RootState(*start.root.tolist()), self.settings
+        others = self._others
+        if self._clearance < 0.0 and len(others):
+            others = slimmer(others, _LEAVING - self._clearance)
         query = MotionQuery(
-            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, self._others
+            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others
         )
         held = None
         if self._holding.active and self._assist:
@@ -321,6 +325,8 @@ class Controller:
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
+        if len(self._check.moving) and self._clearance < 0.0 and clearance >= self._clearance:
+            return True  # away from what has come upon it
         if clearance < 0.0 or min(clearance, self._clearance) > (_FAR_MOVING if len(self._check.moving) else _FAR):
             return clearance >= 0.0
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)

@@ -1,7 +1,10 @@
-"""What others are told about an avatar's way: boxes round its legs and round the rest of it, moving as it is planned.
+"""What others are told about an avatar's way: boxes round its legs, its trunk and its arms, moving as it is planned.
 
-As far as key frames are known the boxes go with them, and then straight on for a while at the last velocity.
+As far as key frames are known the boxes go with them, and then straight on for a while. Steps aside are not taken to go
+on: who walks ahead and makes way to the side will soon be beside.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,29 +19,43 @@ from elbowroom.world.moving import MovingBoxes, Repeat, Track
 Floats = NDArray[np.float64]
 
 _BEYOND = 2.0  # seconds after the last key frame
-_SPARE = 0.03  # metres: between key frames limbs may reach a little farther
+_SPARE = 0.02  # metres: between key frames limbs may reach a little farther
+_THIN = 0.02  # metres: no box becomes thinner
+_PARTS = {
+    "legs": DofGroup.ROOT,
+    "trunk": DofGroup.WAIST,
+    "left arm": DofGroup.LEFT_ARM,
+    "right arm": DofGroup.RIGHT_ARM,
+}
 
 
 def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames) -> MovingBoxes:
-    """Two moving boxes that hold the avatar at its key frames; the first of these is shown now."""
+    """Moving boxes that hold the avatar at its key frames; the first of these is shown now."""
     segments = posture_capsules(model, _postures(keys), keys.roots).astype(np.float64)
     radii = humanoid.capsules.radii[:, None, None]
     ends = segments.reshape(len(radii), 2, 3, -1)
     dx, dz = ends[:, :, 0] - keys.roots[:, 0], ends[:, :, 2] - keys.roots[:, 1]
     sine, cosine = np.sin(keys.roots[:, 2]), np.cos(keys.roots[:, 2])
     own = np.stack([dx * cosine - dz * sine, ends[:, :, 1], dx * sine + dz * cosine], axis=2)
-    reach = np.abs(own) + radii[:, None]
-    legs = humanoid.capsules.of(DofGroup.ROOT)
-    rest = np.setdiff1d(np.arange(len(radii)), legs)
     times, places, yaws = _way(keys)
+    sine, cosine = np.sin(yaws), np.cos(yaws)
     tracks = []
-    for name, part in (("legs", legs), ("body", rest)):
-        low, high = float((own[part, :, 1] - radii[part]).min()), float((own[part, :, 1] + radii[part]).max())
-        half = reach[part].max(axis=(0, 1, 3)) + _SPARE
-        centers = np.stack([places[:, 0], np.full(len(times), 0.5 * (low + high)), places[:, 1]], axis=1)
-        size = np.array([2.0 * half[0], high - low, 2.0 * half[2]])
-        tracks.append(Track(f"{humanoid.name}: {name}", size, times, centers, yaws, Repeat.ONCE))
+    for name, group in _PARTS.items():
+        part = humanoid.capsules.of(group)
+        low = (own[part] - radii[part, None]).min(axis=(0, 1, 3)) - _SPARE
+        high = (own[part] + radii[part, None]).max(axis=(0, 1, 3)) + _SPARE
+        left, middle, ahead = 0.5 * (low + high)
+        x = places[:, 0] + left * cosine + ahead * sine
+        z = places[:, 1] - left * sine + ahead * cosine
+        centers = np.stack([x, np.full(len(times), middle), z], axis=1)
+        tracks.append(Track(f"{humanoid.name}: {name}", high - low, times, centers, yaws, Repeat.ONCE))
     return MovingBoxes(tuple(tracks))
+
+
+def slimmer(moving: MovingBoxes, margin: float) -> MovingBoxes:
+    """The same boxes, `margin` metres less to every side: so that who is in touch with one can leave it."""
+    less = np.array([2.0 * margin, 0.0, 2.0 * margin])
+    return MovingBoxes(tuple(replace(track, size=np.maximum(track.size - less, _THIN)) for track in moving.tracks))
 
 
 def _postures(keys: KeyFrames) -> Floats:
@@ -48,8 +65,11 @@ def _postures(keys: KeyFrames) -> Floats:
 def _way(keys: KeyFrames) -> tuple[Floats, Floats, Floats]:
     """Times (K,), places (K, 2) and headings (K,): those of the key frames, and one more straight on."""
     last = keys.roots[-1]
+    ahead, aside = last[3], last[4]
+    if abs(ahead) > abs(aside):
+        aside = 0.0
     sine, cosine = np.sin(last[2]), np.cos(last[2])
-    velocity = np.array([last[3] * sine + last[4] * cosine, last[3] * cosine - last[4] * sine])
+    velocity = np.array([ahead * sine + aside * cosine, ahead * cosine - aside * sine])
     times = np.append(keys.times, keys.times[-1] + _BEYOND)
     places = np.vstack([keys.roots[:, :2], last[:2] + _BEYOND * velocity])
     return times, places, np.append(keys.roots[:, 2], last[2])

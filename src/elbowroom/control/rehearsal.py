@@ -35,8 +35,10 @@ class Rehearsal:
         self._held, self._check = held, check
 
     def is_playable(self, path: RootPath, uppers: Floats) -> bool:
-        """Whether the motion touches nothing within its first key interval."""
-        return bool(self._clearances(path, uppers).min() >= 0.0)
+        """Whether the motion touches nothing within its first key interval, or less and less what has come upon it."""
+        return bool(
+            np.all(np.diff(np.minimum(np.append(self._held.clearance, self._clearances(path, uppers)), 0.0)) >= 0.0)
+        )
 
     def leads_away(self, path: RootPath, uppers: Floats) -> bool:
         """Whether the motion begins by leaving, or sliding along, what is near."""

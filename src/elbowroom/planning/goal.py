@@ -17,6 +17,11 @@ from elbowroom.planning.root_path import RootPath
 Floats = NDArray[np.float64]
 
 
+_ABDUCTION = 1  # component of an arm
+_LIFT = 0.25  # radians for each m/s to the side
+_SLIGHT = 0.05  # m/s: below, it sets in gently
+
+
 class GoalFunction(Protocol):
     """Gives a group's goal configurations along a root path."""
 
@@ -35,10 +40,16 @@ def fixed_goal(configuration: ArrayLike) -> GoalFunction:
 
 
 def periodic_goal(group: DofGroup, motions: MotionSet = STOCK) -> GoalFunction:
-    """The swing of `group`, in time with the gait phase, as wide as the speed asks for; at rest at standstill."""
+    """The swing of `group`, in time with the gait phase, as wide as the speed asks for; at rest at standstill.
+
+    Who steps sideways spreads the legs, and keeps the hands off them.
+    """
 
     def goals(path: RootPath) -> Floats:
-        return np.asarray(motions.goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
+        found = np.array(motions.goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
+        if group is not DofGroup.WAIST:
+            found[:, _ABDUCTION] += _LIFT * (np.hypot(path.states[:, 4], _SLIGHT) - _SLIGHT)
+        return found
 
     return goals
 

@@ -35,6 +35,11 @@ class Neighbours(NamedTuple):
             return self
         return Neighbours(np.ascontiguousarray(self.table[near]), Ground(*(part[near] for part in self.ground)))
 
+    def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
+        """These and others."""
+        ground = Ground(*(np.concatenate([a, b]) for a, b in zip(self.ground, more.ground, strict=True)))
+        return Neighbours(np.concatenate([self.table, more.table]), ground)
+
 
 class LowerBody:
     """Legs and pelvis, and the boxes low enough to matter to them; frozen once made."""
@@ -45,6 +50,7 @@ class LowerBody:
         self.stance, height, self.reach = _measure(self.model)
         corners, height = boxes.corners, height + _SPARE_HEIGHT
         low = corners[:, :, 1].min(axis=1) < height
+        self.height = height
         self.hull = stride_hull(self.model)
         self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground_below(corners[low], height))
 

@@ -20,20 +20,18 @@ from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.jit import exact_kernel
+from elbowroom.planning.root_cells import Prices, cheapest, pulled_taut
 from elbowroom.planning.root_line import TravelLine
 from elbowroom.planning.root_profile import Profile, turned_speed
+from elbowroom.planning.root_room import Room, room_of
 from elbowroom.world.boxes import BOX_ROW
-from elbowroom.world.clearance import clearance_into
 from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-_TALL = 2.0  # metres: height of the axis round which a body is looked for
-_SWEEPS = 12  # of evening out
-_LEAVING = 3  # rows near the start that need no more room than the start has
+_GAIN = 2.0  # m/s^2, of speeding up
 _PHASES = 6  # moments of the stride in which the legs are looked at
 
 
@@ -45,6 +43,7 @@ class EvasionSettings:
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
     punctual: float = 0.2  # seconds before and after that a row may be reached in
+    polite: float = 0.04  # metres by which what moves is taken to be larger
     cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
     shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
     widest: float = 0.48  # from the line of travel, to either side
@@ -71,27 +70,19 @@ class EvasionSettings:
         return np.linspace(-self.most, self.most, 2 * self.turns + 1)
 
 
+# Farther to the side, with more room, on a coarser grid that is no larger; as steep as the fine one.
+WIDE = EvasionSettings(
+    step=0.2, aside=0.08, widest=1.2, comfort=0.15, slack=0.12, shifting=0.01, turning=0.5, keeping=0.008,
+    cares=(0.0,), bodies=((40.0, 40.0),),
+)  # fmt: skip
+
+
 class Evasion(NamedTuple):
     """A way through the grid."""
 
     profile: Profile
     whole: bool  # whether it leads to the last row
     cost: float  # seconds
-
-
-class _Prices(NamedTuple):
-    """What the search needs of the settings, in grid units."""
-
-    margin: float
-    swerving: float
-    comfort: float
-    beside: float  # for the squared number of columns
-    shifting: float
-    turning: float
-    spot: float
-    bodies: tuple[float, float, float]  # for a row, for each metre that legs, trunk, arms lack
-    keeping: float
-    ends: tuple[float, float]
 
 
 class EvasionFinder:
@@ -120,7 +111,7 @@ class EvasionFinder:
     ) -> "EvasionGrid":
         """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
 
-        What moves is where it will be about when a row is reached at full speed.
+        What moves is where it will be about when a row is reached, by who speeds up at once.
         """
         s = self.settings
         headings = line.facing + s.angles
@@ -134,15 +125,22 @@ class EvasionFinder:
         near = np.hypot(table[:, 0], table[:, 2]) < reach
         place = np.array([math.sin(line.heading), math.cos(line.heading), s.step, s.aside, s.comfort])
         shape = (math.ceil(sight / s.step) + 1, 2 * round(s.widest / s.aside) + 1)
-        passing = np.zeros((shape[0], len(moving), BOX_ROW))
-        for i in range(shape[0] if len(moving) else 0):
-            then = time + i * s.step / speeds[0]
-            passing[i] = moving.swept([max(then - s.punctual, time), then + s.punctual])[0]
+        passing = self._passing(moving, time, s.step * np.arange(float(shape[0])), start, speeds[0])
         passing[:, :, 0] -= origin[0]
         passing[:, :, 2] -= origin[1]
         rows = np.ascontiguousarray(table[near], np.float32)
-        room = _room(bodies, self._groups, self._radii, rows, passing.astype(np.float32), place, shape)
+        room = room_of(bodies, self._groups, self._radii, rows, passing.astype(np.float32), place, shape)
         return EvasionGrid(s, line, start, speeds, first, room)
+
+    def _passing(self, moving: MovingBoxes, time: float, ahead: Floats, start: RootState, speed: float) -> Floats:
+        """Rows (n, M, 15) of what moves about when places `ahead` (n,) metres are reached, a little larger."""
+        s, out = self.settings, np.zeros((len(ahead), len(moving), BOX_ROW))
+        if not len(moving):
+            return out
+        for i, then in enumerate(time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)):
+            out[i] = moving.swept([max(then - s.punctual, time), then + s.punctual])[0]
+        out[..., [12, 14]] += s.polite
+        return out
 
     def _body(self, way: float, heading: float, speeds: tuple[float, float]) -> Floats32:
         """Capsules (C, 6) of a body at the origin that walks `way` from where it faces; every phase's legs."""
@@ -156,6 +154,15 @@ class EvasionFinder:
         return np.concatenate([*posed, segments[trunk, :, 0], segments[arms, :, 0]])
 
 
+def _arrival(ahead: Floats, now: float, speed: float) -> Floats:
+    """Seconds (n,) until one is `ahead` (n,) metres on, who walks `now` m/s and speeds up to `speed`."""
+    gaining = max(speed - now, 0.0) / _GAIN
+    gained = 0.5 * (now + speed) * gaining
+    early = (np.sqrt(now * now + 2.0 * _GAIN * np.minimum(ahead, gained)) - now) / _GAIN
+    seconds: Floats = np.where(ahead < gained, early, gaining + (ahead - gained) / speed)
+    return seconds
+
+
 class EvasionGrid(NamedTuple):
     """The clearance of the body along a line of travel."""
 
@@ -164,7 +171,7 @@ class EvasionGrid(NamedTuple):
     start: RootState
     speeds: tuple[float, float]
     first: float  # metres: the first row's place on the line
-    room: "Room"
+    room: Room
 
     @property
     def cells(self) -> int:
@@ -181,7 +188,7 @@ class EvasionGrid(NamedTuple):
         seconds = np.array([1.0 / turned_speed(*self.speeds, way) for way in ways])
         standing = s.step * (seconds - seconds.min() + s.turned * s.angles**2)
         ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
-        prices = _Prices(
+        prices = Prices(
             s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, s.shifting, s.turning, s.spot,
             (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip
@@ -189,8 +196,8 @@ class EvasionGrid(NamedTuple):
         left = self.line.coordinates(self.start.x, self.start.z)[1]
         turned = math.remainder(self.start.heading - self.line.facing, math.tau)
         begin = self._cells(np.array([left]), np.array([turned]))[0]
-        cells, cost = _cheapest(self.room.clear, standing, prices, begin, favoured)
-        places = _pulled_taut(self.room, cells, left, s.aside, s.slack)
+        cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
+        places = pulled_taut(self.room, cells, left, s.aside, s.slack)
         way = np.stack([places, s.angles[cells[:, 1]]], axis=1)
         if cells[0, 1] == begin[1]:
             way[0, 1] = turned
@@ -209,219 +216,3 @@ def _rows_at(profile: Profile, first: float, step: float, count: int) -> tuple[F
     at = (first + step * np.arange(count) - profile.first) / profile.step
     known = np.arange(len(profile.rows))
     return np.interp(at, known, profile.rows[:, 0]), np.interp(at, known, profile.rows[:, 1])
-
-
-class Room(NamedTuple):
-    """The room on a grid, with each cell's best place: not more than half a column from its middle."""
-
-    clear: Floats32  # (3, rows, columns, turns) of legs, trunk, hanging arms; no more than the comfort
-    shift: Floats32  # (rows, columns, turns) metres from the middle to the best place, to the left
-
-
-@exact_kernel
-def _extents(body: Floats32, radii: Floats32) -> tuple[float, float, float]:
-    """How far capsules (C, 6) reach from the origin, seen from above; their lowest and highest point."""
-    most, low, high = 0.0, np.inf, -np.inf
-    for c in range(body.shape[0]):
-        for e in (0, 3):
-            most = max(most, np.sqrt(body[c, e] ** 2 + body[c, e + 2] ** 2) + radii[c])
-            low, high = min(low, body[c, e + 1] - radii[c]), max(high, body[c, e + 1] + radii[c])
-    return most, low, high
-
-
-@exact_kernel
-def _lower_to_box(
-    body: Floats32, radii: Floats32, x: Floats32, z: Floats32, box: Floats32, away: Floats32, most: float, out: Floats32
-) -> None:
-    """out[n] = min(out[n], clearance of the body at place n); `away` (N,) is the clearance of the place's own axis."""
-    reach, low, high = _extents(body, radii)
-    span = 0.0
-    for k in range(3):
-        span += abs(box[0, 4 + 3 * k]) * box[0, 12 + k]
-    if box[0, 1] - span > high + most or box[0, 1] + span < low - most:
-        return
-    near, count = np.empty(x.shape[0], np.int64), 0
-    for n in range(x.shape[0]):
-        if away[n] < reach + most:
-            near[count] = n
-            count += 1
-    if count == 0:
-        return
-    segments, found = np.empty((body.shape[0], 6, count), np.float32), np.empty(count, np.float32)
-    for c in range(body.shape[0]):
-        for e in (0, 3):
-            row_x, row_y, row_z = segments[c, e], segments[c, e + 1], segments[c, e + 2]
-            for i in range(count):
-                row_x[i], row_y[i], row_z[i] = body[c, e] + x[near[i]], body[c, e + 1], body[c, e + 2] + z[near[i]]
-    clearance_into(segments, radii, box, found)
-    for i in range(count):
-        out[near[i]] = min(out[near[i]], found[i])
-
-
-@exact_kernel
-def _room(
-    bodies: Floats32,
-    groups: Indices,
-    radii: Floats32,
-    table: Floats32,
-    passing: Floats32,
-    place: Floats,
-    shape: tuple[int, int],
-) -> Room:
-    """The room of the body's parts `groups` on the grid, a batch for each box, turn and part.
-
-    `table` (B, 15) stands still, `passing` (rows, M, 15) is where a row is when it matters.
-    `place`: sine and cosine of the line's heading, the distance of rows and of columns, and the comfort.
-    """
-    sine, cosine, step, aside, comfort = place[0], place[1], place[2], place[3], place[4]
-    rows, columns = shape
-    total, turns = rows * columns, bodies.shape[0]
-    x, z = np.empty(total, np.float32), np.empty(total, np.float32)
-    for n in range(total):
-        ahead, left = (n // columns) * step, (n % columns - columns // 2) * aside
-        x[n], z[n] = ahead * sine + left * cosine, ahead * cosine - left * sine
-    axis = np.zeros((1, 6, total), np.float32)
-    axis[0, 0], axis[0, 2], axis[0, 3], axis[0, 4], axis[0, 5] = x, z, x, np.float32(_TALL), z
-    out, away = np.full((3, turns, total), np.float32(comfort), np.float32), np.empty(total, np.float32)
-    for b in range(table.shape[0]):
-        box = table[b : b + 1]
-        clearance_into(axis, np.zeros(1, np.float32), box, away)
-        for t in range(turns):
-            for g in range(3):
-                part = slice(groups[g], groups[g + 1])
-                _lower_to_box(bodies[t, part], radii[part], x, z, box, away, comfort, out[g, t])
-    for i in range(rows):
-        row = slice(i * columns, (i + 1) * columns)
-        for b in range(passing.shape[1]):
-            box = passing[i, b : b + 1]
-            clearance_into(axis[:, :, row].copy(), np.zeros(1, np.float32), box, away[row])
-            for t in range(turns):
-                for g in range(3):
-                    part = slice(groups[g], groups[g + 1])
-                    _lower_to_box(bodies[t, part], radii[part], x[row], z[row], box, away[row], comfort, out[g, t, row])
-    clear = np.ascontiguousarray(out.reshape(3, turns, rows, columns).transpose(0, 2, 3, 1))
-    return _at_best(clear, comfort, aside)
-
-
-@exact_kernel
-def _at_best(clear: Floats32, comfort: float, aside: float) -> Room:
-    """The room at every cell's best place.
-
-    Clearance changes by no more than one walks: so neighbours bound it, and between parallel walls it is the bound.
-    """
-    best, shift = clear.copy(), np.zeros(clear.shape[1:], np.float32)
-    for i in range(clear.shape[1]):
-        for j in range(1, clear.shape[2] - 1):
-            for t in range(clear.shape[3]):
-                for g in range(2, -1, -1):
-                    own, right, left = clear[g, i, j, t], clear[g, i, j - 1, t], clear[g, i, j + 1, t]
-                    if own < comfort:
-                        best[g, i, j, t] = min(own + 0.5 * aside, max(0.5 * (left + right) + aside, own), comfort)
-                        shift[i, j, t] = min(max(0.5 * (left - right), -0.5 * aside), 0.5 * aside)
-    return Room(best, shift)
-
-
-@exact_kernel
-def _pulled_taut(room: Room, way: Indices, begin: float, aside: float, slack: float) -> Floats:
-    """The distances (m,) from the line of a way through cells, evened out as far as there is room beyond `slack`."""
-    count = way.shape[0]
-    middle, free, out = np.empty(count), np.empty(count), np.empty(count)
-    for i in range(count):
-        j, t = way[i, 0], way[i, 1]
-        middle[i] = aside * (j - room.shift.shape[1] // 2) + room.shift[i, j, t]
-        free[i] = max(min(room.clear[0, i, j, t], room.clear[1, i, j, t]) - slack, 0.0)
-        out[i] = middle[i]
-    out[0] = begin
-    for _ in range(_SWEEPS):
-        for i in range(1, count - 1):
-            even = 0.5 * (out[i - 1] + out[i + 1])
-            out[i] = min(max(even, middle[i] - free[i]), middle[i] + free[i])
-    return out
-
-
-@exact_kernel
-def _cheapest(
-    clear: Floats32, standing: Floats, prices: _Prices, begin: Indices, favoured: Indices
-) -> tuple[Indices, float]:
-    """Columns and turns (m, 2) of the cheapest way from the cell `begin` to the farthest row that can be reached.
-
-    `standing` (turns,) is what a row costs in each turn; `favoured` (rows, 2) the cells that are liked.
-    """
-    rows, columns, turns = clear.shape[1], clear.shape[2], clear.shape[3]
-    cost, parents = np.full((rows, columns, turns), np.inf), np.zeros((rows, columns, turns), np.int8)
-    _turn_on_the_spot(clear[0, 0, begin[0]], prices, begin[1], cost[0, begin[0]])
-    here, last = min(clear[0, 0, begin[0], begin[1]], prices.margin), 0
-    while last + 1 < rows and _settle(clear, standing, prices, here, favoured, last + 1, cost, parents):
-        last += 1
-    least, end_j, end_t = np.inf, begin[0], begin[1]
-    for j in range(columns):
-        for t in range(turns):
-            beside, turned = (j - columns // 2) ** 2, (t - turns // 2) ** 2
-            total = cost[last, j, t] + prices.ends[0] * beside + prices.ends[1] * turned
-            if total < least:
-                least, end_j, end_t = total, j, t
-    way = np.empty((last + 1, 2), np.int64)
-    for i in range(last, -1, -1):
-        way[i, 0], way[i, 1] = end_j, end_t
-        move = parents[i, end_j, end_t]
-        if i > 0:
-            end_j, end_t = end_j - (move // 3 - 1), end_t - (move % 3 - 1)
-    return way, least
-
-
-@exact_kernel
-def _turn_on_the_spot(clear: Floats32, prices: _Prices, begin: int, cost: Floats) -> None:
-    """What it costs (turns,) to begin in another turn than `begin`, where there is room for it."""
-    cost[begin] = 0.0
-    for side in (-1, 1):
-        t = begin + side
-        while 0 <= t < cost.shape[0] and clear[t] >= prices.margin + prices.swerving:
-            cost[t] = cost[t - side] + prices.spot
-            t += side
-
-
-@exact_kernel
-def _settle(
-    clear: Floats32,
-    standing: Floats,
-    prices: _Prices,
-    here: float,
-    favoured: Indices,
-    i: int,
-    cost: Floats,
-    parents: NDArray[np.int8],
-) -> bool:
-    """Cost and parent of every cell of row `i`; whether any can be reached. `here` is asked for near the start."""
-    reached, needed = False, here if i <= _LEAVING else prices.margin
-    for j in range(clear.shape[2]):
-        for t in range(clear.shape[3]):
-            if clear[0, i, j, t] < needed:
-                continue
-            best, move = _best_move(clear, prices, i, j, t, cost)
-            if best == np.inf:
-                continue
-            own = standing[t] + prices.beside * (j - clear.shape[2] // 2) ** 2
-            for g in range(3):
-                own += prices.bodies[g] * (prices.comfort - clear[g, i, j, t])
-            if abs(favoured[i, 0] - j) <= 1 and abs(favoured[i, 1] - t) <= 1:
-                own -= prices.keeping
-            cost[i, j, t], parents[i, j, t] = best + own, move
-            reached = True
-    return reached
-
-
-@exact_kernel
-def _best_move(clear: Floats32, prices: _Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
-    """The cheapest way to a cell from the row before it, and by which of nine moves."""
-    best, move = np.inf, 0
-    for m in range(9):
-        dj, dt = m // 3 - 1, m % 3 - 1
-        if not (0 <= j - dj < clear.shape[2] and 0 <= t - dt < clear.shape[3]):
-            continue
-        narrow = min(clear[0, i, j, t], clear[0, i - 1, j - dj, t - dt])
-        if dt != 0 and narrow < prices.margin + prices.swerving:
-            continue
-        total = cost[i - 1, j - dj, t - dt] + prices.shifting * dj * dj + prices.turning * dt * dt
-        if total < best:
-            best, move = total, m
-    return best, move

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum
 
-from elbowroom.planning.root_evasion import EvasionSettings
+from elbowroom.planning.root_evasion import WIDE, EvasionSettings
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_route import RouteSettings
@@ -26,6 +26,8 @@ class RootPlannerSettings:
     motion: RootMotionSettings = field(default_factory=RootMotionSettings)
     route: RouteSettings = field(default_factory=RouteSettings)
     evasion: EvasionSettings = field(default_factory=EvasionSettings)
+    wide: EvasionSettings = WIDE
+    wide_from: float = 0.3  # seconds lost by what is known, from which on wide ways are thought of
     sight: float = 3.2  # how far ahead the way is looked at
     widest_detour: float = 1.6  # how far from the line of travel a way round may lead
     worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
@@ -38,6 +40,8 @@ class RootPlannerSettings:
     dead_end: float = 2.0  # seconds that a way costs that ends before an obstacle
     aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
     turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
+    polite: float = 0.15  # metres that are kept from what moves
+    crowded: float = 4.0  # seconds that a path costs for each metre less
     # Velocities forward and to the left with which to step out of the way of what moves, as they are liked.
     steps_aside: tuple[tuple[float, float], ...] = (
         *((-0.7, 0.0), (0.0, 0.6), (0.0, -0.6), (-0.5, 0.45), (-0.5, -0.45)),

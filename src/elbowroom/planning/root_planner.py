@@ -10,13 +10,16 @@ show, and if from each of its key frames a stop would be free too. So the next p
 import math
 from collections.abc import Iterator, Sequence
 from time import perf_counter_ns
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import DOF
 from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import RootState
+from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_body import LowerBody
 from elbowroom.planning.root_evasion import EvasionFinder
@@ -37,6 +40,23 @@ Evading = tuple[Profile, TravelLine] | None  # the evasion being followed, and t
 Candidate = tuple[RootPlan, Evading]
 
 
+class _Asked(NamedTuple):
+    """What a path is asked for."""
+
+    start: RootState
+    command: Command
+    horizon: int
+    interval: float
+    start_time: float
+
+
+class _Offer(NamedTuple):
+    """A candidate, or the pace at which one would be walked."""
+
+    lost: float  # seconds
+    what: Candidate | float
+
+
 class RootPlanner:
     """Plans root paths for one humanoid in one scene.
 
@@ -53,6 +73,8 @@ class RootPlanner:
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
         )
         self._evasions = EvasionFinder(humanoid, scene.boxes.table, self.settings.evasion)
+        self._wide = EvasionFinder(humanoid, scene.boxes.table, self.settings.wide)
+        self._figure = _figure(self.body.model)
         self._moving = scene.moving
         self.others = MovingBoxes()  # that move besides the scene's own
         self.reset()
@@ -98,7 +120,7 @@ class RootPlanner:
         else:
             self._line, speed = self._travel_line(start, command), wanted_speed(command, self.settings.motion)
             answer = query.travelled(self._line, pace * speed)
-            lost = self._lost(self._line, speed, answer, interval)
+            lost = self._lost(self._line, speed, answer, query)
         self._last = answer.states
         path = RootPath(start_time, interval, answer.states)
         return RootPlan(path, answer.kind, answer.goal, query.checks, perf_counter_ns() - began, lost)
@@ -114,11 +136,12 @@ class RootPlanner:
     ) -> Iterator[RootPlan]:
         """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
 
-        The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. The last one
-        that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
+        The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
+        that lead far aside are thought of when the others have become dear. The last one that was given is the one that
+        is being followed; whoever takes an earlier one says so (`follow`).
         """
         self._offered.clear()
-        for plan in self._candidates(start, command, horizon, interval, start_time, paces):
+        for plan in self._candidates(_Asked(start, command, horizon, interval, start_time), paces):
             self._offered.append((plan, self._evading))
             yield plan
 
@@ -128,63 +151,64 @@ class RootPlanner:
             if offered is plan:
                 self._taken(offered, evading)
 
-    def _candidates(
-        self,
-        start: RootState,
-        command: Command,
-        horizon: int,
-        interval: float,
-        start_time: float,
-        paces: Sequence[float],
-    ) -> Iterator[RootPlan]:
-        commanded = self.plan(start, command, horizon, interval, start_time)
+    def _candidates(self, asked: _Asked, paces: Sequence[float]) -> Iterator[RootPlan]:
+        start, command, horizon, interval, _ = asked
+        commanded = self.plan(*asked)
         known = self._evading
         slow = wanted_speed(command, self.settings.motion) < _SLOW
         line = None if command.idle or _turns(command) or slow else self._line
-        self._evading = known if self._still_turned(start) else None
+        direct = known if self._still_turned(start) else None
+        offers: list[_Offer] = []
         if commanded.lost < self.settings.untroubled:
+            self._evading = direct
             yield commanded
-            others = []
         else:
-            others = [(commanded, self._evading)]
-        if line is not None:
-            others += self._evaded(start, command, horizon, interval, start_time, line, known)
-        others.sort(key=lambda other: other[0].lost)
-        waiting = [(commanded.lost + horizon * interval * (1.0 - pace), pace) for pace in paces if pace < 1.0]
-        for cost, pace in waiting:
-            while others and others[0][0].lost <= cost:
-                yield self._taken(*others.pop(0))
-            self._evading = known if self._still_turned(start) else None
-            yield self.plan(start, command, horizon, interval, start_time, pace)
-        for other in others:
-            yield self._taken(*other)
+            offers.append(_Offer(commanded.lost, (commanded, direct)))
+        duration = horizon * interval
+        offers += [_Offer(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
+        grids = [] if line is None else [self._evasions, self._wide]
+        if commanded.kind is RootPlanKind.STOPPED and line is not None and self._is_faced(asked):
+            yield from self._steps_aside(asked, direct)
+        while offers or grids:
+            offers.sort(key=lambda offer: offer.lost)
+            if line is not None and grids and _dearer(offers, self.settings.wide_from if len(grids) == 1 else 0.0):
+                offers += self._evaded(asked, line, known, grids.pop(0))
+                continue
+            what = offers.pop(0).what
+            if isinstance(what, float):
+                self._evading = direct
+                yield self.plan(*asked, what)
+            else:
+                yield self._taken(*what)
         if len(self.moving):
-            query = self._query(start, horizon, interval, start_time)
-            for states in query.steps_aside():
-                path = RootPath(start_time, interval, states)
-                yield self._taken(RootPlan(path, RootPlanKind.EVASION, (start.x, start.z), 0, 0), self._evading)
+            yield from self._steps_aside(asked, direct)
+
+    def _steps_aside(self, asked: _Asked, evading: Evading) -> Iterator[RootPlan]:
+        """Short ways out of the way of what moves."""
+        start, _, horizon, interval, start_time = asked
+        for states in self._query(start, horizon, interval, start_time).steps_aside():
+            path = RootPath(start_time, interval, states)
+            yield self._taken(RootPlan(path, RootPlanKind.EVASION, (start.x, start.z), 0, 0), evading)
+
+    def _is_faced(self, asked: _Asked) -> bool:
+        """Whether something that could move stands near: to wait for it would be to wait for ever."""
+        start, _, horizon, interval, start_time = asked
+        around = MovingAround(self.body, self.moving, start_time, horizon, interval)
+        return bool(around) and len(around.standing().around(np.array([[start.x, start.z]]), _NEAR).table) > 0
 
     def _taken(self, plan: RootPlan, evading: Evading) -> RootPlan:
         self._last, self._evading = plan.path.states, evading
         return plan
 
-    def _evaded(
-        self,
-        start: RootState,
-        command: Command,
-        horizon: int,
-        interval: float,
-        start_time: float,
-        line: TravelLine,
-        known: Evading,
-    ) -> list[Candidate]:
+    def _evaded(self, asked: _Asked, line: TravelLine, known: Evading, finder: EvasionFinder) -> list[_Offer]:
         """Evasions from the line of travel, each once."""
+        start, command, horizon, interval, start_time = asked
         began, speed = perf_counter_ns(), wanted_speed(command, self.settings.motion)
-        evasion = self.settings.evasion
+        evasion = finder.settings
         speeds = (speed, min(speed, evasion.sideways))
-        grid = self._evasions.ahead_of(line, start, self.settings.sight, speeds, self.moving, start_time)
+        grid = finder.ahead_of(line, start, self.settings.sight, speeds, self.moving, start_time)
         kept = known[0] if known is not None and known[1] == line else None
-        found: list[Candidate] = []
+        found: list[_Offer] = []
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
             for care in evasion.cares:
@@ -194,15 +218,16 @@ class RootPlanner:
                 profiles.append(way.profile)
                 query = self._query(start, horizon, interval, start_time)
                 answer = query.evaded(line, way, speed)
-                lost, path = self._lost(line, speed, answer, interval), RootPath(start_time, interval, answer.states)
+                lost, path = self._lost(line, speed, answer, query), RootPath(start_time, interval, answer.states)
                 checks, spent = grid.cells + query.checks, perf_counter_ns() - began
-                found.append((RootPlan(path, answer.kind, answer.goal, checks, spent, lost), (way.profile, line)))
+                plan = RootPlan(path, answer.kind, answer.goal, checks, spent, lost)
+                found.append(_Offer(lost, (plan, (way.profile, line))))
                 if answer.whole:
                     break
         return found
 
-    def _lost(self, line: TravelLine, speed: float, answer: Answer, interval: float) -> float:
-        """Seconds that a path costs against a walk along the line of travel at the wanted speed."""
+    def _lost(self, line: TravelLine, speed: float, answer: Answer, query: RootQuery) -> float:
+        """Seconds that a path costs against a walk along the line of travel at the wanted speed, all by itself."""
         if speed < _SLOW:
             return 0.0
         states = answer.states
@@ -210,11 +235,12 @@ class RootPlanner:
         sine, cosine = np.sin(line.heading), np.cos(line.heading)
         ahead = (states[:, 0] - line.x) * sine + (states[:, 1] - line.z) * cosine
         aside = np.abs((states[:, 0] - line.x) * cosine - (states[:, 1] - line.z) * sine)
-        duration = interval * (len(states) - 1)
+        duration = query.interval * query.horizon
         slower = max(speed - float(np.hypot(*states[0, 3:5])), 0.0)
         behind = speed * duration - 0.5 * slower * slower / self.bounds.acceleration - float(ahead[-1] - ahead[0])
         behind += speed * s.dead_end * answer.ends
-        return behind / speed + s.aside_cost * float(aside.mean()) + s.turned_cost * float(turned.mean())
+        crowd = s.crowded * max(s.polite - query.around.gap(states, *self._figure), 0.0)
+        return behind / speed + crowd + s.aside_cost * float(aside.mean()) + s.turned_cost * float(turned.mean())
 
     def _travel_line(self, start: RootState, command: Command) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed.
@@ -241,8 +267,21 @@ class RootPlanner:
         return bool(np.min(np.hypot(self._last[:, 0] - start.x, self._last[:, 1] - start.z)) < 0.5)
 
 
+def _figure(model: BodyModel) -> tuple[float, float]:
+    """Half the breadth of a body that stands with hanging arms, and its height, metres."""
+    ends = posture_capsules(model, np.zeros((1, DOF)), np.zeros((1, ROOT_STATE))).reshape(-1, 2, 3)
+    reach = np.abs(ends).max(axis=1) + model.body.radii[:, None]
+    return float(reach[:, 0].max()), float(reach[:, 1].max())
+
+
+_NEAR = 1.0  # metres
 _TURNED = 0.05  # radians
 _SLOW = 0.1  # m/s: who wants to go no faster is in no hurry
+
+
+def _dearer(offers: list[_Offer], lost: float) -> bool:
+    """Whether all offers, in order, cost at least so many seconds."""
+    return not offers or offers[0].lost >= lost
 
 
 def _turns(command: Command) -> bool:

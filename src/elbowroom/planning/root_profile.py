@@ -96,6 +96,7 @@ def follow_profile(
         swing = (_at(rows, gone + 0.5, 1) - _at(rows, gone - 0.5, 1)) / step * speed
         aside = speed * slope
         aside += _EAGER / interval * (_at(rows, gone, 0) - left - 0.5 * interval * (across + aside))
+        aside = min(max(aside, -course.sideways), course.sideways)
         turned = wrapped(states[k, 2] - course.facing)
         turn = swing + _EAGER / interval * (_at(rows, gone, 1) - turned - 0.5 * interval * (states[k, 5] + swing))
         turn = min(max(turn, -bounds.turn_rate), bounds.turn_rate)

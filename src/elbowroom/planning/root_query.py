@@ -63,6 +63,7 @@ class RootQuery:
         run = self.settings.motion.run_speed
         reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
         self.boxes = self.body.boxes.around(np.array([[start.x, start.z]]), reach)
+        self.mapped = self.boxes + around.standing() if around else self.boxes
         self.checks = 0
         self.skin = self._skin_at(np.array([start, start]))
 
@@ -151,7 +152,7 @@ class RootQuery:
     def _given_way(self) -> Floats:
         """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
         best, longest = self._stopped(), -1
-        for states in (best, *self.steps_aside()):
+        for states in (best, *self._steps_aside()):
             kept = self._kept(states)
             if kept == self.horizon:
                 return states
@@ -160,7 +161,10 @@ class RootQuery:
         return best
 
     def steps_aside(self) -> Iterator[Floats]:
-        """Short ways back, to both sides and on, in the order in which they are liked."""
+        """Those short ways back, to both sides and on that are free, in the order in which they are liked."""
+        return (states for states in self._steps_aside() if self._kept(states) == self.horizon)
+
+    def _steps_aside(self) -> Iterator[Floats]:
         for forward, lateral in self.settings.steps_aside:
             states, wanted = self._blank(), np.array([forward, lateral, 0.0])
             steer(states, wanted, self.interval, self.bounds)
@@ -258,16 +262,16 @@ class RootQuery:
 
     def _free_length(self, route: Floats) -> float:
         """Metres along the route before the standing figure would touch; infinite if it never does."""
-        if not len(self.boxes.table):
+        if not len(self.mapped.table):
             return math.inf
         legs = np.diff(route, axis=0)
         ways, lengths = np.arctan2(legs[:, 0], legs[:, 1]), np.hypot(legs[:, 0], legs[:, 1])
         half = self.body.stance.radius + self.settings.margin + 1e-3
         rows = zip(route[:-1, 0], route[:-1, 1], ways, lengths, strict=True)
-        if all(strip_is_free(x, z, way, length, half, self.boxes.ground) for x, z, way, length in rows):
+        if all(strip_is_free(x, z, way, length, half, self.mapped.ground) for x, z, way, length in rows):
             return math.inf
         points, along = route_points(route, 0.04)
-        clear = self.body.standing_clearance(self.boxes, points)
+        clear = self.body.standing_clearance(self.mapped, points)
         self.checks += len(points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
         blocked = np.flatnonzero((clear < self.settings.margin) & ~leaving)
@@ -279,7 +283,7 @@ class RootQuery:
         shape = (round((behind + _cells(self.settings.sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
         roomy = max(margin for margin, _ in self.settings.searches) + self.settings.route.roomy
-        window = walkable_window(self.boxes.table, self.body.stance, origin, line.heading, shape, cell, roomy)
+        window = walkable_window(self.mapped.table, self.body.stance, origin, line.heading, shape, cell, roomy)
         self.checks += window.clearance.size
         return window
 
