@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import elbowroom
+from avatar_builder import Recipe, build
 from live_page import LivePage
 from live_server import LiveServer
 from shared_data import SHARED
@@ -115,6 +116,18 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live.page.keyboard.down("w")
     live.wait("s.root.z > 0.3")
     live.page.keyboard.up("w")
+
+
+def test_the_page_says_what_a_file_permits_and_what_was_made_of_it(open_page: Open, tmp_path: Path) -> None:
+    live = open_page("scene=empty")
+    file = tmp_path / "mine.vrm"
+    file.write_bytes(build(Recipe(vrm="1", mesh=False)))
+    live.page.set_input_files("#file", str(file))
+    live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60)
+    live.page.click("#avatar-about summary")
+    facts = live.page.inner_text("#avatar-about ul")
+    assert "redistribution: forbidden" in facts
+    assert "average proportions" in facts
 
 
 def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:

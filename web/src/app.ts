@@ -13,6 +13,7 @@ import { Session, type SessionListener } from "./net/session";
 import { OVERLAYS, type OverlayName } from "./overlays/overlay_names";
 import { Picture } from "./picture";
 import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
+import { showAvatarAbout } from "./ui/avatar_about";
 import { byId } from "./ui/dom";
 import { listenForFiles } from "./ui/file_drop";
 import { Help } from "./ui/help";
@@ -96,7 +97,7 @@ export class App implements SessionListener, MenuListener {
 
   avatar(message: AvatarMessage): void {
     this.bodyIsAvatar = message.url === null;
-    this.aboutAvatar(message);
+    showAvatarAbout(message);
     this.menu.addAvatar(message.id, message.title);
     this.subscribe();
     this.veil.download(true);
@@ -109,14 +110,6 @@ export class App implements SessionListener, MenuListener {
 
   clip(message: ClipMessage): void {
     this.menu.clips.show(message);
-  }
-
-  /** Author and licence, as the file states them. */
-  private aboutAvatar(message: AvatarMessage): void {
-    const by = message.authors.length > 0 ? `by ${message.authors.join(", ")}` : "";
-    const about = byId("avatar-about", HTMLElement);
-    about.textContent = [by, message.licence].filter(Boolean).join(" · ");
-    about.hidden = about.textContent === "";
   }
 
   avatarLost(id: string): void {

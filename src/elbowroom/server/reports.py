@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup
+from elbowroom.body.humanoid import AvatarMeta
 from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
 from elbowroom.planning.result import BlockadeKind
@@ -31,6 +32,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
+_MOST_FACTS = 20
 _GROUPS: dict[DofGroup, GroupName] = {
     DofGroup.ROOT: "root",
     DofGroup.WAIST: "waist",
@@ -83,6 +85,7 @@ def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
         title=avatar.title,
         authors=list(humanoid.meta.authors),
         licence=humanoid.meta.licence,
+        facts=_facts(humanoid.meta),
         format=humanoid.meta.format,
         url=f"avatars/{avatar.id}.glb" if shown else None,
         bones=[Bone(name, node) for name, node in zip(skeleton.names, nodes, strict=True)],
@@ -93,6 +96,11 @@ def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
         ],
         height=skeleton.height,
     )
+
+
+def _facts(meta: AvatarMeta) -> list[str]:
+    permissions = [f"{name}: {said}" for name, said in meta.permissions.lines().items()]
+    return [*permissions, *meta.notes][:_MOST_FACTS]
 
 
 def clip_message(stored: StoredClip) -> ClipMessage:

@@ -258,6 +258,8 @@ export interface AvatarMessage {
   title: string;
   authors: string[];
   licence: string;
+  /** what the file permits, and what was guessed or left out in reading it */
+  facts: string[];
   format: string;
   /** of the GLB, relative to the page; null for an avatar without a file: draw the capsules */
   url: string | null;

@@ -122,6 +122,7 @@ class AvatarMessage:
     title: str
     authors: list[str]
     licence: str
+    facts: list[str]  # what the file permits, and what was guessed or left out in reading it
     format: str
     url: str | None  # of the GLB, relative to the page; None for an avatar without a file: draw the capsules
     bones: list[Bone]  # in the order of the rotations in a pose frame
