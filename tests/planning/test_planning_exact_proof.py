@@ -11,7 +11,7 @@ from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, chest
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.postures import Postures, postures_of
-from elbowroom.planning.exact.proof import limb_way
+from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.ways import (
     SWEEP,
@@ -60,10 +60,14 @@ class Body:
         self.arms: LimbWays = new_limb_ways(8, ARM.size, carries=False)
 
     def way(self, group: DofGroup, root: int, carrier: int, ends: Ends, boxes: Floats) -> int:
-        ways = self.waists if group is DofGroup.WAIST else self.arms
+        is_waist, roots = group is DofGroup.WAIST, self.roots
+        ways, above, on = (self.waists, roots, root) if is_waist else (self.arms, self.waists, carrier)
+        carried_by = Carrier(
+            above.slots.ids[on], above.places[on], above.turns[on], above.sway[on], roots.slots.keys[root],
+            roots.places[root], above.slots.keys[on],
+        )  # fmt: skip
         at, _ = limb_way(
-            ways, self.postures[group], self.levers[group], self.chain, self.roots, root, self.waists, carrier, ends,
-            boxes, 0.0,
+            ways, self.postures[group], self.levers[group], self.chain, carried_by, ends, boxes, 0.0
         )  # fmt: skip
         return at
 

@@ -83,8 +83,9 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
     """Compile what is not compiled yet, and show what; quick and silent when everything is."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from elbowroom.server.compiling import compile_apart
     from elbowroom.server.kernel_cache import kernels
-    from elbowroom.server.warmup import compile_apart, first_steps
+    from elbowroom.server.warmup import first_steps
 
     columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:

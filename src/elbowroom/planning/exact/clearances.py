@@ -23,9 +23,20 @@ def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> in
             total += (boxes[b, i] - place[i]) ** 2
             half += boxes[b, 12 + i] ** 2
         if np.sqrt(total) - np.sqrt(half) < reach:
-            near[count] = boxes[b]
+            for i in range(boxes.shape[1]):
+                near[count, i] = boxes[b, i]
             count += 1
     return count
+
+
+@exact_kernel
+def relative_to(origin: Floats, boxes: Floats, count: int, places: Floats, out: Floats) -> None:
+    """Move the first `count` boxes (B, 15) by minus a place (3,), and write `places` (N, 3) so moved to `out`."""
+    for i in range(3):
+        for b in range(count):
+            boxes[b, i] -= origin[i]
+        for n in range(places.shape[0]):
+            out[n, i] = places[n, i] - origin[i]
 
 
 @exact_kernel
@@ -66,7 +77,8 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     row = np.empty(15, np.float32)
     for i in range(count):
         box = boxes[i]
-        row[:] = box
+        for k in range(15):
+            row[k] = box[k]
         for b in range(lanes.shape[0]):
             for c in range(lanes.shape[1]):
                 if box_gap(box, balls[b, c, 0], balls[b, c, 1], balls[b, c, 2]) < balls[b, c, 3] + COMFORT:
@@ -106,17 +118,19 @@ def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32
     row = np.empty(15, np.float32)
     checks = 0
     for c in range(lanes.shape[0]):
-        low, high = np.empty(3), np.empty(3)
+        low, high, total = np.empty(3), np.empty(3), 0.0
         for k in range(3):
             low[k], high[k] = np.inf, -np.inf
             for e in range(0, 6, 3):
                 for n in range(lanes.shape[2]):
                     low[k], high[k] = min(low[k], lanes[c, e + k, n]), max(high[k], lanes[c, e + k, n])
-        ball = lanes[c, 6, 0] + 0.5 * np.sqrt(np.sum((high - low) ** 2))
+            total += (high[k] - low[k]) * (high[k] - low[k])
+        ball = lanes[c, 6, 0] + 0.5 * np.sqrt(total)
         x, y, z = 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])
         for b in range(count):
             if box_gap(boxes[b], x, y, z) < ball + COMFORT:
-                row[:] = boxes[b]
+                for k in range(15):
+                    row[k] = boxes[b, k]
                 lower_to_box(lanes[c], row, out[c])
                 checks += lanes.shape[2]
     return checks

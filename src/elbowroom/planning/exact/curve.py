@@ -28,7 +28,8 @@ def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floa
     """
     count, size = values.shape
     tangents = np.zeros((count, size))
-    tangents[0] = first
+    for i in range(size):
+        tangents[0, i] = first[i]
     for k in range(1, count - 1):
         for i in range(size):
             rise = (values[k, i] - values[k - 1, i]) / interval

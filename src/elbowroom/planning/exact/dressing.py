@@ -15,14 +15,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
-from elbowroom.planning.exact.group_search import (
-    Group,
-    GroupTask,
-    GroupWay,
-    Weights,
-    own_postures,
-    search_group,
-)
+from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights, own_postures
+from elbowroom.planning.exact.group_search import search_group
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep
 from elbowroom.planning.exact.lattice import KEPT, OWN, Work
 from elbowroom.planning.exact.near_boxes import NearBoxes

@@ -43,7 +43,7 @@ class Lattice(NamedTuple):
     price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
     masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its steps are open
     closed: Floats32  # (M, W+OWN, W+OWN) infinite where a step is closed, else 0
-    kept: Ints  # (n+1,) the nodes that the last plan had
+    kept: Longs  # (n+1,) the nodes that the last plan had
     step: float  # radians
     weight: float  # w
 
@@ -285,14 +285,23 @@ def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
 
 
 @exact_kernel
-def traced(lattice: Lattice, work: Work, reached: int) -> Ints:
+def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     """The nodes (reached+1,) of the cheapest way to that depth; the first is HOLD, the start."""
-    way = np.empty(reached + 1, np.int32)
+    way = np.empty(reached + 1, np.int64)
     way[reached] = np.argmin(work.costs[reached])
     for depth in range(reached, 0, -1):
         way[depth - 1] = work.parents[depth, way[depth]]
     way[0] = lattice.moves.shape[1] + HOLD
     return way
+
+
+@exact_kernel
+def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
+    """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
+    for t in range(way.shape[0]):
+        posture = posture_of(lattice, t, way[t])
+        for i in range(posture.shape[0]):
+            keys[t, i] = posture[i]
 
 
 @exact_kernel

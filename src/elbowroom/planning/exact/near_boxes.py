@@ -38,8 +38,8 @@ def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float)
     doubled = [coming.swept(path.times[[max(t - 1, 0), min(t + 1, count)]]) for t in range(count + 1)]
     weights = np.sqrt(np.arange(2.0, 2.0 + len(near) * BOX_ROW))
     return NearBoxes(
-        np.concatenate([intervals, sweeps[:, near]], axis=1),
-        np.concatenate([slices, np.concatenate(doubled)], axis=1),
+        np.ascontiguousarray(np.concatenate([intervals, sweeps[:, near]], axis=1)),
+        np.ascontiguousarray(np.concatenate([slices, np.concatenate(doubled)], axis=1)),
         sweeps[:, near].reshape(count, -1) @ weights,
         np.concatenate([rows, len(table) + near]),
     )

@@ -3,12 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inlined
+from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances
 from elbowroom.planning.exact.lattice import OWN, Lattice, Work, posture_of, slopes_of, squares_from
 from elbowroom.planning.exact.postures import BETWEEN, BLOCK, Postures
 from elbowroom.planning.exact.ways import SWEEP
-from elbowroom.planning.limb import pose
+from elbowroom.planning.limb import Limb, pose
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -26,7 +27,7 @@ def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     posture = posture_of(lattice, depth, node)
     squares_from(lattice.columns, posture, out[:width])
     for e in range(OWN):
-        out[width + e] = np.sum((lattice.own[depth, e] - posture) ** 2)
+        out[width + e] = squared_distance(lattice.own[depth, e], posture)
 
 
 @exact_kernel
@@ -71,7 +72,8 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
             if not start + end[b] <= limit or seen[a, b] or closed[a, b] == _INFINITE or a == b:
                 continue
             if b >= width:
-                move = np.float32(np.sum((lattice.own[depth + 1, b - width] - posture_of(lattice, depth, a)) ** 2))
+                own = lattice.own[depth + 1, b - width]
+                move = np.float32(squared_distance(own, posture_of(lattice, depth, a)))
                 move = move if move <= lattice.step * lattice.step else _INFINITE
             else:
                 move = lattice.moves[a, b] if a < size else work.squares[depth, a - width, b]
@@ -84,25 +86,44 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
     return found[:count]
 
 
-@exact_kernel
-def _posed_between(postures: Postures, lattice: Lattice, depth: int, steps: Ints, part: int, lanes: Floats32) -> None:
-    """The capsules (C, 7, K) of every step's posture at `part` of its way."""
+@inlined
+def _posed_between(
+    limb: Limb, pairs: Ints, between: Floats32, lattice: Lattice, depth: int, steps: Ints, part: int, lanes: Floats32
+) -> None:
+    """The capsules (C, 6, K) of every step's posture at `part` of its way."""
     size = lattice.postures.shape[0]
     share = (part + 1.0) / (BETWEEN + 1.0)
-    configuration = np.empty((1, lattice.goals.shape[1]))
+    configuration, last = np.empty((1, lattice.goals.shape[1])), steps.shape[0] - 1
     for k in range(lanes.shape[2]):
-        a, b = steps[min(k, steps.shape[0] - 1)]
-        pair = postures.pairs[a, b] if a < size and b < size else -1
+        a, b = steps[min(k, last), 0], steps[min(k, last), 1]
+        pair = pairs[a, b] if a < size and b < size else -1
         if pair >= 0:
-            lanes[:, :6, k] = postures.between[pair, part if a < b else BETWEEN - 1 - part]
-        elif k < steps.shape[0]:
-            start = posture_of(lattice, depth, a)
-            configuration[0] = start + share * (posture_of(lattice, depth + 1, b) - start)
-            lanes[:, :6, k] = pose(postures.limb, configuration)[:, :, 0]
+            _set_lane(lanes, k, between[pair, part if a < b else BETWEEN - 1 - part])
+        elif k <= last:
+            start, end = posture_of(lattice, depth, a), posture_of(lattice, depth + 1, b)
+            for i in range(configuration.shape[1]):
+                configuration[0, i] = start[i] + share * (end[i] - start[i])
+            _set_lane(lanes, k, pose(limb, configuration)[:, :, 0])
         else:
-            lanes[:, :6, k] = lanes[:, :6, k - 1]
+            _set_lane(lanes, k, lanes[:, :, k - 1])
+
+
+@exact_kernel
+def _set_lane(lanes: Floats32, k: int, capsules: Floats32) -> None:
+    """Capsules (C, 6) into lane k."""
     for c in range(lanes.shape[0]):
-        lanes[c, 6, :] = postures.limb.radii[c]
+        for i in range(6):
+            lanes[c, i, k] = capsules[c, i]
+
+
+@exact_kernel
+def _take(lanes: Floats32, radii: Floats32, first: int, piece: Floats32) -> None:
+    """Sixteen lanes and their radii into `piece` (C, 7, 16)."""
+    for c in range(piece.shape[0]):
+        for n in range(BLOCK):
+            for i in range(6):
+                piece[c, i, n] = lanes[c, i, first + n]
+            piece[c, 6, n] = radii[c]
 
 
 @exact_kernel
@@ -120,26 +141,27 @@ def close_steps(
 
     `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
     """
-    width = (steps.shape[0] + BLOCK - 1) // BLOCK * BLOCK
-    count_of_capsules = postures.limb.radii.shape[0]
-    lanes = np.empty((count_of_capsules, 7, width), np.float32)
-    out = np.empty((count_of_capsules, BLOCK), np.float32)
+    limb, pairs, between, reach = postures.limb, postures.pairs, postures.between, postures.reach
+    width, radii = (steps.shape[0] + BLOCK - 1) // BLOCK * BLOCK, limb.radii
+    lanes = np.empty((radii.shape[0], 6, width), np.float32)
+    piece, out = np.empty((radii.shape[0], 7, BLOCK), np.float32), np.empty((radii.shape[0], BLOCK), np.float32)
     near, moved, closed = np.empty_like(boxes), np.empty_like(boxes), lattice.closed[lattice.masks[depth]]
     checks = 0
     for part in range(BETWEEN):
         look = (part + 1) * SWEEP // (BETWEEN + 1)
-        count = boxes_around(boxes, places[look], postures.reach, near)
+        place, turn = places[look], turns[look]
+        count = boxes_around(boxes, place, reach, near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(near[b], places[look], turns[look], moved[b])
-        _posed_between(postures, lattice, depth, steps, part, lanes)
+            box_in_frame(near[b], place, turn, moved[b])
+        _posed_between(limb, pairs, between, lattice, depth, steps, part, lanes)
         for block in range(0, width, BLOCK):
             out[:] = _INFINITE
-            piece = lanes[:, :, block : block + BLOCK].copy()
+            _take(lanes, radii, block, piece)
             checks += capsule_clearances(piece, moved, count, out)
             for k in range(block, min(block + BLOCK, steps.shape[0])):
-                for c in range(count_of_capsules):
+                for c in range(radii.shape[0]):
                     if out[c, k - block] < skin:
                         closed[steps[k, 0], steps[k, 1]] = _INFINITE
     return checks

@@ -17,6 +17,7 @@ from elbowroom.planning.exact.clearances import (
     capsule_clearances,
     lower_blocks,
     place_capsules,
+    relative_to,
 )
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
@@ -61,32 +62,54 @@ def table_of(
     """
     size = goals.shape[1]
     key = np.empty(1 + 2 * size)
-    key[0], key[1 : 1 + size], key[1 + size :] = carrier, goals[0], goals[1]
+    key[0] = carrier
+    for i in range(size):
+        key[1 + i], key[1 + size + i] = goals[0, i], goals[1, i]
     known = find(tables.slots, key)
     if known >= 0:
         return int(known), 0
     at = admit(tables.slots, key)
     early, late = tables.early[at], tables.late[at]
+    checks = _moments(postures.lanes, postures.balls, postures.reach, places, turns, boxes, early, late)
+    width = early.shape[0] - 1
+    early[width], count = held_clearance(postures, goals[0], places, turns, boxes, int(HELD_EARLY))
+    late[width], more = held_clearance(postures, goals[1], places, turns, boxes, int(HELD_LATE))
+    return int(at), checks + count + more
+
+
+@exact_kernel
+def _moments(
+    lanes: Floats32, balls: Floats, reach: float, places: Floats, turns: Floats, boxes: Floats, early: Floats32,
+    late: Floats32,
+) -> int:  # fmt: skip
+    """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
     early[:], late[:] = _FAR, _FAR
-    width, checks = early.shape[0] - 1, 0
-    near, moved, row = np.empty_like(boxes), np.empty_like(boxes), np.empty((width // BLOCK, BLOCK), np.float32)
+    checks = 0
+    near, moved = np.empty_like(boxes), np.empty_like(boxes)
+    rows = np.empty((lanes.shape[0], BLOCK), np.float32)
     for i in range(_MOMENTS):
-        look = i * _STRIDE
-        count = boxes_around(boxes, places[look], postures.reach, near)
+        place, turn = places[i * _STRIDE], turns[i * _STRIDE]
+        count = boxes_around(boxes, place, reach, near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(near[b], places[look], turns[look], moved[b])
-        row[:] = _FAR
-        checks += lower_blocks(postures.lanes, postures.balls, moved, count, row)
-        flat = row.reshape(width)
+            box_in_frame(near[b], place, turn, moved[b])
+        rows[:] = _FAR
+        checks += lower_blocks(lanes, balls, moved, count, rows)
         if i < _EARLY:
-            early[:width] = np.minimum(early[:width], flat)
+            _lower(early, rows)
         if i >= _LATE:
-            late[:width] = np.minimum(late[:width], flat)
-    early[width], count = held_clearance(postures, goals[0], places, turns, boxes, HELD_EARLY)
-    late[width], more = held_clearance(postures, goals[1], places, turns, boxes, HELD_LATE)
-    return int(at), checks + count + more
+            _lower(late, rows)
+    return checks
+
+
+@exact_kernel
+def _lower(row: Floats32, blocks: Floats32) -> None:
+    """Lower the beginning of a row to what is in blocks (B, 16)."""
+    for b in range(blocks.shape[0]):
+        lanes, block = row[b * BLOCK : (b + 1) * BLOCK], blocks[b]
+        for i in range(np.uint64(BLOCK)):
+            lanes[i] = min(lanes[i], block[i])
 
 
 @exact_kernel
@@ -95,22 +118,29 @@ def held_clearance(
 ) -> tuple[float, int]:
     """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
     begin, end = (0, 1) if part == HELD_AT_START else (0, _EARLY) if part == HELD_EARLY else (_LATE, _MOMENTS)
-    origin = places[0].copy()
-    near = np.empty_like(boxes)
-    count = boxes_around(boxes, origin, postures.reach + 0.5, near)
+    limb, reach = postures.limb, postures.reach
+    origin, near = places[0], np.empty_like(boxes)
+    count = boxes_around(boxes, origin, reach + 0.5, near)
     if count == 0:
         return float(_FAR), 0
-    near[:count, :3] -= origin
-    segments = pose(postures.limb, configuration.reshape(1, -1))
-    total = end - begin
-    held = np.empty((segments.shape[0], 6, total), np.float32)
-    at, frames = np.empty((total, 3)), np.empty((total, 4))
-    for i in range(total):
-        held[:, :, i] = segments[:, :, 0]
-        look = (begin + i) * _STRIDE
-        at[i], frames[i] = places[look] - origin, turns[look]
+    posture = np.empty((1, configuration.shape[0]))
+    for i in range(configuration.shape[0]):
+        posture[0, i] = configuration[i]
+    segments, radii, total = pose(limb, posture), limb.radii, end - begin
+    held, at, frames = np.empty((segments.shape[0], 6, total), np.float32), np.empty((total, 3)), np.empty((total, 4))
+    for n in range(total):
+        look = (begin + n) * _STRIDE
+        for i in range(3):
+            at[n, i] = places[look, i]
+        for i in range(4):
+            frames[n, i] = turns[look, i]
+        for c in range(segments.shape[0]):
+            for i in range(6):
+                held[c, i, n] = segments[c, i, 0]
+    relative_to(origin, near, count, at, at)
     lanes = np.empty((segments.shape[0], 7, BLOCK), np.float32)
-    place_capsules(held, postures.limb.radii, at, frames, lanes)
-    out = np.full((segments.shape[0], BLOCK), _FAR, np.float32)
+    place_capsules(held, radii, at, frames, lanes)
+    out = np.empty((segments.shape[0], BLOCK), np.float32)
+    out[:] = _FAR
     checks = capsule_clearances(lanes, near, count, out)
     return float(out.min()), checks

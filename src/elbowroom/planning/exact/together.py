@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.group_search import Group, GroupTask, GroupWay, own_postures
+from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, own_postures
 from elbowroom.planning.exact.joint_step import GroupNodes, Surroundings
 from elbowroom.planning.exact.lattice import HOLD, KEPT, OWN
 from elbowroom.planning.exact.postures import BLOCK

@@ -18,8 +18,9 @@ from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.dressing import Dressing, Shelves
-from elbowroom.planning.exact.group_search import Group, Weights, new_masks
+from elbowroom.planning.exact.group import Group, Weights
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
+from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import Postures, postures_of

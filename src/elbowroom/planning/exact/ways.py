@@ -161,7 +161,9 @@ def states_between(a: Floats, b: Floats, interval: float, first: float, last: fl
     """Root states (count+1, 7) at equal steps from the part `first` to the part `last` of a key interval."""
     out = np.empty((count + 1, 7))
     for i in range(count + 1):
-        out[i] = interpolate_root(a, b, first + (last - first) * i / count, interval)
+        state = interpolate_root(a, b, first + (last - first) * i / count, interval)
+        for k in range(7):
+            out[i, k] = state[k]
     return out
 
 
@@ -255,15 +257,23 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
 
 @exact_kernel
 def carry(
-    chain: Chain, waists: Floats, moved: Floats, places: Floats, turns: Floats, sway: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """The chest's frames in the world and its sway, for waists (N, d) on pelvis frames and their sway (N-1,)."""
+    chain: Chain, waists: Floats, moved: Floats, places: Floats, turns: Floats, sway: Floats, chest: Floats,
+    chest_turns: Floats, chest_sway: Floats,
+) -> None:  # fmt: skip
+    """The chest's frames in the world and its sway, for waists (N, d) on pelvis frames and their sway (N-1,).
+
+    They are written to `chest` (N, 3), `chest_turns` (N, 4) and `chest_sway` (N-1,).
+    """
+    lever, lift = chain.lever, chain.lift
     inner, inner_turns = carried_frames(chain.waist, waists)
     out, out_turns = compose(places, turns, inner, inner_turns)
-    more = np.empty(sway.shape[0])
+    for n in range(waists.shape[0]):
+        for i in range(3):
+            chest[n, i] = out[n, i]
+        for i in range(4):
+            chest_turns[n, i] = out_turns[n, i]
     for i in range(sway.shape[0]):
-        more[i] = sway[i] + chain.lever * moved[i, 0] + chain.lift * moved[i, 1]
-    return out, out_turns, more
+        chest_sway[i] = sway[i] + lever * moved[i, 0] + lift * moved[i, 1]
 
 
 @exact_kernel

@@ -1,0 +1,83 @@
+"""Compiles every kernel that a live session uses, before anybody waits for it: in processes of their own.
+
+`python -m elbowroom.server.compiling PART` compiles one part by using it and prints each kernel's name as its turn
+comes. A compiler takes 200 MB that a server should not carry for the rest of its life, and holds a lock: so two parts
+that need few of the same kernels are compiled side by side, and meet in the cache on disk.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from threading import Lock
+
+from elbowroom.planning.names import EXACT, FIGURE6
+from elbowroom.server.kernel_cache import is_warm, mark_warm
+from elbowroom.server.library import Library
+from elbowroom.server.warmup import Report, listening, rehearse_limbs, walk_and_stand
+
+PARTS = ("steps", "limbs")  # in this order where there is only one processor
+_TELLING = ("a", "c", "doorway", "traffic")  # where the walk meets what it does not in the open: ways round, evasions
+
+
+def compile_apart(report: Report) -> None:
+    """Compile in processes of their own, unless that was done for the present sources.
+
+    Should one of them fail, nothing is lost: what it did not compile is compiled where it is needed.
+    """
+    if not is_warm() and compile_parts(report, os.environ):
+        mark_warm()
+
+
+def compile_parts(report: Report, environment: Mapping[str, str]) -> bool:
+    """Compile all parts, as many at once as there are processors; whether all went well.
+
+    `report(kernel, number)` hears of each kernel once, when the first process begins with it.
+    """
+    known: set[str] = set()
+    lock = Lock()
+
+    def hear(kernel: str) -> None:
+        with lock:
+            if kernel not in known:
+                report(kernel, len(known))
+                known.add(kernel)
+
+    with ThreadPoolExecutor(min(len(PARTS), os.cpu_count() or 1)) as pool:
+        return all(list(pool.map(lambda part: _follow(part, hear, environment), PARTS)))
+
+
+def _follow(part: str, hear: Callable[[str], None], environment: Mapping[str, str]) -> bool:
+    """Compile a part in another process, and tell the names that it prints."""
+    with subprocess.Popen(
+        command_for(part), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=dict(environment)
+    ) as compiler:
+        assert compiler.stdout is not None
+        for line in compiler.stdout:
+            hear(line.strip())
+    return compiler.returncode == 0
+
+
+def command_for(part: str) -> list[str]:
+    """The command line of the process that compiles a part."""
+    return [sys.executable, "-m", "elbowroom.server.compiling", part]
+
+
+def compile_part(part: str, report: Report) -> None:
+    """Compile a part by using it: `steps` walks with the planner that needs least, `limbs` plans with the other first.
+
+    So they begin far from each other: with the legs and the root's way here, with arms and their searches there.
+    """
+    with listening(report):
+        if part == "limbs":
+            with closing(Library.open(_TELLING[0])) as library:
+                rehearse_limbs(library)
+        for scene in _TELLING:
+            with closing(Library.open(scene)) as library:
+                walk_and_stand(library, EXACT if part == "limbs" else FIGURE6)
+
+
+if __name__ == "__main__":
+    compile_part(sys.argv[1], lambda kernel, number: print(kernel, flush=True))  # noqa: ARG005
