@@ -41,15 +41,10 @@ def _row(path: Path, name: Path, scene: Scene, settings: CrossingSettings) -> st
     result = run_crossing(controller, settings)
     walked = ("straight" if result.straight else "passed") if result.passed else "not crossed"
     took = "" if result.passed_time_s is None else f"{result.passed_time_s:.1f} s"
-    how = Counter(_source(str(source["how"])) for source in facts.bones.values())
+    how = Counter(str(source["how"]) for source in facts.bones.values())
     found = ", ".join(f"{count} {source}" for source, count in how.most_common())
     covered = "no mesh of a body" if NO_BODY in facts.notes else f"{facts.coverage:.1%}"
     return f"| `{name}` | {found} | {facts.height:.2f} m | {facts.stride:.2f} m | {covered} | {walked} | {took} |"
-
-
-def _source(how: str) -> str:
-    """How a bone was found, without the name of its joint that H-Anim files tell."""
-    return "H-Anim" if how.startswith(("name ", "DEF ", "robot joint ")) else how
 
 
 if __name__ == "__main__":

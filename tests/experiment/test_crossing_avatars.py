@@ -1,0 +1,34 @@
+"""Avatars of others cross scene A as the stock avatar does: H-Anim, a robot of VRML97, VRM, glTF."""
+
+from pathlib import Path
+
+import pytest
+
+from elbowroom.body.loading import load_humanoid
+from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.world.scene import Scene
+from shared_data import SHARED, needs_shared
+
+HANIM = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []
+OTHERS = sorted([*SHARED.glob("avatars/glb/*"), *SHARED.glob("avatars/vrm[01]/*")]) if SHARED else []
+
+
+def assert_straight(path: Path) -> None:
+    settings = CrossingSettings(seed=0)
+    result = run_crossing(controller_for(load_humanoid(path), Scene.load("a"), settings), settings)
+    assert result.passed
+    assert result.straight
+    assert result.least_clearance >= 0.0
+
+
+@needs_shared
+@pytest.mark.parametrize("path", HANIM, ids=lambda path: path.name)
+def test_h_anim_crosses_scene_a_straight(path: Path) -> None:
+    assert_straight(path)
+
+
+@needs_shared
+@pytest.mark.long
+@pytest.mark.parametrize("path", OTHERS, ids=lambda path: path.name)
+def test_all_others_cross_scene_a_straight(path: Path) -> None:
+    assert_straight(path)
