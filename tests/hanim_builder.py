@@ -102,6 +102,7 @@ class HanimRecipe:
     bent: float = 0.0  # rotation of the elbows and of the spine as the file is saved, radians
     points: int = 20  # of the body round each joint
     packed: bool = False
+    displaced: bool = False  # a displacer on the head of a skin
     extras: tuple[Made, ...] = ()  # shapes on the head
 
 
@@ -144,6 +145,8 @@ def _humanoid(recipe: HanimRecipe) -> Made:
             first = joint * recipe.points
             fields["skinCoordIndex"] = np.arange(first, first + recipe.points)
             fields["skinCoordWeight"] = np.ones(recipe.points)
+            if recipe.displaced and bone == "head":
+                fields["displacers"] = [_displacer(first)]
         else:
             shape = _shape({"point": clouds[joint]}, len(clouds[joint]))
             fields["children"].append(
@@ -167,6 +170,12 @@ def _humanoid(recipe: HanimRecipe) -> Made:
         fields["skin"] = [_shape({"DEF": "SkinCoord", "point": everything}, len(everything))]
         fields["skinCoord"] = [("USE", {"name": "SkinCoord", "kind": "Coordinate"})]
     return ("Humanoid" if old else "HAnimHumanoid", fields)
+
+
+def _displacer(point: int) -> Made:
+    moves = np.array([[0.0, 0.05, 0.0], [0.0, 0.0, 0.05]])
+    fields = {"name": "smile", "weight": 0.5, "coordIndex": np.array([point, point + 1]), "displacements": moves}
+    return ("HAnimDisplacer", fields)
 
 
 def _shape(coordinate: Mapping[str, Any], count: int) -> Made:

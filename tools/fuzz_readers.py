@@ -144,7 +144,7 @@ def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
     version = "1.1" if encoding == "vrml" else "2.0"
     recipes = (
         HanimRecipe(encoding, version, points=4),
-        HanimRecipe(encoding, "2.0", skinned=True, points=4, prefix="Joe_"),
+        HanimRecipe(encoding, "2.0", skinned=True, points=4, prefix="Joe_", displaced=True),
     )
     seeds = (*map(build_hanim, recipes), build_hanim(HanimRecipe(encoding, points=0, extras=SOLIDS)))
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrl"), seeds, words)

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 REAL = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []
 MADE = {
     "xml": ("a.x3d", HanimRecipe("xml", scale=0.0254, bent=0.7)),
-    "classic": ("a.x3dv", HanimRecipe("classic", skinned=True, prefix="Joe_", named=False)),
+    "classic": ("a.x3dv", HanimRecipe("classic", skinned=True, prefix="Joe_", named=False, displaced=True)),
     "vrml97": ("a.wrl", HanimRecipe("vrml", "1.1", z_up=True)),
 }
 ENCODINGS = {"xml": "x3d", "classic": "x3dv"}
