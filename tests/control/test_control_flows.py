@@ -36,6 +36,8 @@ class FakeRootPlan:
 class FakeRootPlanner:
     """Walks straight on at once."""
 
+    memory = None
+
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         pass
 

@@ -14,7 +14,7 @@ from elbowroom.server.planning_thread import PlanningThread
 from elbowroom.server.walk import Walk, WalkSettings
 
 LONG = 120.0  # seconds: only a hang lasts longer
-WALK = Command(forward=1.0)
+WALK, BACK = Command(forward=1.0), Command(forward=-1.0)
 DT = 1 / 60
 
 
@@ -101,3 +101,25 @@ def test_a_plan_that_was_given_up_is_never_heard_of(library: Library, executor: 
     wait(executor.jobs)
     walk.step(Command(), DT)
     assert walk.plans == 0
+
+
+def test_a_plan_for_what_is_not_wanted_any_more_is_called_off(library: Library, executor: GatedExecutor) -> None:
+    walk = walk_of(library, executor)
+    executor.gate.set()
+    while walk.frame.root[3] < 0.5:
+        walk.step(WALK, DT)
+        wait(executor.jobs)
+    executor.gate.clear()
+    jobs = len(executor.jobs)
+    while len(executor.jobs) == jobs:
+        walk.step(WALK, DT)
+    walk.step(BACK, DT)  # while the plan is in the making
+    executor.gate.set()
+    assert executor.jobs[-1].result() is None
+    walk.step(BACK, DT)
+    assert len(executor.jobs) == jobs + 2
+    assert executor.jobs[-1].result() is not None
+    while not walk.heeds(BACK):
+        walk.step(BACK, DT)
+        wait(executor.jobs)
+        assert walk.frame.clearance >= 0.0

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from threading import Event
 from typing import NamedTuple
 
 import numpy as np
@@ -53,6 +54,7 @@ class _Asked(NamedTuple):
     time: float  # seconds, when it was asked for
     delay: float  # of the queue then
     standing: bool  # it starts where the avatar stands, whenever that is
+    superseded: Event  # set when something else is wanted
 
 
 class Controller:
@@ -103,6 +105,8 @@ class Controller:
         """Back to the start, as if newly made."""
         if self._desk.busy:  # a plan in the making keeps its planners
             self._desk.forget()
+            if self._asked is not None:
+                self._asked.superseded.set()
             self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self._worn)
         else:
             self._wayfinder.reset()
@@ -192,6 +196,7 @@ class Controller:
 
     def _turn(self, command: Command, dt: float) -> Phase:
         self._take_plan(command)
+        self._supersede(command)
         flow = self._choose_flow(command)
         if flow is Phase.RESET:
             self._reset_queue()
@@ -222,24 +227,33 @@ class Controller:
 
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
-        time, start = self._planning_start(at_once)
-        root, settings = RootState(*start.root.tolist()), self.settings
+        hurry = not self._desk.immediate and not self._queue.empty and steering.changed(self._command, command)
+        time, start = self._planning_start(at_once, hurry)
+        root, settings, superseded = RootState(*start.root.tolist()), self.settings, Event()
         others = self._others
         if self._clearance < 0.0 and len(others):
             others = slimmer(others, _LEAVING - self._clearance)
         query = MotionQuery(
-            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others
-        )
+            time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
+            hurry, superseded.is_set,
+        )  # fmt: skip
         held = None
         if self._holding.active and self._assist:
             held = Held(start.root, start.upper, self._holding.stance, self._clearance)
         reserve = 0 if self._desk.immediate else round(_RESERVE / settings.interval)
         question = Question(query, self._assist, held, reserve)
-        self._asked = _Asked(question, self._queue.time, self._queue.delay, self._queue.empty)
+        self._asked = _Asked(question, self._queue.time, self._queue.delay, self._queue.empty, superseded)
         self._desk.submit(partial(self._wayfinder.answer, question))
         self._take_plan(command)
 
-    def _planning_start(self, at_once: bool) -> tuple[float, Playback]:
+    def _supersede(self, command: Command) -> None:
+        """Call off a plan in the making for what is not wanted any more; one that is in a hurry is soon there."""
+        if self._asked is not None:
+            query = self._asked.question.query
+            if not query.hurry and steering.changed(query.command, command):
+                self._asked.superseded.set()
+
+    def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
         """When and from where to plan: as soon as a plan can be there.
 
         That is the next unplayed key frame (receding horizon), or between key frames, if the user wants something else
@@ -247,7 +261,7 @@ class Controller:
         """
         if self._queue.empty:
             return self._queue.time, self._holding.start(self._shown)
-        coming, soonest = self._queue.unplayed().times, self._queue.time + self._foresight.lead
+        coming, soonest = self._queue.unplayed().times, self._queue.time + self._foresight.lead(hurry=hurry)
         time = soonest if at_once else next((time for time in coming if time >= soonest), coming[-1])
         time = min(float(time), float(coming[-1]))
         return time, self._queue.at(time)
@@ -256,9 +270,10 @@ class Controller:
         """On success the queue goes on with the plan, else it keeps what it has."""
         answer, asked = self._desk.take(), self._asked
         if answer is None or asked is None:
+            self._asked = asked if self._desk.busy else None
             return
         self._asked = None
-        self._foresight.waited(self._queue.time - asked.time)
+        self._foresight.waited(self._queue.time - asked.time, hurry=asked.question.query.hurry)
         start = self._queue.time if asked.standing else answer.path.start_time + self._queue.delay - asked.delay
         if asked.question.assist is not self._assist or steering.overturned(asked.question.query.command, command):
             self._next = Phase.RESET

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from elbowroom.control.wayfinder import Answer
 
-Job = Callable[[], Answer]
+Job = Callable[[], Answer | None]  # none if it was called off meanwhile
 
 
 class PlanningDesk(Protocol):
@@ -27,7 +27,10 @@ class PlanningDesk(Protocol):
         """Take on a job; the desk is not busy."""
 
     def take(self) -> Answer | None:
-        """The answer to the job, once, if it is there; raises what the job raised."""
+        """The answer to the job, once, if it is there; raises what the job raised.
+
+        A job that ended without an answer leaves the desk free.
+        """
 
     def forget(self) -> None:
         """Let the job and its answer go; the desk is not busy then."""

@@ -17,17 +17,16 @@ class Foresight:
 
     def __init__(self, immediate: bool) -> None:
         self._immediate = immediate
-        self._expected = _LIKELY
+        self._expected = {False: _LIKELY, True: _LIKELY}  # by whether they are in a hurry
         self.rate = 1.0  # of playback
 
-    @property
-    def lead(self) -> float:
+    def lead(self, *, hurry: bool) -> float:
         """Seconds from now at which a plan that is asked for now should start."""
-        return 0.0 if self._immediate else self._expected + _SPARE
+        return 0.0 if self._immediate else self._expected[hurry] + _SPARE
 
-    def waited(self, seconds: float) -> None:
+    def waited(self, seconds: float, *, hurry: bool) -> None:
         """A plan took so long."""
-        self._expected = max(seconds, _FORGET * self._expected)
+        self._expected[hurry] = max(seconds, _FORGET * self._expected[hurry])
 
     def next_rate(self, left: float, dt: float, *, halting: bool) -> float:
         """The rate for the next `dt` seconds, of `left` seconds of motion; 0 where too little is left to move."""

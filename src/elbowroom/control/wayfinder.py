@@ -16,7 +16,7 @@ from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.canned import canned_walk
 from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
 from elbowroom.control.settings import ControlSettings
-from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery
+from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery, SupersededError
 from elbowroom.planning.planner import Planner, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -71,9 +71,14 @@ class Wayfinder:
         self._root_planner.reset()
         self._planner.reset()
 
-    def answer(self, question: Question) -> Answer:
-        """Plan; after a contact, find a way out of it."""
-        root, local = self._search(question)
+    def answer(self, question: Question) -> Answer | None:
+        """Plan; after a contact, find a way out of it. None if nobody waits for it any more."""
+        memory = self._root_planner.memory
+        try:
+            root, local = self._search(question)
+        except SupersededError:
+            self._root_planner.memory = memory
+            return None
         found = local.status is PlanStatus.FOUND
         answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities)
         return self._way_out(answer, question) if question.held is not None else answer

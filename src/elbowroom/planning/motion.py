@@ -4,6 +4,7 @@ The paper's planners dress the root path that they are given. A planner may also
 ahead than the queue holds, and choose how the curve passes its key frames: then it is a `MotionPlanner`.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -19,6 +20,14 @@ from elbowroom.world.moving import MovingBoxes
 Floats = NDArray[np.float64]
 
 
+class SupersededError(Exception):
+    """Nobody waits for the motion any more."""
+
+
+def _wanted() -> bool:
+    return False
+
+
 class MotionQuery(NamedTuple):
     """What to plan for."""
 
@@ -30,6 +39,8 @@ class MotionQuery(NamedTuple):
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames
     others: MovingBoxes = MovingBoxes()  # that move, besides the scene's own
+    hurry: bool = False  # something else is wanted than what is played: what is found soon, better later
+    superseded: Callable[[], bool] = _wanted  # looked at now and then; then `SupersededError` may be raised
 
 
 class Motion(NamedTuple):

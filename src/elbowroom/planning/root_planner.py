@@ -38,6 +38,7 @@ Floats = NDArray[np.float64]
 
 Evading = tuple[Profile, TravelLine] | None  # the evasion being followed, and the line that it leads from
 Candidate = tuple[RootPlan, Evading]
+Memory = tuple[TravelLine | None, Floats | None, Evading]
 
 
 class _Asked(NamedTuple):
@@ -85,6 +86,15 @@ class RootPlanner:
         self._last: Floats | None = None
         self._evading: Evading = None
         self._offered: list[Candidate] = []
+
+    @property
+    def memory(self) -> Memory:
+        """What it remembers between plans; set, it goes on as it was then."""
+        return self._line, self._last, self._evading
+
+    @memory.setter
+    def memory(self, memory: Memory) -> None:
+        self._line, self._last, self._evading = memory
 
     @property
     def moving(self) -> MovingBoxes:

@@ -13,7 +13,7 @@ class PlanningThread:
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
-        self._future: Future[Answer] | None = None
+        self._future: Future[Answer | None] | None = None
 
     @property
     def busy(self) -> bool:

@@ -18,7 +18,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
 from elbowroom.planning.exact.whole import Stand, Whole, first_part, part, stands
-from elbowroom.planning.motion import Motion, MotionQuery
+from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
 from elbowroom.planning.root_path import RootPath
@@ -69,7 +69,7 @@ class ExactPlanner:
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
-        stand, alone = self._stand, not len(root_planner.moving)
+        stand, alone = self._stand, not len(root_planner.moving) and not query.hurry
         again = alone and stand is not None and stand.answers(query, self._body.versions)
         if again and stand is not None and stand.left == 0:
             whole = stand.at(query.time)
@@ -91,14 +91,15 @@ class ExactPlanner:
             if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
             upper = self._dress(root.path, query, Effort.QUICK)
-            if not tried and upper.reached < horizon and self._is_new(upper):
+            if not tried and upper.reached < horizon and not query.hurry and self._is_new(upper):
                 upper = self._dress(root.path, query, Effort.REFINED)
             if upper.reached == horizon:
                 self._turn, self._thought_of = (self._turn, self._thought_of) if tried else (0, None)
                 return Whole(root, upper.plan)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
-        return self._thought_through(root_planner, query, tried) or self._stop(root_planner, query, tried)
+        found = None if query.hurry else self._thought_through(root_planner, query, tried)
+        return found or self._stop(root_planner, query, tried)
 
     def _is_new(self, upper: UpperPlan) -> bool:
         """Whether the path as commanded ends at another place than the one that it was thought through for."""
@@ -131,8 +132,9 @@ class ExactPlanner:
         """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind."""
         root, upper = max(tried, key=lambda one: one.upper.reached) if len(root_planner.moving) else tried[0]
         root_planner.follow(root)
-        why = self._why(upper, query)
-        brakings = [(moving, Effort.QUICK) for moving in _moving(upper.reached)] + [(0, Effort.JOINT)]
+        why = None if query.hurry else self._why(upper, query)
+        brakings = [(moving, Effort.QUICK) for moving in _moving(upper.reached)]
+        brakings += [] if query.hurry else [(0, Effort.JOINT)]
         for moving, effort in brakings:
             states = root.path.states.copy()
             brake(states, moving, query.interval, root_planner.bounds)
@@ -178,6 +180,8 @@ class ExactPlanner:
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
+        if query.superseded():
+            raise SupersededError
         return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, effort)
 
     def _kept(self, path: RootPath) -> Floats | None:
