@@ -5,7 +5,6 @@ of the left one too. Where an arm has no way, the waist's last way is tried, und
 joint step decides.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from time import perf_counter_ns
 from typing import NamedTuple
@@ -15,20 +14,21 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
-from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights, own_postures
-from elbowroom.planning.exact.group_search import search_group
+from elbowroom.planning.exact.group import GroupTask, GroupWay, Weights, own_postures
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep
-from elbowroom.planning.exact.lattice import KEPT, OWN, Work
+from elbowroom.planning.exact.kept import Asked, Kept
+from elbowroom.planning.exact.lattice import KEPT, OWN
+from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.near_boxes import NearBoxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.reaching import Blocked
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.tables import HELD_AT_START, held_clearance
 from elbowroom.planning.exact.together import Guide, arm_nodes, guide, surroundings, waist_nodes
-from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
 from elbowroom.planning.exact.why_not import blockade
 from elbowroom.planning.lowered_legs import LoweredLegs
-from elbowroom.planning.result import Blockade, GroupEvidence, JointEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -39,21 +39,8 @@ Longs = NDArray[np.int64]
 _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
 _NATURAL = 1e-6  # radians from the goal
 _ALERT = 16  # plans after one that ran into the body that look at it from the beginning
+_JOLT = 0.3  # squared radians that another motion must be better than one under the last plan's waist
 _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
-
-
-class Shelves(NamedTuple):
-    """All that depends on the interval and the horizon."""
-
-    groups: Mapping[DofGroup, Group]
-    works: Mapping[DofGroup, Work]
-    roots: RootWays
-    chain: Chain
-
-    def with_group(self, group: DofGroup, made: Group, room: Work) -> "Shelves":
-        """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
-        kept = made._replace(ways=self.groups[group].ways)
-        return self._replace(groups={**self.groups, group: kept}, works={**self.works, group: room})
 
 
 class Ways(NamedTuple):
@@ -61,6 +48,7 @@ class Ways(NamedTuple):
 
     ways: tuple[GroupWay, ...]
     failed: GroupWay | None
+    asked: Asked | None = None  # what clearances were asked for; None if a group failed
 
 
 @dataclass(eq=False)
@@ -74,7 +62,7 @@ class Dressing:
     legs: LoweredLegs
     path: RootPath
     goals: Floats  # (n+1, 10)
-    kept: Floats  # (n+1, 10)
+    last: Kept | None  # the last plan
     start: Floats  # (10,)
     velocity: Floats  # (10,)
     roots: Longs  # (n,)
@@ -83,26 +71,48 @@ class Dressing:
     skins: Floats  # (n,)
 
     def __post_init__(self) -> None:
+        self.kept = self.goals if self.last is None else self.last.keys  # (n+1, 11)
+        self.asked: Asked | None = None  # of the way that was found
         self.ledger = Ledger(self.shelves, self.weights)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self._waist: GroupWay | None = None
         self._crouching = self._none(DofGroup.WAIST)  # infinite where the legs have no room to crouch as a node does
 
-    def motion(self, *, held: bool, rounds: int) -> LocalPlan | None:
-        """The motion, if there is one; `held`: the last plan's waist may be tried; `rounds` of the joint step."""
+    def motion(self, rounds: int) -> LocalPlan | None:
+        """The motion, if there is one: group after group, then in so many rounds of the joint step.
+
+        One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
+        """
         found = self.apart()
-        if found.failed is not None and held:
-            found = self.with_kept_waist()
+        if self.last is not None and (found.failed is not None or self._jolts(found)):
+            kept = self.with_kept_waist()
+            if found.failed is not None or (kept.failed is None and self._cost(kept) <= self._cost(found) + _JOLT):
+                found = kept
         if found.failed is not None and rounds > 0:
             found = self.together(rounds)
         if found.failed is not None:
             return None
+        self.asked = found.asked
         keys = np.concatenate([way.keys for way in found.ways], axis=1)
         velocities = np.concatenate([way.velocities for way in found.ways], axis=1)
         return LocalPlan(
             PlanStatus.FOUND, keys, self.goals, self.ledger.evidence(), velocities=velocities, joint=self.ledger.joint
         )
+
+    def _jolts(self, found: Ways) -> bool:
+        """Whether the waist has left the last plan's way, and some joint by more than a little."""
+        assert self.last is not None
+        known = min(self.last.known, len(self.kept))
+        away = [
+            way.keys[:known] - self.kept[:known, columns_of(g)] for way, g in zip(found.ways, LOCAL_GROUPS, strict=True)
+        ]
+        return bool(np.any(away[0])) and max(float(np.abs(one).max()) for one in away) > _ALIKE
+
+    def _cost(self, found: Ways) -> float:
+        """What ways cost that are free: distance from the goals and its changes, squared radians."""
+        away = np.concatenate([way.keys for way in found.ways], axis=1) - self.goals
+        return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
     def apart(self) -> Ways:
         """Each group by itself."""
@@ -115,7 +125,9 @@ class Dressing:
     def with_kept_waist(self) -> Ways:
         """The waist held to the last plan's way while there is one."""
         prices = np.full_like(self._crouching, _DEARER)
-        prices[:, prices.shape[1] - OWN + KEPT] = 0.0
+        task = self._task(DofGroup.WAIST, self.roots, None, None)
+        _, _, kept = own_postures(self.shelves.groups[DofGroup.WAIST], task)
+        prices[np.arange(len(prices)), kept] = 0.0
         return self._arms(self._waist_way(prices + self._crouching), None)
 
     def together(self, rounds: int) -> Ways:
@@ -168,21 +180,11 @@ class Dressing:
     def joint_step(self, waist: GroupWay) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
         groups, task = self.shelves.groups, self._task(DofGroup.WAIST, self.roots, None, None)
-        waists = groups[DofGroup.WAIST].ways
         arms = []
         for group in LOCAL_GROUPS[1:]:
             arm_task, most = self._task(group, waist.slots, None, None), np.inf
             if waist.reached == self.path.horizon:
-                at = waist.slots[0]
-                clearance, _ = held_clearance(
-                    groups[group].postures,
-                    arm_task.start,
-                    waists.places[at],
-                    waists.turns[at],
-                    self.near.intervals[0],
-                    HELD_AT_START,
-                )
-                most = max(0.5 * clearance, 0.0)
+                most = self._room_at_start(group, arm_task, waist)
             arms.append(arm_nodes(groups[group], arm_task, self.weights.keeping, most))
         return JointStep(
             self.own_body,
@@ -231,12 +233,33 @@ class Dressing:
                 ways.append(way)
             contact = self._self_contact(ways)
             if contact is None:
-                return Ways(tuple(ways), None)
+                return Ways(tuple(ways), None, self._asked(waist))
             self.own_body.alert = _ALERT
             self._rule_out(touched, ways, *contact)
             self.last_reached = contact[1]
         self.deepest = max(self.deepest, self.last_reached)
         return Ways(tuple(ways[:-1]), ways[-1])
+
+    def _asked(self, waist: GroupWay) -> Asked:
+        """The clearances that were asked for along the waist's way: less where the start has less."""
+        asked = Asked(np.empty((3, len(self.margins))), np.empty((3, len(self.skins))))
+        for number, group in enumerate(LOCAL_GROUPS):
+            task = self._task(group, waist.slots, None, None)
+            most = self._room_at_start(group, task, waist)
+            asked.margins[number] = np.minimum(task.margins, most)
+            asked.skins[number] = np.minimum(task.skins, most)
+        return asked
+
+    def _room_at_start(self, group: DofGroup, task: GroupTask, waist: GroupWay) -> float:
+        """The clearance that may be asked of a group, half of what it has at the start."""
+        shelves = self.shelves
+        places, turns = shelves.roots.places[self.roots[0]], shelves.roots.turns[self.roots[0]]
+        if group is not DofGroup.WAIST:
+            carriers = shelves.groups[DofGroup.WAIST].ways
+            places, turns = carriers.places[waist.slots[0]], carriers.turns[waist.slots[0]]
+        postures, boxes = shelves.groups[group].postures, self.near.intervals[0]
+        clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
+        return max(0.5 * clearance, 0.0)
 
     def _rule_out(self, touched: list[Floats32], ways: list[GroupWay], side: int, interval: int) -> None:
         """Rule out the postures at the ends of an interval in which an arm runs into the body, and those like them."""
@@ -283,9 +306,14 @@ class Dressing:
     def _task(self, group: DofGroup, carriers: Longs, extra: Floats32 | None, follow: Guide | None) -> GroupTask:
         at = columns_of(group)
         kept = self.kept[:, at] if follow is None else follow.keys
+        margins, skins = self.margins, self.skins
+        if self.last is not None:
+            number = LOCAL_GROUPS.index(group)
+            margins = np.minimum(margins, self.last.asked.margins[number])
+            skins = np.minimum(skins, self.last.asked.skins[number])
         return GroupTask(
             np.ascontiguousarray(self.goals[:, at]), np.ascontiguousarray(kept), self.start[at], self.velocity[at],
-            self.margins, self.skins, self._none(group) if extra is None else extra, self.roots, carriers,
+            margins, skins, self._none(group) if extra is None else extra, self.roots, carriers,
             self.near.intervals, self.path.interval,
         )  # fmt: skip
 
@@ -294,36 +322,3 @@ class Dressing:
     ) -> GroupWay:
         prices = extra if follow is None else follow.extra + (0.0 if extra is None else extra)
         return self.ledger.search(group, self._task(group, carriers, prices, follow))
-
-
-class Ledger:
-    """Searches one group after the other and keeps what each group's searches cost together."""
-
-    def __init__(self, shelves: Shelves, weights: Weights) -> None:
-        self._shelves, self._weights = shelves, weights
-        self._rows: dict[DofGroup, GroupEvidence] = {}
-        self.joint: JointEvidence | None = None
-
-    def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
-        """`search_group`, entered under `group`."""
-        began = perf_counter_ns()
-        shelves = self._shelves
-        waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
-        way: GroupWay = search_group(
-            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.works[group]
-        )
-        spent = perf_counter_ns() - began
-        status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
-        old = self._rows.get(group, GroupEvidence(group, status, 0, 0, 0, 0))
-        checks, nodes, nanoseconds = old.checks + way.checks, old.nodes + way.nodes, old.nanoseconds + spent
-        self._rows[group] = GroupEvidence(group, status, checks, nodes, 0, nanoseconds)
-        return way
-
-    def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
-        """What the joint step cost until now."""
-        before = 0 if self.joint is None else self.joint.nanoseconds
-        self.joint = JointEvidence(status, step.states, step.checks, before + nanoseconds)
-
-    def evidence(self) -> tuple[GroupEvidence, ...]:
-        """A row for each group that was searched, in order."""
-        return tuple(self._rows.values())

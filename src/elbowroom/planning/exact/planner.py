@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.planning.exact.kept import Kept
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
 from elbowroom.planning.exact.whole import Stand, Whole, first_part, part, stands
@@ -32,6 +33,7 @@ _EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that has no way, at 
 _FARTHER = 0.05  # metres that a slower way must get beyond the place where a faster one failed
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _FAR_OFF = 1.2  # seconds until a place that is not asked about yet
+_WORTH = 0.3  # seconds that a path must cost less than one on which there is a way, to be thought of before it
 _STANDING = 0.02  # metres: a path that is shorter stands
 
 
@@ -94,12 +96,25 @@ class ExactPlanner:
             if not tried and upper.reached < horizon and not query.hurry and self._is_new(upper):
                 upper = self._dress(root.path, query, Effort.REFINED)
             if upper.reached == horizon:
-                self._turn, self._thought_of = (self._turn, self._thought_of) if tried else (0, None)
-                return Whole(root, upper.plan)
+                if not tried:
+                    self._turn, self._thought_of = 0, None
+                return self._cheaper(root_planner, query, tried, root) or Whole(root, upper.plan, upper.asked)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         found = None if query.hurry else self._thought_through(root_planner, query, tried)
         return found or self._stop(root_planner, query, tried)
+
+    def _cheaper(
+        self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]", than: RootPlan
+    ) -> Whole | None:
+        """A path that costs much less than the one that was found, and on which all groups together have a way."""
+        for root, _ in sorted(tried, key=lambda one: one.root.lost):
+            if root.lost + _WORTH < than.lost:
+                upper = self._dress(root.path, query, Effort.GLANCE)
+                if upper.reached == root.path.horizon:
+                    root_planner.follow(root)
+                    return Whole(root, upper.plan, upper.asked)
+        return None
 
     def _is_new(self, upper: UpperPlan) -> bool:
         """Whether the path as commanded ends at another place than the one that it was thought through for."""
@@ -125,7 +140,7 @@ class ExactPlanner:
             upper = self._dress(root.path, query, effort)
             if upper.reached == root.path.horizon:
                 root_planner.follow(root)
-                return Whole(root, upper.plan)
+                return Whole(root, upper.plan, upper.asked)
         return None
 
     def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole:
@@ -142,7 +157,8 @@ class ExactPlanner:
             stopping = self._dress(path, query, effort)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                return Whole(replace(root, path=path, kind=kind), replace(stopping.plan, blockade=why))
+                plan = replace(stopping.plan, blockade=why)
+                return Whole(replace(root, path=path, kind=kind), plan, stopping.asked)
         whole = self._continued(query) or Whole(root, upper.plan)
         return whole._replace(local=replace(whole.local, blockade=why))
 
@@ -150,13 +166,14 @@ class ExactPlanner:
         """What is left of the last plan, if it led to where this one starts."""
         if self._last is None or not len(self._last.local.configurations):
             return None
-        root, local = self._last
+        root, local, asked = self._last
         at = round((query.time - root.path.start_time) / query.interval)
         if not 0 <= at < len(root.path.states) - 1 or not np.allclose(root.path.states[at], query.root, atol=1e-9):
             return None
         path = RootPath(query.time, query.interval, root.path.states[at:])
         rest = part(local, slice(at, None))
-        return Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest)
+        asked = None if asked is None else asked.since(at, path.horizon)
+        return Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest, asked)
 
     def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:
         """Why there is no way; None as long as that is far off: most of it is solved when it has come nearer.
@@ -184,17 +201,17 @@ class ExactPlanner:
             raise SupersededError
         return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, effort)
 
-    def _kept(self, path: RootPath) -> Floats | None:
-        """What the last plan had at the key times of `path` (n+1, 11), if it has any of them."""
-        if self._last is None or not len(self._last.local.configurations):
+    def _kept(self, path: RootPath) -> Kept | None:
+        """What the last plan had at the key times of `path`, if it has any of them."""
+        if self._last is None or self._last.asked is None:
             return None
-        last = self._last.root.path
+        last, known = self._last.root.path, self._last.local.configurations
         at = (path.start_time - last.start_time) / path.interval
-        known = self._last.local.configurations
         if path.interval != last.interval or abs(at - round(at)) > 1e-6 or not 0 <= round(at) < len(known):
             return None
-        kept: Floats = known[np.minimum(round(at) + np.arange(len(path.states)), len(known) - 1)]
-        return kept
+        first = round(at)
+        keys = known[np.minimum(first + np.arange(len(path.states)), len(known) - 1)]
+        return Kept(keys, len(known) - first, self._last.asked.since(first, path.horizon))
 
 
 def _blocked_place(upper: UpperPlan) -> tuple[float, float]:

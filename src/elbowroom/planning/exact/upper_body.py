@@ -17,8 +17,9 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.exact.dressing import Dressing, Shelves
+from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.group import Group, Weights
+from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
@@ -27,6 +28,7 @@ from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.tables import new_tables
 from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways, root_ways
 from elbowroom.planning.goal import goal_configurations, natural_walk
@@ -61,6 +63,7 @@ class UpperPlan(NamedTuple):
     plan: LocalPlan
     reached: int  # n if found, else the deepest key time with a way for every group
     dressing: Dressing  # the last attempt, which can say why there is no way
+    asked: Asked | None = None  # what clearances were asked for; None unless found
 
 
 class UpperBody:
@@ -100,11 +103,11 @@ class UpperBody:
         path: RootPath,
         start: Floats,
         velocity: Floats,
-        kept: Floats | None = None,
+        kept: Kept | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
     ) -> UpperPlan:
-        """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept` (n+1, 11), the last plan's.
+        """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept`, the last plan.
 
         `others` move besides the scene's own.
         """
@@ -113,9 +116,9 @@ class UpperBody:
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
             dressing = self._dressing(path, start, velocity, kept, near)
-            found = dressing.motion(held=kept is not None, rounds=rounds)
+            found = dressing.motion(rounds)
             if found is not None:
-                return UpperPlan(found, path.horizon, dressing)
+                return UpperPlan(found, path.horizon, dressing, dressing.asked)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
                 break
         ledger, goals = dressing.ledger, dressing.goals
@@ -131,7 +134,7 @@ class UpperBody:
                 self._take_in(group)
 
     def _dressing(
-        self, path: RootPath, start: Floats, velocity: Floats, kept: Floats | None, near: NearBoxes
+        self, path: RootPath, start: Floats, velocity: Floats, kept: Kept | None, near: NearBoxes
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
@@ -139,7 +142,7 @@ class UpperBody:
         margins, skins = self._margins(path)
         return Dressing(
             shelves, self._weights, self.settings, self._own_body, self._legs, path, goals,
-            goals if kept is None else kept, start, velocity, roots, near, margins, skins,
+            kept, start, velocity, roots, near, margins, skins,
         )  # fmt: skip
 
     def _refine(self, dressing: Dressing) -> bool:

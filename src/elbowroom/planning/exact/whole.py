@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_plan import RootPlan
@@ -15,6 +16,7 @@ class Whole(NamedTuple):
 
     root: RootPlan
     local: LocalPlan
+    asked: Asked | None = None  # None: not a way that was found
 
 
 def first_part(whole: Whole, horizon: int) -> Motion:
@@ -57,6 +59,7 @@ class Stand(NamedTuple):
         return Whole(
             replace(root, path=path, checks=0, nanoseconds=0),
             replace(local, evidence=evidence, joint=None, blockade=why),
+            self.whole.asked,
         )
 
 

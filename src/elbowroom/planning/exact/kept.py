@@ -1,0 +1,42 @@
+"""What the last plan had, and asked for, at the key times of the next: so that a plan that is still good is kept.
+
+Less clearance is asked of the motion near an obstacle than far from one, and still less where the avatar stands close
+to one already. What a plan was allowed to do at some time stays allowed at that time for the plans to come, else they
+would drop it for a margin's sake.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Asked(NamedTuple):
+    """Clearances that a plan asked for, in metres; rows: waist, left arm, right arm."""
+
+    margins: Floats  # (3, n+1) of postures around key times
+    skins: Floats  # (3, n) of the motion in the key intervals
+
+    def since(self, first: int, horizon: int) -> "Asked":
+        """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
+        margins, skins = np.full((3, horizon + 1), np.inf), np.full((3, horizon), np.inf)
+        known = self.margins[:, first:][:, : horizon + 1]
+        margins[:, : known.shape[1]] = known
+        moved = self.skins[:, first:][:, :horizon]
+        skins[:, : moved.shape[1]] = moved
+        return Asked(margins, skins)
+
+
+class Kept(NamedTuple):
+    """The last plan at the key times of a path."""
+
+    keys: Floats  # (n+1, 11) upper bodies; the last one known is repeated
+    known: int  # of these key times, those that the last plan reached
+    asked: Asked  # infinite elsewhere
+
+    @staticmethod
+    def freely(keys: Floats) -> "Kept":
+        """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
+        return Kept(keys, len(keys), Asked(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf)))
