@@ -9,7 +9,6 @@ from collections import Counter
 from pathlib import Path
 
 from elbowroom.body.inspection import inspect_avatar
-from elbowroom.body.loading import NO_BODY
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -43,7 +42,7 @@ def _row(path: Path, name: Path, scene: Scene, settings: CrossingSettings) -> st
     took = "" if result.passed_time_s is None else f"{result.passed_time_s:.1f} s"
     how = Counter(str(source["how"]) for source in facts.bones.values())
     found = ", ".join(f"{count} {source}" for source, count in how.most_common())
-    covered = "no mesh of a body" if NO_BODY in facts.notes else f"{facts.coverage:.1%}"
+    covered = f"{facts.coverage:.1%}" if humanoid.meta.has_body else "no mesh of a body"
     return f"| `{name}` | {found} | {facts.height:.2f} m | {facts.stride:.2f} m | {covered} | {walked} | {took} |"
 
 

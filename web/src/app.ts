@@ -96,7 +96,7 @@ export class App implements SessionListener, MenuListener {
   }
 
   avatar(message: AvatarMessage): void {
-    this.bodyIsAvatar = message.url === null;
+    this.bodyIsAvatar = message.drawCapsules;
     showAvatarAbout(message);
     this.menu.addAvatar(message.id, message.title);
     this.subscribe();

@@ -126,7 +126,7 @@ export class Picture {
     this.world.clearSight(this.camera.position, [this.camera.target, knees], dt);
     this.avatar.fade(this.camera.avatarOpacity);
     this.stage.follow(pose.x, pose.z);
-    this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.url === null });
+    this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.drawCapsules ?? false });
   }
 
   private followed(pose: ShownPose, { intent, steering }: Scenery): Followed {

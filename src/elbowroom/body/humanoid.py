@@ -32,6 +32,7 @@ class AvatarMeta:
     bones: tuple[BoneSource, ...] = ()  # parents first
     contact: str = ""
     permissions: Permissions = field(default_factory=Permissions)
+    has_body: bool = True  # False: its mesh, if any, is on few of the bones: a token, a ball on a rig
 
 
 @dataclass(frozen=True, eq=False)

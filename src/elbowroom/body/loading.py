@@ -29,7 +29,7 @@ from elbowroom.formats.x3d.files import SUFFIXES, is_x3d
 # A mesh that leaves more of these parts bare than so many is no body: tokens, a ball on a rig.
 _CORE = frozenset({"chest", "head"} | {s + p for s in SIDES for p in ("Thigh", "Shin", "UpperArm", "Forearm")})
 _CORE_BARE = 3
-NO_BODY = "no mesh on most of the bones: the collision body has average proportions"
+_NO_BODY = "no mesh on most of the bones: the collision body has average proportions"
 
 
 def load_humanoid(path: Path, settings: LoadSettings | None = None) -> Humanoid:
@@ -80,10 +80,15 @@ def _humanoid(
     capsules, capsule_notes = _capsules(skeleton, points)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
-    meta = replace(told, notes=told.notes + bones.notes + unit + left_out + capsule_notes, bones=bones.sources)
+    meta = replace(
+        told,
+        notes=told.notes + bones.notes + unit + left_out + capsule_notes,
+        bones=bones.sources,
+        has_body=_NO_BODY not in capsule_notes,
+    )
     read_with = replace(settings, bones=bones.told)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, pack_glb(bones.gltf))
-    return sized(humanoid, points, settings.height, NO_BODY not in capsule_notes)
+    return sized(humanoid, points, settings.height)
 
 
 def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
@@ -107,5 +112,5 @@ def _capsules(skeleton: Skeleton, points: BodyPoints) -> tuple[Capsules, tuple[s
     average = proportional_capsules(skeleton)
     capsules, bare = fit_capsules(skeleton, points)
     if len(_CORE & set(bare)) > _CORE_BARE:
-        return average, (NO_BODY,)
+        return average, (_NO_BODY,)
     return capsules, (f"without mesh, of average proportions: {', '.join(bare)}",) if bare else ()

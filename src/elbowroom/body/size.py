@@ -40,15 +40,15 @@ def _head(humanoid: Humanoid, points: BodyPoints) -> NDArray[np.float64]:
     return heights
 
 
-def sized(humanoid: Humanoid, points: BodyPoints, height: float | None, has_body: bool) -> tuple[Humanoid, BodyPoints]:
+def sized(humanoid: Humanoid, points: BodyPoints, height: float | None) -> tuple[Humanoid, BodyPoints]:
     """The avatar and its surface as tall as was asked for, or, where nothing was, no larger than its head allows.
 
-    Without a mesh that is its body (`has_body`) the head says nothing.
+    Without a mesh that is its body the head says nothing.
     """
     crown = crown_of(humanoid, points)
     if height is not None:
         return _scaled(humanoid, points, height / crown, f"scaled to a height of {height:g} m")
-    head = head_height(humanoid, points) if has_body else 0.0
+    head = head_height(humanoid, points) if humanoid.meta.has_body else 0.0
     if head <= LARGEST_HEAD:
         return humanoid, points
     factor = LARGEST_HEAD / head

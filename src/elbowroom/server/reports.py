@@ -88,6 +88,7 @@ def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
         facts=_facts(humanoid.meta),
         format=humanoid.meta.format,
         url=f"avatars/{avatar.id}.glb" if shown else None,
+        draw_capsules=not shown or not humanoid.meta.has_body,
         bones=[Bone(name, node) for name, node in zip(skeleton.names, nodes, strict=True)],
         placement=placement(rig),
         capsules=[

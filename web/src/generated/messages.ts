@@ -261,8 +261,10 @@ export interface AvatarMessage {
   /** what the file permits, and what was guessed or left out in reading it */
   facts: string[];
   format: string;
-  /** of the GLB, relative to the page; null for an avatar without a file: draw the capsules */
+  /** of the GLB, relative to the page; null for an avatar without a file */
   url: string | null;
+  /** there is no mesh of a body: the capsules are what is to be seen */
+  drawCapsules: boolean;
   /** in the order of the rotations in a pose frame */
   bones: Bone[];
   placement: Placement;

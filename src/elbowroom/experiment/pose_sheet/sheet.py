@@ -33,7 +33,10 @@ _LIGHT = np.array([-0.35, -0.6, 0.72])  # towards the light: columns, rows, near
 def pose_sheet(
     humanoids: Sequence[Humanoid], capsules: bool = False, progress: Callable[[int], None] | None = None
 ) -> Image:
-    """An RGB image (height, width, 3) of avatars in all gestures; `capsules` draws those instead of the surface."""
+    """An RGB image (height, width, 3) of avatars in all gestures.
+
+    `capsules` draws those instead of the surface; so are avatars drawn that have no mesh of a body.
+    """
     image = np.full((_TOP + _CELL * len(humanoids), _SIDE + _CELL * len(GESTURES), 3), _PAPER, np.uint8)
     for column, gesture in enumerate(GESTURES):
         letter(image, gesture.name, _SIDE + column * _CELL + 8, 5, 2, _INK)
@@ -54,7 +57,7 @@ def _lines(name: str) -> list[str]:
 
 def _row(humanoid: Humanoid, capsules: bool) -> Image:
     """One avatar in all gestures, side by side."""
-    skin = None if capsules else skin_of(humanoid)[0]
+    skin = skin_of(humanoid)[0] if humanoid.meta.has_body and not capsules else None
     skin = skin or capsule_skin(humanoid)
     poser = Poser(humanoid)
     local, hips = poser.local(

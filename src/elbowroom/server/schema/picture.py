@@ -124,7 +124,8 @@ class AvatarMessage:
     licence: str
     facts: list[str]  # what the file permits, and what was guessed or left out in reading it
     format: str
-    url: str | None  # of the GLB, relative to the page; None for an avatar without a file: draw the capsules
+    url: str | None  # of the GLB, relative to the page; None for an avatar without a file
+    draw_capsules: bool  # there is no mesh of a body: the capsules are what is to be seen
     bones: list[Bone]  # in the order of the rotations in a pose frame
     placement: Placement
     capsules: list[AvatarCapsule]  # in the order of the capsules in a pose frame
