@@ -39,7 +39,7 @@ Longs = NDArray[np.int64]
 _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
 _NATURAL = 1e-6  # radians from the goal
 _ALERT = 16  # plans after one that ran into the body that look at it from the beginning
-_JOLT = 0.3  # squared radians that another motion must be better than one under the last plan's waist
+_JOLT = 0.5  # squared radians that another motion must be better than one under the last plan's waist
 _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
 
 
