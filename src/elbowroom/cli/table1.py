@@ -31,6 +31,9 @@ def table1(
     out: Annotated[Path, typer.Option(help="Folder for results; an interrupted run goes on there.")] = Path("table1"),
     limit: Annotated[float, typer.Option(help="Seconds that the user has for each crossing.")] = 30.0,
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Plan beside playback, as a session does; trials do not repeat exactly.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
@@ -46,7 +49,7 @@ def table1(
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
     from elbowroom.experiment.table1.table import run_table1
 
-    settings = _settings(planner, scenes, queues, seeds, limit, avatar)
+    settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     processes = usable_cores() if jobs is None else jobs
     check_jobs(processes)
     with progress_bar("Opening the avatar (the first run compiles kernels)", None, quiet):
@@ -77,13 +80,13 @@ def table1(
 
 
 def _settings(
-    planner: str, scenes: str, queues: str, seeds: int, limit: float, avatar: Path | None
+    planner: str, scenes: str, queues: str, seeds: int, limit: float, avatar: Path | None, *, live: bool
 ) -> "Table1Settings":
     from elbowroom.experiment.table1.table import check
     from elbowroom.experiment.table1.tasks import Table1Settings
 
     sizes = [_whole(size) for size in _listed(queues)]
-    settings = Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar)
+    settings = Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar, live)
     check(settings)
     return settings
 
@@ -114,6 +117,7 @@ def _about(settings: "Table1Settings", processes: int) -> dict[str, Any]:
             "queues": list(settings.queues),
             "seeds": list(range(1, settings.seeds + 1)),
             "limit": settings.limit,
+            "live": settings.live,
             "jobs": processes,
         },
         "identity": identity(settings),
@@ -133,7 +137,8 @@ def _command(settings: "Table1Settings", processes: int) -> str:
         words["limit"] = f"{settings.limit:g}"
     if settings.avatar is not None:
         words["avatar"] = settings.avatar.name
-    return "elbowroom table1 " + " ".join(f"--{name} {value}" for name, value in words.items())
+    text = "elbowroom table1 " + " ".join(f"--{name} {value}" for name, value in words.items())
+    return text + " --live" if settings.live else text
 
 
 def _write(path: Path, text: str) -> None:

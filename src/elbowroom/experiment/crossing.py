@@ -13,6 +13,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
+from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.replans import Replans
 from elbowroom.experiment.scripted_user import ScriptedUser
@@ -37,6 +38,7 @@ class CrossingSettings:
     queue_size: int = 5
     seed: int = 0  # of the planner's chance, the start and the user's patience
     limit: float = 30.0  # seconds that the user has
+    live: bool = False  # plans are made beside playback, as in a session: their answers come as late as they really are
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -92,9 +94,13 @@ def start_for(scene: Scene, seed: int) -> RootState:
 
 
 def controller_for(
-    humanoid: Humanoid, scene: Scene, settings: CrossingSettings, motions: MotionSet = STOCK
+    humanoid: Humanoid,
+    scene: Scene,
+    settings: CrossingSettings,
+    motions: MotionSet = STOCK,
+    desk: BesideDesk | None = None,
 ) -> Controller:
-    """The controller at the start of a trial, with the stock motions or others."""
+    """The controller at the start of a trial, with the stock motions or others; it plans at `desk`, or at once."""
     return Controller(
         humanoid,
         scene,
@@ -103,6 +109,7 @@ def controller_for(
         seed=settings.seed,
         start=start_for(scene, settings.seed),
         motions=motions,
+        desk=desk,
     )
 
 
@@ -124,17 +131,24 @@ def run_crossing(
 
 
 def run_timed_crossing(
-    controller: Controller, settings: CrossingSettings, listener: Listener | None = None
+    controller: Controller,
+    settings: CrossingSettings,
+    listener: Listener | None = None,
+    desk: BesideDesk | None = None,
 ) -> tuple[CrossingResult, CrossingTimes]:
-    """`run_crossing`, and the cost of every single frame."""
+    """`run_crossing`, and the cost of every single frame; plans that were made at `desk` cost none."""
     user = ScriptedUser(np.random.default_rng([settings.seed, 2]))
     ledger = _Ledger()
     frame = controller.step(Command(), 0.0)
     while frame.time < settings.limit - 0.5 * DT and not controller.scene.finished(controller.root):
         command = user.command(frame.stuck, DT)
-        began = time.perf_counter()
+        began, planned = time.perf_counter(), 0.0 if desk is None else desk.spent
         frame = controller.step(command, DT)
-        ledger.enter(frame, time.perf_counter() - began)
+        cost = time.perf_counter() - began
+        if desk is None:
+            ledger.enter(frame, cost, cost)
+        else:
+            ledger.enter(frame, cost - (desk.spent - planned), desk.last)
         if listener is not None:
             listener(command, DT, frame)
     passed = controller.scene.finished(controller.root)
@@ -154,8 +168,8 @@ class _Ledger:
         self._clearance = np.inf
         self._replans = Replans()
 
-    def enter(self, frame: Frame, cost: float) -> None:
-        """Add a frame that took `cost` seconds to compute."""
+    def enter(self, frame: Frame, cost: float, plan_cost: float) -> None:
+        """Add a frame that took `cost` seconds to compute, and its plan, if it is new, `plan_cost`."""
         self._costs.append(cost)
         self._clearance = min(self._clearance, frame.clearance)
         if frame.stuck and not self._stuck:
@@ -164,7 +178,7 @@ class _Ledger:
         if frame.plan is not None and frame.plan.number > len(self._found):
             self._found.append(frame.plan.found)
             self._replans.enter(frame.plan)
-            self._plan_costs.append(cost)
+            self._plan_costs.append(plan_cost)
             self._checks += frame.plan.local.checks
 
     def times(self) -> CrossingTimes:

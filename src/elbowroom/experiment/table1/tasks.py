@@ -10,6 +10,7 @@ from typing import Any
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.errors import InputError
+from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.crossing import (
     DT,
     CrossingSettings,
@@ -37,6 +38,7 @@ class Table1Settings:
     seeds: int = 20
     limit: float = 30.0  # seconds that the user has
     avatar: Path | None = None  # the stock avatar
+    live: bool = False  # plans are made beside playback
 
     def __post_init__(self) -> None:
         if not 1 <= self.seeds <= MAX_SEEDS:
@@ -59,13 +61,18 @@ class CrossingTask:
     def key(self) -> str:
         """By what the trial log knows it: the scene's content, not only its name, is part of it."""
         chosen = self.settings
-        return f"crossing {scene_key(self.scene)} {chosen.planner} {chosen.queue_size} {chosen.seed}"
+        return (
+            f"crossing {scene_key(self.scene)} {chosen.planner} {chosen.queue_size} {chosen.seed}"
+            + " live" * chosen.live
+        )
 
     def run(self) -> dict[str, Any]:
         """The row of the trial, and what each of its frames and plans cost."""
-        controller = controller_for(open_avatar(self.avatar), open_scene(self.scene), self.settings)
+        chosen = self.settings
+        desk = BesideDesk(DT) if chosen.live else None
+        controller = controller_for(open_avatar(self.avatar), open_scene(self.scene), chosen, desk=desk)
         warm_up(controller)
-        result, times = run_timed_crossing(controller, self.settings)
+        result, times = run_timed_crossing(controller, chosen, desk=desk)
         return asdict(result) | {
             "frame_ms": times.frame_ms.round(2).tolist(),
             "plan_ms": times.plan_ms.round(2).tolist(),
@@ -113,7 +120,9 @@ def crossing_tasks(settings: Table1Settings) -> Iterator[CrossingTask]:
     """All trials: every cell gets its first seed, then every cell its second, and so on."""
     seeds = range(1, settings.seeds + 1)
     for seed, planner, scene, queue in product(seeds, settings.planners, settings.scenes, settings.queues):
-        yield CrossingTask(scene, settings.avatar, CrossingSettings(planner, queue, seed, settings.limit))
+        yield CrossingTask(
+            scene, settings.avatar, CrossingSettings(planner, queue, seed, settings.limit, settings.live)
+        )
 
 
 def canned_tasks(settings: Table1Settings) -> Iterator[CannedTask]:
