@@ -1,4 +1,4 @@
-"""Avatar files whose meshes are compressed."""
+"""An avatar file whose mesh is compressed with Draco; `compressed_vrm` does it to real files."""
 
 from typing import Any
 
@@ -7,23 +7,6 @@ import numpy as np
 
 from avatar_builder import Recipe, build, json_of
 from elbowroom.formats.packing import write_glb
-
-
-def meshopt_file(points: int = 20) -> bytes:
-    """An avatar whose buffer views are all compressed with meshoptimizer."""
-    import meshoptimizer
-
-    content, binary = _parts(build(Recipe(points=points)))
-    packed = bytearray()
-    for view, stride in zip(content["bufferViews"], (12, 8, 4, 64), strict=True):
-        raw = np.frombuffer(bytes(binary), np.uint8)[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
-        count = len(raw) // stride
-        data = bytes(meshoptimizer.encode_vertex_buffer(raw.reshape(count, stride), count, stride))
-        place = {"buffer": 0, "byteOffset": len(packed), "byteLength": len(data), "byteStride": stride}
-        view["extensions"] = {"EXT_meshopt_compression": place | {"count": count, "mode": "ATTRIBUTES"}}
-        packed += data + bytes(-len(data) % 4)
-    content["buffers"] = [{"byteLength": len(packed)}]
-    return write_glb(content, bytes(packed))
 
 
 def _parts(glb: bytes) -> tuple[dict[str, Any], bytearray]:

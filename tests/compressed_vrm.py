@@ -96,7 +96,8 @@ def with_meshopt(glb: bytes) -> bytes:
     new = Rewriter(glb)
     content, plain = new.content, 0
     accessors = {accessor["bufferView"]: accessor for accessor in content["accessors"]}
-    faces = {content["accessors"][p["indices"]]["bufferView"] for m in content["meshes"] for p in m["primitives"]}
+    primitives = [primitive for mesh in content["meshes"] for primitive in mesh["primitives"]]
+    faces = {content["accessors"][p["indices"]]["bufferView"] for p in primitives if "indices" in p}
     for index, view in enumerate(content["bufferViews"]):
         raw = new.old(view)
         packed = _meshopt(raw, accessors[index], index in faces) if index in accessors else None

@@ -74,7 +74,9 @@ def glb_reader() -> Reader:
 
 def compressed_reader() -> Reader:
     """GLB humanoids with Draco and meshoptimizer streams."""
-    from compressed_builder import draco_file, meshopt_file
+    from avatar_builder import Recipe, build
+    from compressed_builder import draco_file
+    from compressed_vrm import with_meshopt
     from elbowroom.body.loading import load_humanoid_bytes
     from elbowroom.formats.meshopt.index_codec import decode_sequence, decode_triangles
 
@@ -86,7 +88,7 @@ def compressed_reader() -> Reader:
         b"DRACO",
         b"\xe1",
     )
-    seeds = (meshopt_file(2), draco_file(each=3)[0])
+    seeds = (with_meshopt(build(Recipe(points=2))), draco_file(each=3)[0])
     decode_triangles(np.zeros(1, np.uint8), 3)  # compiled before the clock runs
     decode_sequence(np.zeros(1, np.uint8), 1)
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.glb"), seeds, words, GLB)
