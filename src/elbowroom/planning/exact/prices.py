@@ -82,11 +82,12 @@ def _lower(row: Floats32, other: Floats32) -> None:
 @exact_kernel
 def _priced(
     columns: Floats32, goals: Floats, own: Floats, clear: Floats32, extras: Floats32, margins: Floats, most: float,
-    weights: Weights,
+    weights: Weights, kept: Longs,
 ) -> Floats32:  # fmt: skip
     """Squared distance from the goal and the lack of comfort, for nodes with the clearances `clear` (n+1, W+OWN).
 
-    Infinite where there is less than the margin, or than `most`.
+    Infinite where there is less than the margin, or than `most`. What is `kept` (n+1,) costs less, but near the goal
+    not so much less that nobody would go back to it.
     """
     width = columns.shape[1]
     price = np.empty_like(clear)
@@ -96,6 +97,7 @@ def _priced(
         squares_from(columns, goals[t], row[:width])
         for e in range(OWN):
             row[width + e] = squared_distance(own[t, e], goals[t])
+        row[kept[t]] -= min(np.float32(weights.keeping), np.float32(0.5) * row[kept[t]])
         margin = np.float32(min(margins[t], most))
         for node in range(np.uint64(width + OWN)):
             lack = max(comfort - free[node], np.float32(0.0))
@@ -143,9 +145,7 @@ def node_prices(
     )
     most = max(0.5 * clearance, 0.0)
     clear, count = _clearances(tables, postures, carriers, goals, boxes, own, needed)
-    price = _priced(columns, goals, own, clear, task.extra, task.margins, most, weights)
-    for t in range(price.shape[0]):
-        price[t, kept[t]] -= weights.keeping
+    price = _priced(columns, goals, own, clear, task.extra, task.margins, most, weights, kept)
     _rule_out(price, postures.configurations.shape[0], needed)
     if not limb.is_waist:
         _unfold(limb, own, needed, price)

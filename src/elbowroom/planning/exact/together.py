@@ -58,7 +58,8 @@ def _alone(group: Group, task: GroupTask, keeping: float) -> tuple[Floats, Float
     base = np.full((depths, width + OWN), np.inf, np.float32)
     base[:, : len(known)] = np.sum((known - task.goals[:, None]) ** 2, axis=2)
     base[:, width:] = np.where(needed, np.sum((own - task.goals[:, None]) ** 2, axis=2), np.inf)
-    base[np.arange(depths), kept] -= np.float32(keeping)
+    last = np.arange(depths), kept
+    base[last] -= np.minimum(np.float32(keeping), np.float32(0.5) * base[last])
     return own, base
 
 

@@ -1,0 +1,122 @@
+"""Whole walks as they are shown: bounded speeds and accelerations, no jump of a velocity, soon back in the swing."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.planning.command import Command
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.root_motion import RootMotionSettings
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+AVATAR = Humanoid.default()
+DT = 1 / 60
+FORWARD = Command(forward=1.0)
+SCENES = ("c", "d", "doorway", "beam")
+LIMITS, ROOT = ExactSettings(), RootMotionSettings()
+SWINGS = 1.5  # how much faster than from key frame to key frame a cubic may be in between
+FIRST = 2.0  # how much more the first interval of a plan may ask for: its velocity is given
+
+
+def fickle(seed: int, turns: int) -> list[Command]:
+    """Mostly ahead, with stops, side steps, slow and turned walks."""
+    rng = np.random.default_rng(seed)
+    others = [Command(), Command(forward=0.5), Command(forward=1.0, strafe=0.7), Command(forward=0.7, turn=0.4)]
+    others += [Command(forward=-1.0), Command(forward=1.0, strafe=-0.7), Command(forward=0.7, turn=-0.4)]
+    commands: list[Command] = []
+    while len(commands) < turns:
+        commands += [FORWARD] * int(rng.integers(30, 80))
+        commands += [others[rng.integers(len(others))]] * int(rng.integers(8, 30))
+    return commands[:turns]
+
+
+@cache
+def walk(scene: str, seed: int | None, rate: int = 60) -> tuple[Frame, ...]:
+    """Ahead, or under changing commands, shown `rate` times a second."""
+    controller, turns = Controller(AVATAR, Scene.load(scene), planner="exact"), 6 * rate
+    commands = [FORWARD] * turns if seed is None else fickle(seed, turns)
+    frames = []
+    for command in commands:
+        frames.append(controller.step(command, 1 / rate))
+        if controller.scene.finished(controller.root):
+            break
+    return tuple(frames)
+
+
+def configurations(frames: tuple[Frame, ...]) -> Floats:
+    q = np.array([frame.q for frame in frames])
+    q[:, 2] = np.unwrap(q[:, 2])
+    return q
+
+
+def newly_planned(frames: tuple[Frame, ...]) -> NDArray[np.bool_]:
+    """Which frames lie in the first key interval of a plan, or touch it."""
+    starts = np.array([-1.0 if frame.plan is None else frame.plan.root.path.start_time for frame in frames])
+    times = np.array([frame.time for frame in frames])
+    first: NDArray[np.bool_] = times - starts < 0.15 + 2.0 * DT
+    return first
+
+
+def limits_of(group: DofGroup) -> tuple[float, float]:
+    if group is DofGroup.WAIST:
+        return LIMITS.waist_speed, LIMITS.waist_acceleration
+    return LIMITS.arm_speed, LIMITS.arm_acceleration
+
+
+@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("scene", SCENES)
+def test_joints_keep_their_speeds_and_accelerations(scene: str, seed: int | None) -> None:
+    frames = walk(scene, seed)
+    assert min(frame.clearance for frame in frames) >= 0.0
+    q, first = configurations(frames), newly_planned(frames)[1:-1]
+    for group in LOCAL_GROUPS:
+        way = q[:, group.value]
+        speed, acceleration = limits_of(group)
+        speeds = np.linalg.norm(np.diff(way, axis=0), axis=1) / DT
+        asked = np.linalg.norm(np.diff(way, 2, axis=0), axis=1) / DT**2
+        assert speeds.max() <= SWINGS * speed
+        assert asked[~first].max(initial=0.0) <= 1.01 * acceleration
+        assert asked.max() <= FIRST * acceleration
+
+
+@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_root_keeps_its_accelerations(scene: str, seed: int | None) -> None:
+    q = configurations(walk(scene, seed))
+    places = np.linalg.norm(np.diff(q[:, :2], 2, axis=0), axis=1) / DT**2
+    assert places.max() <= 1.01 * ROOT.braking
+    assert np.abs(np.diff(q[:, 2])).max() / DT <= 1.01 * ROOT.turn_rate
+    assert np.abs(np.diff(q[:, 2], 2)).max() / DT**2 <= 1.01 * ROOT.turn_acceleration
+
+
+def test_no_velocity_jumps_between_plans() -> None:
+    """Eight times as many frames: in none of them does a velocity change by more than its acceleration allows."""
+    rate = 480
+    q = configurations(walk("d", None, rate))
+    for group in LOCAL_GROUPS:
+        change = np.linalg.norm(np.diff(q[:, group.value], 2, axis=0), axis=1) * rate
+        assert change.max() <= FIRST * limits_of(group)[1] / rate
+    assert np.linalg.norm(np.diff(q[:, :2], 2, axis=0), axis=1).max() * rate <= 1.01 * ROOT.braking / rate
+
+
+@pytest.mark.parametrize("scene", ["b", *SCENES])
+def test_half_a_second_after_the_last_obstacle_the_walk_is_natural(scene: str) -> None:
+    """The last obstacle is passed when the natural walk would clear everything from then on."""
+    frames, check = walk(scene, None), BodyCheck(AVATAR, Scene.load(scene))
+    clear = np.array([check.clearance(frame.root, frame.goal, frame.time) for frame in frames])
+    passed = int(np.flatnonzero(clear < LIMITS.margin)[-1])
+    later = frames[passed + round(0.5 / DT) :]
+    assert later
+    for plan in {frame.plan.number: frame.plan for frame in later if frame.plan is not None}.values():
+        at = plan.root.path.times >= frames[passed].time + 0.5
+        off = plan.local.configurations - plan.local.goals
+        assert np.abs(off[at]).max() < 0.05
