@@ -10,6 +10,7 @@ from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.root_path import RootPath, sample_states
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
+from elbowroom.world.moving import MovingBoxes, Repeat, Track
 
 Floats = NDArray[np.float64]
 
@@ -111,3 +112,26 @@ def test_no_boxes_no_contact() -> None:
     legs = LoweredLegs(MODEL, Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3))))
     roots, lowerings = random_states(np.random.default_rng(4), 8)
     assert np.isinf(legs.clearances(roots, lowerings)).all()
+
+
+def test_what_moves_is_where_it_is_then() -> None:
+    """A box crosses the way: no clearance is more than that from the box as it stands at the moment."""
+    path, size = walk(12), np.array([0.4, 0.8, 0.4])
+    centers = np.array([[298.5, 0.4, -199.5], [301.5, 0.4, -199.5]])
+    track = Track("crossing", size, np.array([0.0, 1.8]), centers, np.zeros(2), Repeat.ONCE)
+    moving = MovingBoxes((track,))
+    nothing = random_boxes(np.random.default_rng(0), 0)
+    legs = LoweredLegs(MODEL, nothing).among(moving, path)
+    times = np.linspace(0.0, 1.79, 90)
+    roots, lowerings = sample_states(path.states, path.interval, times), np.full(90, 0.4)
+    found = legs.clearances(roots, lowerings, times)
+    expected = np.array([naive(moving.at(t), root, 0.4) for t, root in zip(times, roots, strict=True)])
+    assert np.all(found <= expected + 1e-5)
+    assert np.all(found >= expected - 0.3)  # what it sweeps in a key interval
+    keys = np.full(13, 0.4)
+    blocked = legs.blocked_intervals(path, keys, np.zeros(13), 0.02)
+    hit = np.unique((times[expected < 0.0] / path.interval).astype(int))
+    assert len(hit)
+    assert blocked[hit].all()
+    assert not blocked.all()
+    assert legs.among(MovingBoxes(), path) is legs

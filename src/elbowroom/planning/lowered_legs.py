@@ -4,18 +4,22 @@ The root's path is planned for upright legs. How deep the body crouches on it is
 pelvis have to be looked at again where it does. That depends on the lowering and on the root's state alone.
 """
 
+from copy import copy
+
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.planning.root_path import RootPath, sample_states
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.clearance import clearance
+from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 
 _LEAST = 1e-3  # of a lowering that is looked at: less than a millimetre
 _SPEED = 2.2  # m/s: a run, in which legs reach farthest
@@ -36,26 +40,50 @@ class LoweredLegs:
         ground = corners[low][:, :, [0, 2]]
         self._table = np.ascontiguousarray(boxes.table[low])
         self._least, self._most = ground.min(axis=1), ground.max(axis=1)
+        self._sweeps, self._interval = np.empty((1, 0, BOX_ROW)), 1.0
 
-    def clearances(self, roots: Floats, lowerings: Floats) -> Floats32:
-        """Clearance (N,) at root states (N, 7) and lowerings (N,); infinite where upright or far from every box."""
+    def among(self, moving: MovingBoxes, path: RootPath) -> "LoweredLegs":
+        """The same legs where something moves besides, along a path."""
+        if not len(moving):
+            return self
+        made = copy(self)
+        made._sweeps, made._interval = moving.swept(path.times), path.interval
+        return made
+
+    def clearances(self, roots: Floats, lowerings: Floats, after: Floats | None = None) -> Floats32:
+        """Clearance (N,) at root states (N, 7) and lowerings (N,), `after` (N,) seconds on the path, or at its start.
+
+        Infinite where upright or far from every box.
+        """
         out = np.full(len(roots), np.inf, np.float32)
         lowered = np.flatnonzero(lowerings > _LEAST)
         if not len(lowered):
             return out
+        self._lower_to_standing(out, roots, lowerings, lowered)
+        if self._sweeps.shape[1]:
+            times = np.zeros(len(lowered)) if after is None else after[lowered]
+            spans = np.clip((times / self._interval).astype(np.int64), 0, len(self._sweeps) - 1)
+            for span in np.unique(spans):
+                self._lower_to(self._sweeps[span], out, roots, lowerings, lowered[spans == span])
+        return out
+
+    def _lower_to_standing(self, out: Floats32, roots: Floats, lowerings: Floats, lowered: Indices) -> None:
+        """Lower `out` to the clearance of what stands near."""
         places = roots[lowered, :2]
         near = (self._least <= places.max(axis=0) + self._reach) & (self._most >= places.min(axis=0) - self._reach)
-        table = self._table[near.all(axis=1)].copy()
-        if not len(table):
-            return out
+        self._lower_to(self._table[near.all(axis=1)], out, roots, lowerings, lowered)
+
+    def _lower_to(self, rows: Floats, out: Floats32, roots: Floats, lowerings: Floats, lowered: Indices) -> None:
+        """Lower `out` to the clearance of boxes, rows (B, 15), where the body is lowered."""
+        if not len(rows):
+            return
         # at the origin, so that single precision holds anywhere
-        states, origin = roots[lowered].copy(), places[0].copy()
+        table, states, origin = rows.copy(), roots[lowered].copy(), roots[lowered[0], :2].copy()
         states[:, :2] -= origin
         table[:, [0, 2]] -= origin
-        out[lowered] = clearance(
-            leg_capsules(self._model, states, lowerings[lowered]), self._model.roots.radii, table.astype(np.float32)
-        )
-        return out
+        legs = leg_capsules(self._model, states, lowerings[lowered])
+        found = clearance(legs, self._model.roots.radii, table.astype(np.float32))
+        out[lowered] = np.minimum(out[lowered], found)
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
         """Which of the lowerings (n+1, V) bring the legs within `margin` of a box around their key time: (n+1, V)."""
@@ -65,7 +93,8 @@ class LoweredLegs:
         roots = sample_states(path.states, path.interval, times.ravel())
         states = np.repeat(roots, lowerings.shape[1], axis=0)
         each = np.repeat(lowerings[:, None], _AROUND, axis=1).ravel()
-        found = self.clearances(states, each).reshape(len(times), _AROUND, -1)
+        after = np.repeat(times.ravel(), lowerings.shape[1])
+        found = self.clearances(states, each, after).reshape(len(times), _AROUND, -1)
         blocked: Bools = found.min(axis=1) < margin
         return blocked
 
@@ -78,7 +107,7 @@ class LoweredLegs:
         times = (np.arange(path.horizon)[:, None] + share) * path.interval
         roots = sample_states(path.states, path.interval, times.ravel())
         lowerings = np.clip(_curve(keys, path.interval * velocities, share), 0.0, None)
-        found = self.clearances(roots, lowerings.ravel()).reshape(path.horizon, _SHOWN)
+        found = self.clearances(roots, lowerings.ravel(), times.ravel()).reshape(path.horizon, _SHOWN)
         blocked: Bools = found.min(axis=1) < margin
         return blocked
 

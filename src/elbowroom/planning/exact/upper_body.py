@@ -113,9 +113,10 @@ class UpperBody:
         """
         moving = self._moving if others is None else self._moving + others
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
+        legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, start, velocity, kept, near)
+            dressing = self._dressing(path, start, velocity, kept, near, legs)
             found = dressing.motion(rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing, dressing.asked)
@@ -134,14 +135,14 @@ class UpperBody:
                 self._take_in(group)
 
     def _dressing(
-        self, path: RootPath, start: Floats, velocity: Floats, kept: Kept | None, near: NearBoxes
+        self, path: RootPath, start: Floats, velocity: Floats, kept: Kept | None, near: NearBoxes, legs: LoweredLegs
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
         roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval, near.stamps)
         margins, skins = self._margins(path)
         return Dressing(
-            shelves, self._weights, self.settings, self._own_body, self._legs, path, goals,
+            shelves, self._weights, self.settings, self._own_body, legs, path, goals,
             kept, start, velocity, roots, near, margins, skins,
         )  # fmt: skip
 
