@@ -84,12 +84,12 @@ def warm_up_with_progress(library: "Library", console: "Console") -> None:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     from elbowroom.server.compiling import compile_apart
-    from elbowroom.server.kernel_cache import kernels
+    from elbowroom.server.kernel_cache import session_kernels
     from elbowroom.server.warmup import first_steps
 
     columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
-        task = progress.add_task("", total=len(kernels()), visible=False)
+        task = progress.add_task("", total=len(session_kernels()), visible=False)
 
         def report(kernel: str, number: int) -> None:
             progress.update(task, completed=number, description=kernel, visible=True)

@@ -20,6 +20,12 @@ def kernels() -> list[Any]:
     return [kernel for kernel in ours if not isinstance(kernel._cache, NullCache)]
 
 
+def session_kernels() -> list[Any]:
+    """Those of `kernels` that a live session may use: not what decodes compressed files or judges experiments."""
+    aside = ("elbowroom.formats.", "elbowroom.experiment.")
+    return [kernel for kernel in kernels() if not kernel.__module__.startswith(aside)]
+
+
 def kept_kernels() -> list[Any]:
     """Those of `kernels` which lie on disk for the present source."""
     return [kernel for kernel in kernels() if _has_index(kernel)]

@@ -1,0 +1,74 @@
+"""The first start: two processes compile, each kernel is told once, and a failure costs only time."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from elbowroom.cli.bench_compile import compiled_in
+from elbowroom.server import compiling, kernel_cache
+from elbowroom.server.compiling import PARTS, command_for, compile_apart, compile_parts
+
+
+def _printing(monkeypatch: pytest.MonkeyPatch, programs: dict[str, str]) -> None:
+    """Have other programs run than compilers."""
+    monkeypatch.setattr(compiling, "command_for", lambda part: [sys.executable, "-c", programs[part]])
+
+
+def _programs(first: str, second: str) -> dict[str, str]:
+    return dict(zip(PARTS, (first, second), strict=True))
+
+
+def test_every_kernel_is_told_once_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    _printing(monkeypatch, _programs("print('a'); print('both')", "print('both'); print('b')"))
+    heard: list[tuple[str, int]] = []
+    assert compile_parts(lambda kernel, number: heard.append((kernel, number)), os.environ)
+    assert sorted(kernel for kernel, _ in heard) == ["a", "b", "both"]
+    assert [number for _, number in heard] == [0, 1, 2]
+
+
+@pytest.mark.parametrize("ends", ["raise SystemExit(3)", "import os; os.abort()"])
+def test_a_part_that_fails_leaves_the_other_and_no_mark(monkeypatch: pytest.MonkeyPatch, ends: str) -> None:
+    _printing(monkeypatch, _programs(f"print('a', flush=True); {ends}", "print('b')"))
+    marks: list[bool] = []
+    monkeypatch.setattr(compiling, "is_warm", lambda: False)
+    monkeypatch.setattr(compiling, "mark_warm", lambda: marks.append(True))
+    heard: set[str] = set()
+    compile_apart(lambda kernel, number: heard.add(kernel))
+    assert heard == {"a", "b"}
+    assert marks == []
+    _printing(monkeypatch, _programs("print('a')", "print('b')"))
+    compile_apart(lambda kernel, number: None)
+    assert marks == [True]
+
+
+def test_nothing_to_compile_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiling, "is_warm", lambda: True)
+    monkeypatch.setattr(compiling, "compile_parts", lambda *_: pytest.fail("compiles again"))
+    compile_apart(lambda kernel, number: None)
+
+
+def test_the_parts_process_gets_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    _printing(monkeypatch, dict.fromkeys(PARTS, "import os; print(os.environ['NUMBA_CACHE_DIR'])"))
+    heard: list[str] = []
+    compile_parts(lambda kernel, number: heard.append(kernel), os.environ | {"NUMBA_CACHE_DIR": "there"})
+    assert heard == ["there"]
+
+
+def test_a_command_names_its_part() -> None:
+    for part in PARTS:
+        assert command_for(part)[1:] == ["-m", "elbowroom.server.compiling", part]
+
+
+def test_kernels_of_other_rooms_than_a_sessions_are_left_out() -> None:
+    kernels = kernel_cache.session_kernels()
+    assert len(kernels) > 100
+    assert {kernel.__module__.split(".")[1] for kernel in kernels} <= {"body", "world", "planning", "control", "clips"}
+
+
+def test_compiled_files_are_counted_by_kernel(tmp_path: Path) -> None:
+    for name in ("proof.limb_way-9.py311.1.nbc", "proof.limb_way-9.py311.2.nbc", "slots.find-4.py311.1.nbc"):
+        (tmp_path / name).touch()
+    (tmp_path / "slots.find-4.py311.nbi").touch()
+    assert compiled_in(tmp_path) == {"proof.limb_way": 2, "slots.find": 1}
