@@ -2,6 +2,9 @@
 
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
+
+A kernel is compiled once for each combination of argument types, and a literal integer is a type of its own: `int(X)`
+makes a plain one of a constant. See "The first start" in docs/architecture.md for what else compilation costs.
 """
 
 from collections.abc import Callable

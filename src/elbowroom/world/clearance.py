@@ -25,6 +25,7 @@ from elbowroom.jit import inlined, kernel
 LANES = 16  # float32 lanes of the widest vector register
 BLOCK = 512  # lanes that are treated together: their rows stay in the first-level cache
 _LANE_ROWS = 7  # ax, ay, az, bx, by, bz, radius
+_START = 0  # the first configuration
 
 _ZERO: Any = np.float32(0.0)  # single precision on purpose: a bare 0.0 would widen the whole loop
 _ONE: Any = np.float32(1.0)
@@ -199,7 +200,7 @@ def _posture_clearance(rows: Floats32, radii: Floats32, table: Floats32) -> Any:
     if count == 0:
         return least
     lanes = np.empty((_LANE_ROWS, _padded(count)), np.float32)
-    _fill_lanes(rows, radii[0], 0, count, lanes)
+    _fill_lanes(rows, radii[0], int(_START), count, lanes)
     lanes[6, :count] = radii
     lanes[6, count:] = radii[count - 1]
     best = np.full(lanes.shape[1], _INFINITE, np.float32)

@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
 
 MOST_STEPS = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
@@ -50,14 +51,14 @@ def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: flo
 
 
 @exact_kernel
-def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools) -> Ints:
+def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools) -> Longs:
     """The steps (K, 2) of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
     They are marked as seen in `seen` (W+OWN, W+OWN).
     """
     size, nodes, weight = lattice.postures.shape[0], lattice.price.shape[1], np.float32(lattice.weight)
     width, limit = nodes - OWN, np.float32(most)
-    found, count = np.empty((MOST_STEPS, 2), np.int32), 0
+    found, count = np.empty((MOST_STEPS, 2), np.int64), 0
     costs, base, end = work.costs[depth], np.empty(nodes, np.float32), np.empty(nodes, np.float32)
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
@@ -88,7 +89,7 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
 
 @inlined
 def _posed_between(
-    limb: Limb, pairs: Ints, between: Floats32, lattice: Lattice, depth: int, steps: Ints, part: int, lanes: Floats32
+    limb: Limb, pairs: Ints, between: Floats32, lattice: Lattice, depth: int, steps: Longs, part: int, lanes: Floats32
 ) -> None:
     """The capsules (C, 6, K) of every step's posture at `part` of its way."""
     size = lattice.postures.shape[0]
@@ -98,22 +99,22 @@ def _posed_between(
         a, b = steps[min(k, last), 0], steps[min(k, last), 1]
         pair = pairs[a, b] if a < size and b < size else -1
         if pair >= 0:
-            _set_lane(lanes, k, between[pair, part if a < b else BETWEEN - 1 - part])
+            on_way = between[pair, part if a < b else BETWEEN - 1 - part]
+            for c in range(lanes.shape[0]):
+                for i in range(6):
+                    lanes[c, i, k] = on_way[c, i]
         elif k <= last:
             start, end = posture_of(lattice, depth, a), posture_of(lattice, depth + 1, b)
             for i in range(configuration.shape[1]):
                 configuration[0, i] = start[i] + share * (end[i] - start[i])
-            _set_lane(lanes, k, pose(limb, configuration)[:, :, 0])
+            posed = pose(limb, configuration)
+            for c in range(lanes.shape[0]):
+                for i in range(6):
+                    lanes[c, i, k] = posed[c, i, 0]
         else:
-            _set_lane(lanes, k, lanes[:, :, k - 1])
-
-
-@exact_kernel
-def _set_lane(lanes: Floats32, k: int, capsules: Floats32) -> None:
-    """Capsules (C, 6) into lane k."""
-    for c in range(lanes.shape[0]):
-        for i in range(6):
-            lanes[c, i, k] = capsules[c, i]
+            for c in range(lanes.shape[0]):
+                for i in range(6):
+                    lanes[c, i, k] = lanes[c, i, last]
 
 
 @exact_kernel
@@ -131,7 +132,7 @@ def close_steps(
     postures: Postures,
     lattice: Lattice,
     depth: int,
-    steps: Ints,
+    steps: Longs,
     places: Floats,
     turns: Floats,
     boxes: Floats,
