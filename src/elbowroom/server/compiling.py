@@ -13,10 +13,11 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from threading import Lock
 
+from elbowroom.planning.exact.rehearsal import rehearse, rehearse_product, rehearse_proof
 from elbowroom.planning.names import EXACT, FIGURE6
 from elbowroom.server.kernel_cache import is_warm, mark_warm
 from elbowroom.server.library import Library
-from elbowroom.server.warmup import Report, listening, rehearse_limbs, walk_and_stand
+from elbowroom.server.warmup import Report, listening, walk_and_stand
 
 PARTS = ("steps", "limbs")  # in this order where there is only one processor
 _TELLING = ("a", "c", "doorway", "traffic")  # where the walk meets what it does not in the open: ways round, evasions
@@ -66,14 +67,19 @@ def command_for(part: str) -> list[str]:
 
 
 def compile_part(part: str, report: Report) -> None:
-    """Compile a part by using it: `steps` walks with the planner that needs least, `limbs` plans with the other first.
+    """Compile a part by using it: `limbs` plans first and walks then, `steps` walks with the planner that needs least.
 
-    So they begin far from each other: with the legs and the root's way here, with arms and their searches there.
+    They take about as long, and seldom need the same at once: `steps` begins with what `limbs` will need later, and
+    `limbs` ends with what `steps` has compiled.
     """
     with listening(report):
-        if part == "limbs":
-            with closing(Library.open(_TELLING[0])) as library:
-                rehearse_limbs(library)
+        with closing(Library.open(_TELLING[0])) as library:
+            humanoid = library.avatars.get(library.avatar).humanoid
+            if part == "limbs":
+                rehearse(humanoid)
+            else:
+                rehearse_product()
+                rehearse_proof(humanoid)
         for scene in _TELLING:
             with closing(Library.open(scene)) as library:
                 walk_and_stand(library, EXACT if part == "limbs" else FIGURE6)

@@ -63,7 +63,7 @@ def warm_up(library: Library, report: Report | None = None) -> None:
     with listening(report):
         for planner in PLANNERS:
             walk_and_stand(library, planner)
-        rehearse_limbs(library)
+        rehearse(library.avatars.get(library.avatar).humanoid)
 
 
 def first_steps(library: Library, report: Report | None = None) -> None:
@@ -75,11 +75,6 @@ def first_steps(library: Library, report: Report | None = None) -> None:
 def walk_and_stand(library: Library, planner: str) -> None:
     """That walk with one planner."""
     _walk_a_moment(library, planner, _WALK)
-
-
-def rehearse_limbs(library: Library) -> None:
-    """Plans of waist and arms that a walk seldom asks for."""
-    rehearse(library.avatars.get(library.avatar).humanoid)
 
 
 def _walk_a_moment(library: Library, planner: str, held_inputs: list[tuple[int, Input]]) -> None:

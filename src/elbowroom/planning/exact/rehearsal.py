@@ -1,17 +1,29 @@
-"""Plans that nobody asked for: past a box and before a wall, so that what is rarely needed is compiled and loaded."""
+"""Plans that nobody asked for: past a box and before a wall, so that what is rarely needed is compiled and loaded.
+
+Two of their parts can be had alone, without a plan: so that another process may compile them meanwhile.
+"""
 
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
+from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.planning.exact.joint import joint_way
+from elbowroom.planning.exact.joint_bounds import Problem
+from elbowroom.planning.exact.joint_reach import stepped_triples
+from elbowroom.planning.exact.postures import postures_of
+from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
 from elbowroom.planning.goal import goal_configurations
+from elbowroom.planning.limb import limb_of
 from elbowroom.planning.root_path import RootPath
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
@@ -34,3 +46,31 @@ def rehearse(humanoid: Humanoid) -> None:
         dressing = body.plan(path, start, np.zeros_like(start)).dressing
         dressing.together(1)
         dressing.blockade()
+
+
+def rehearse_product() -> None:
+    """Search a product of a few postures of each group that has a way, and one that has none."""
+    depths, size = 3, 4
+    prices, steps = np.zeros((depths, size), np.float32), np.zeros((depths - 1, size, size), np.float32)
+    under = np.zeros((depths, size, size), np.float32)
+    problem = Problem(prices, under, under, steps, steps, steps, np.ones(under.shape, np.bool_))
+    joint_way(problem)
+    joint_way(problem._replace(apart=np.zeros(under.shape, np.bool_)))
+    stepped_triples(problem, 0, np.ones((size, size, size), np.bool_))
+
+
+def rehearse_proof(humanoid: Humanoid) -> None:
+    """Prove the way of a waist at rest, carried past a small box."""
+    model = body_model(humanoid)
+    limb = limb_of(model, DofGroup.WAIST)
+    rest = np.zeros((1, DofGroup.WAIST.size))
+    postures = postures_of(limb, rest, 1.0)
+    ways, chain = new_limb_ways(1, DofGroup.WAIST.size, carries=True), chain_of(model, limb, postures.reach)
+    places, turns, states = np.zeros((SWEEP + 1, 3)), np.zeros((SWEEP + 1, 4)), np.zeros(16)
+    turns[:, 3], states[0] = 1.0, _INTERVAL
+    carrier = Carrier(0, places, turns, np.full(SWEEP, 0.1), states, places, states)
+    boxes = np.zeros((1, BOX_ROW))
+    boxes[0, 3:12:4], boxes[0, 12:] = 1.0, 0.01
+    boxes[0, 0] = postures.reach
+    ends = (rest[0], rest[0], rest[0], rest[0])
+    limb_way(ways, postures, levers_of(model, limb), chain, carrier, ends, boxes, 0.0)
