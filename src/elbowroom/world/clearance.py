@@ -201,8 +201,8 @@ def _posture_clearance(rows: Floats32, radii: Floats32, table: Floats32) -> Any:
         return least
     lanes = np.empty((_LANE_ROWS, _padded(count)), np.float32)
     _fill_lanes(rows, radii[0], int(_START), count, lanes)
-    lanes[6, :count] = radii
-    lanes[6, count:] = radii[count - 1]
+    for i in range(lanes.shape[1]):
+        lanes[6, i] = radii[min(i, count - 1)]
     best = np.full(lanes.shape[1], _INFINITE, np.float32)
     for b in range(table.shape[0]):
         lower_to_box(lanes, table[b], best)

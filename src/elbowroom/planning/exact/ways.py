@@ -177,7 +177,9 @@ def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -
 def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float, stamp: float) -> int:
     """The slot of the root way from state `a` to `b`; `stamp` tells apart what moves meanwhile."""
     key = np.empty(16)
-    key[0], key[1:8], key[8:15], key[15] = interval, a, b, stamp
+    key[0], key[15] = interval, stamp
+    for i in range(7):
+        key[1 + i], key[8 + i] = a[i], b[i]
     known = find(ways.slots, key)
     if known >= 0:
         return int(known)
