@@ -89,7 +89,7 @@ def test_two_who_walk_towards_each_other_in_a_corridor_pass_without_slowing_down
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("left", [(0.0, 0.0), (0.1, 0.0), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25), (0.4, 0.4)])
+@pytest.mark.parametrize("left", [(0.0, 0.0), (0.1, 0.0), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)])
 @pytest.mark.parametrize("late", [0.0, 1.5])
 def test_wherever_two_meet_they_pass(left: tuple[float, float], late: float) -> None:
     mine, yours, _ = meeting(14.0, left, late)

@@ -85,7 +85,7 @@ def test_the_search_finds_the_optimum_of_all_ways() -> None:
     for _ in range(12):
         clear = rng.uniform(-0.02, 0.06, (3, 5, 3, 3)).astype(np.float32)
         clear[:, 0, 1, 1] = 0.06
-        prices = Prices(0.0, 0.01, 0.06, 0.3, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
+        prices = Prices(0.0, 0.01, 0.06, 0.3, 0.1, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
         standing, favoured = rng.uniform(0.0, 0.3, 3), rng.integers(0, 3, (5, 2))
         way, cost = cheapest(clear, standing, prices, np.array([1, 1]), favoured)
         costs = [_cost_of(list(cells), clear, standing, prices, favoured) for cells in _ways()]
@@ -119,7 +119,7 @@ def _cost_from(t0: int, cells: list[Any], clear: Any, standing: Floats, prices: 
         if t != t0 and min(clear[0, i, j, t], clear[0, i - 1, j0, t0]) < prices.margin + prices.swerving:
             return math.inf
         total += prices.shifting * (j - j0) ** 2 + prices.turning * (t - t0) ** 2
-        total += standing[t] + prices.beside * (j - 1) ** 2
+        total += standing[t] + prices.beside * (j - 1) ** 2 + prices.leftward * max(j - 1, 0)
         total += sum(prices.bodies[g] * (prices.comfort - clear[g, i, j, t]) for g in range(3))
         if abs(favoured[i, 0] - j) <= 1 and abs(favoured[i, 1] - t) <= 1:
             total -= prices.keeping

@@ -3,9 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
-from threading import Event
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +15,7 @@ from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.canned import standing_posture
 from elbowroom.control.desk import ImmediateDesk, PlanningDesk
-from elbowroom.control.foresight import Foresight
+from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
@@ -45,16 +42,6 @@ _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 _FAR_MOVING = 0.6  # the same where things move by themselves
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
-
-
-class _Asked(NamedTuple):
-    """A plan that is being made."""
-
-    question: Question
-    time: float  # seconds, when it was asked for
-    delay: float  # of the queue then
-    standing: bool  # it starts where the avatar stands, whenever that is
-    superseded: Event  # set when something else is wanted
 
 
 class Controller:
@@ -96,17 +83,15 @@ class Controller:
         self._check = BodyCheck(humanoid, scene)
         self._others = MovingBoxes()
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
-        self._desk: PlanningDesk = desk or ImmediateDesk()
+        self._errands = Errands(desk or ImmediateDesk())
         self._worn = fitted(self.motions, humanoid)
         self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self._worn)
         self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
-        if self._desk.busy:  # a plan in the making keeps its planners
-            self._desk.forget()
-            if self._asked is not None:
-                self._asked.superseded.set()
+        if self._errands.busy:  # a plan in the making keeps its planners
+            self._errands.forget()
             self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self._worn)
         else:
             self._wayfinder.reset()
@@ -114,11 +99,10 @@ class Controller:
 
     def _begin(self) -> None:
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
-        self._foresight = Foresight(self._desk.immediate)
+        self._errands.begin()
         self._holding = Holding()
         self._assist = self.settings.assist
         self._plan_report: PlanReport | None = None
-        self._asked: _Asked | None = None
         self._command = Command()
         self._flow = self._next = Phase.PLAN
         self._blocked = self._resting = self._halting = False
@@ -158,7 +142,7 @@ class Controller:
             np.vstack([now.root, coming.roots]),
             np.vstack([now.upper, coming.uppers]),
         )
-        return predicted(self.humanoid, self._check.model, keys)
+        return predicted(self.humanoid, self._check.model, keys, onward=self._command.forward > 0.0)
 
     @property
     def phase(self) -> Phase:
@@ -196,7 +180,7 @@ class Controller:
 
     def _turn(self, command: Command, dt: float) -> Phase:
         self._take_plan(command)
-        self._supersede(command)
+        self._errands.supersede(command)
         flow = self._choose_flow(command)
         if flow is Phase.RESET:
             self._reset_queue()
@@ -207,7 +191,7 @@ class Controller:
 
     def _choose_flow(self, command: Command) -> Phase:
         """Figure 4 (b): which flow this turn takes."""
-        if self._desk.busy or (self._resting and command.idle):
+        if self._errands.busy or (self._resting and command.idle):
             return Phase.PLAY
         if steering.overturned(self._command, command):
             return Phase.RESET
@@ -227,61 +211,42 @@ class Controller:
 
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
-        hurry = not self._desk.immediate and not self._queue.empty and steering.changed(self._command, command)
+        hurry = not self._errands.immediate and not self._queue.empty and steering.changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
-        root, settings, superseded = RootState(*start.root.tolist()), self.settings, Event()
+        root, settings = RootState(*start.root.tolist()), self.settings
         others = self._others
         if self._clearance < 0.0 and len(others):
             others = slimmer(others, _LEAVING - self._clearance)
         query = MotionQuery(
             time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
-            hurry, superseded.is_set,
+            hurry,
         )  # fmt: skip
         held = None
         if self._holding.active and self._assist:
             held = Held(start.root, start.upper, self._holding.stance, self._clearance)
-        reserve = 0 if self._desk.immediate else round(_RESERVE / settings.interval)
-        question = Question(query, self._assist, held, reserve)
-        self._asked = _Asked(question, self._queue.time, self._queue.delay, self._queue.empty, superseded)
-        self._desk.submit(partial(self._wayfinder.answer, question))
+        reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
+        self._errands.ask(Question(query, self._assist, held, reserve), self._wayfinder.answer, self._queue)
         self._take_plan(command)
 
-    def _supersede(self, command: Command) -> None:
-        """Call off a plan in the making for what is not wanted any more; one that is in a hurry is soon there."""
-        if self._asked is not None:
-            query = self._asked.question.query
-            if not query.hurry and steering.changed(query.command, command):
-                self._asked.superseded.set()
-
     def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
-        """When and from where to plan: as soon as a plan can be there.
-
-        That is the next unplayed key frame (receding horizon), or between key frames, if the user wants something else
-        at once; where nothing is left to play, it is what is shown now.
-        """
+        """When and from where to plan; where nothing is left to play, it is what is shown now."""
         if self._queue.empty:
             return self._queue.time, self._holding.start(self._shown)
-        coming, soonest = self._queue.unplayed().times, self._queue.time + self._foresight.lead(hurry=hurry)
-        time = soonest if at_once else next((time for time in coming if time >= soonest), coming[-1])
-        time = min(float(time), float(coming[-1]))
+        time = self._errands.start(self._queue, at_once=at_once, hurry=hurry)
         return time, self._queue.at(time)
 
     def _take_plan(self, command: Command) -> None:
         """On success the queue goes on with the plan, else it keeps what it has."""
-        answer, asked = self._desk.take(), self._asked
-        if answer is None or asked is None:
-            self._asked = asked if self._desk.busy else None
+        heard = self._errands.hear(self._queue)
+        if heard is None:
             return
-        self._asked = None
-        self._foresight.waited(self._queue.time - asked.time, hurry=asked.question.query.hurry)
-        start = self._queue.time if asked.standing else answer.path.start_time + self._queue.delay - asked.delay
-        if asked.question.assist is not self._assist or steering.overturned(asked.question.query.command, command):
+        if heard.question.assist is not self._assist or steering.overturned(heard.question.query.command, command):
             self._next = Phase.RESET
-        elif start < self._queue.time - _SAME_TIME:
+        elif heard.start < self._queue.time - _SAME_TIME:
             self.late_plans += 1
             self._next = Phase.PLAN
         else:
-            self._go_on_with(answer, asked.question, start)
+            self._go_on_with(*heard)
 
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1
@@ -307,7 +272,7 @@ class Controller:
 
     def _play(self, dt: float) -> None:
         """Flow B: interpolate, check, show; what touches is not shown, and leads to flow C, as does an empty queue."""
-        ended = self._queue.empty and not self._is_continued()
+        ended = self._queue.empty and not self._errands.continues
         rate = self._rate(dt)
         self._queue.advance(dt, rate)
         if self._resting:
@@ -329,14 +294,10 @@ class Controller:
         if self._queue.empty:
             self._next = Phase.RESET
 
-    def _is_continued(self) -> bool:
-        """Whether the plan that is being made goes on from the queue."""
-        return self._asked is not None and not self._asked.standing
-
     def _rate(self, dt: float) -> float:
         """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
         left = self._queue.left if self._queue.ends_moving else math.inf
-        return self._foresight.next_rate(left, dt, halting=self._halting)
+        return self._errands.foresight.next_rate(left, dt, halting=self._halting)
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
@@ -366,15 +327,14 @@ class Controller:
 
     def _reset_queue(self) -> None:
         """Flow C: what is in the queue is not wanted any more. It is still played until there is something else."""
-        if self._desk.immediate:
+        if self._errands.immediate:
             self._queue.clear()
 
     def _clear(self) -> None:
         """Empty the queue; a plan in the making that goes on from it is of no use then."""
         self._queue.clear()
         self._halting = False
-        if self._is_continued():
-            self._asked = None
+        self._errands.drop_continued()
 
     # --- what is shown -----------------------------------------------------------------------------------------------
 

@@ -29,15 +29,18 @@ _PARTS = {
 }
 
 
-def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames) -> MovingBoxes:
-    """Moving boxes that hold the avatar at its key frames; the first of these is shown now."""
+def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: bool) -> MovingBoxes:
+    """Moving boxes that hold the avatar at its key frames; the first of these is shown now.
+
+    `onward`: whether it wants to go ahead. Then a step back gives way, and does not go on.
+    """
     segments = posture_capsules(model, _postures(keys), keys.roots).astype(np.float64)
     radii = humanoid.capsules.radii[:, None, None]
     ends = segments.reshape(len(radii), 2, 3, -1)
     dx, dz = ends[:, :, 0] - keys.roots[:, 0], ends[:, :, 2] - keys.roots[:, 1]
     sine, cosine = np.sin(keys.roots[:, 2]), np.cos(keys.roots[:, 2])
     own = np.stack([dx * cosine - dz * sine, ends[:, :, 1], dx * sine + dz * cosine], axis=2)
-    times, places, yaws = _way(keys)
+    times, places, yaws = _way(keys, onward)
     sine, cosine = np.sin(yaws), np.cos(yaws)
     tracks = []
     for name, group in _PARTS.items():
@@ -62,12 +65,14 @@ def _postures(keys: KeyFrames) -> Floats:
     return np.array([configuration(root, upper) for root, upper in zip(keys.roots, keys.uppers, strict=True)])
 
 
-def _way(keys: KeyFrames) -> tuple[Floats, Floats, Floats]:
+def _way(keys: KeyFrames, onward: bool) -> tuple[Floats, Floats, Floats]:
     """Times (K,), places (K, 2) and headings (K,): those of the key frames, and one more straight on."""
     last = keys.roots[-1]
     ahead, aside = last[3], last[4]
     if abs(ahead) > abs(aside):
         aside = 0.0
+    if onward:
+        ahead = max(ahead, 0.0)
     sine, cosine = np.sin(last[2]), np.cos(last[2])
     velocity = np.array([ahead * sine + aside * cosine, ahead * cosine - aside * sine])
     times = np.append(keys.times, keys.times[-1] + _BEYOND)

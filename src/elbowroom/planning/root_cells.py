@@ -26,6 +26,7 @@ class Prices(NamedTuple):
     swerving: float
     comfort: float
     beside: float  # for the squared number of columns
+    leftward: float  # for the number of columns to the left
     shifting: float
     turning: float
     spot: float
@@ -114,6 +115,7 @@ def _settle(
             if best == np.inf:
                 continue
             own = standing[t] + prices.beside * (j - clear.shape[2] // 2) ** 2
+            own += prices.leftward * max(j - clear.shape[2] // 2, 0)
             for g in range(3):
                 own += prices.bodies[g] * (prices.comfort - clear[g, i, j, t])
             if abs(favoured[i, 0] - j) <= 1 and abs(favoured[i, 1] - t) <= 1:

@@ -43,7 +43,7 @@ class EvasionSettings:
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
     punctual: float = 0.2  # seconds before and after that a row may be reached in
-    polite: float = 0.04  # metres by which what moves is taken to be larger
+    polite: float = 0.05  # metres by which what moves is taken to be larger
     cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
     shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
     widest: float = 0.48  # from the line of travel, to either side
@@ -53,6 +53,7 @@ class EvasionSettings:
     swerving: float = 0.02  # more of it where the body turns on the way
     comfort: float = 0.06  # clearance below which it costs
     beside: float = 2.0  # of each metre walked, for the squared distance from the line
+    leftward: float = 0.5  # of each metre walked, for each metre to the left, where something moves: keep right
     turned: float = 0.15  # of each metre walked, for the squared angle
     shifting: float = 0.005  # of moving to the next column within a row
     turning: float = 0.05  # of going to the next turn within a row
@@ -130,7 +131,7 @@ class EvasionFinder:
         passing[:, :, 2] -= origin[1]
         rows = np.ascontiguousarray(table[near], np.float32)
         room = room_of(bodies, self._groups, self._radii, rows, passing.astype(np.float32), place, shape)
-        return EvasionGrid(s, line, start, speeds, first, room)
+        return EvasionGrid(s, line, start, speeds, first, room, len(moving) > 0)
 
     def _passing(self, moving: MovingBoxes, time: float, ahead: Floats, start: RootState, speed: float) -> Floats:
         """Rows (n, M, 15) of what moves about when places `ahead` (n,) metres are reached, a little larger."""
@@ -172,6 +173,7 @@ class EvasionGrid(NamedTuple):
     speeds: tuple[float, float]
     first: float  # metres: the first row's place on the line
     room: Room
+    passing: bool  # whether something moves
 
     @property
     def cells(self) -> int:
@@ -188,9 +190,10 @@ class EvasionGrid(NamedTuple):
         seconds = np.array([1.0 / turned_speed(*self.speeds, way) for way in ways])
         standing = s.step * (seconds - seconds.min() + s.turned * s.angles**2)
         ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
+        leftward = s.step * s.aside * s.leftward if self.passing else 0.0
         prices = Prices(
-            s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, s.shifting, s.turning, s.spot,
-            (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
+            s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, leftward, s.shifting, s.turning,
+            s.spot, (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip
         favoured = np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.first, s.step, rows))
         left = self.line.coordinates(self.start.x, self.start.z)[1]

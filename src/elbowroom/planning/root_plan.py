@@ -41,6 +41,7 @@ class RootPlannerSettings:
     aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
     turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
     polite: float = 0.15  # metres that are kept from what moves
+    wrong_side: float = 2.0  # seconds lost for each metre to the left of the line, where something moves
     crowded: float = 4.0  # seconds that a path costs for each metre less
     # Velocities forward and to the left with which to step out of the way of what moves, as they are liked.
     steps_aside: tuple[tuple[float, float], ...] = (

@@ -249,6 +249,9 @@ class RootPlanner:
         slower = max(speed - float(np.hypot(*states[0, 3:5])), 0.0)
         behind = speed * duration - 0.5 * slower * slower / self.bounds.acceleration - float(ahead[-1] - ahead[0])
         behind += speed * s.dead_end * answer.ends
+        if query.around:
+            left = (states[:, 0] - line.x) * cosine - (states[:, 1] - line.z) * sine
+            behind += speed * s.wrong_side * max(float(left.max() - max(left[0], 0.0)), 0.0)
         crowd = s.crowded * max(s.polite - query.around.gap(states, *self._figure), 0.0)
         return behind / speed + crowd + s.aside_cost * float(aside.mean()) + s.turned_cost * float(turned.mean())
 
