@@ -33,6 +33,9 @@ SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the 
 _PHASES, _SPEED = 8, 1.1  # of the stride
 _SAME = 1e-6  # radians
 _LOOKS = 6  # of a key interval at which the body is held against itself
+_CLOSE, _CLOSE_LOOKS = 0.04, 18  # metres of room at these below which it is looked at more often
+_UNSEEN = 0.0015  # metres by which parts may come nearer between two looks
+_SOON = 4  # key intervals ahead in which they may: what was free from afar stays free when it is near
 _REMEMBERED = 4096  # intervals
 
 ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
@@ -85,7 +88,7 @@ class OwnBody:
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
         self._prices: dict[tuple[int, int], Floats32] = {}
-        self._known: dict[bytes, int] = {}
+        self._known: dict[bytes, tuple[int, float]] = {}  # the arm that comes nearest, and its gap
         self._held: dict[tuple[int, int, bytes], _Around] = {}
         self.alert = 0  # plans to come that look at the body from the beginning, as one before ran into it
 
@@ -128,7 +131,7 @@ class OwnBody:
         """The arm, 0 or 1, that runs into the body in each chosen interval (n,) of a shown motion, or -1.
 
         `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times. An interval that
-        was looked at for an earlier plan is known by its content.
+        was looked at for an earlier plan is known by its content. Farther ahead it leaves room for what no look sees.
         """
         ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1)
         content = np.round(np.concatenate([ends[:-1], ends[1:]], axis=1), 6) + 0.0
@@ -138,13 +141,25 @@ class OwnBody:
             self._known.clear()
             missing = [int(k) for k in np.flatnonzero(chosen)]
         if missing:
-            shown, states = _looked_at(path.states, keys, rates, path.interval, np.array(missing))
-            gaps = self_clearances(self.model, self.pairs, states, shown).reshape(3, len(missing), _LOOKS).min(axis=2)
+            looked = np.array(missing)
+            gaps = self._gaps(path, keys, rates, looked, _LOOKS)
+            close = (gaps >= 0.0).all(axis=0) & (gaps < _CLOSE).any(axis=0)
+            if close.any():
+                gaps[:, close] = self._gaps(path, keys, rates, looked[close], _CLOSE_LOOKS)
             for k, gap in zip(missing, gaps.T, strict=True):
-                self._known[names[k]] = min(int(np.argmin(gap)), 1) if gap.min() < 0.0 else -1
+                self._known[names[k]] = min(int(np.argmin(gap)), 1), float(gap.min())
         for at in np.flatnonzero(chosen):
-            found[at] = self._known[names[at]]
+            arm, least = self._known[names[at]]
+            if least < (0.0 if at < _SOON else _UNSEEN):
+                found[at] = arm
         return found
+
+    def _gaps(self, path: RootPath, keys: Floats, rates: Floats, chosen: Indices, looks: int) -> Floats32:
+        """The least `self_clearances` (3, K) at so many looks in each of some intervals (K,)."""
+        shown, states = _looked_at(path.states, keys, rates, path.interval, chosen, looks)
+        gaps = self_clearances(self.model, self.pairs, states, shown)
+        least: Floats32 = gaps.reshape(3, len(chosen), looks).min(axis=2)
+        return least
 
     def folded_nodes(
         self,
@@ -208,16 +223,18 @@ class _Around(NamedTuple):
 
 
 @exact_kernel
-def _looked_at(states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices) -> tuple[Floats, Floats]:
-    """Upper bodies and root states at looks within chosen intervals (K,), in order, (K looks, ...)."""
-    shown = np.empty((chosen.shape[0] * _LOOKS, keys.shape[1]))
-    roots = np.empty((chosen.shape[0] * _LOOKS, states.shape[1]))
+def _looked_at(
+    states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices, looks: int
+) -> tuple[Floats, Floats]:
+    """Upper bodies and root states at `looks` within chosen intervals (K,), in order, (K looks, ...)."""
+    shown = np.empty((chosen.shape[0] * looks, keys.shape[1]))
+    roots = np.empty((chosen.shape[0] * looks, states.shape[1]))
     times = np.array([0.0, interval])
     for i in range(chosen.shape[0]):
         k = chosen[i]
-        for look in range(_LOOKS):
-            share = (look + 1.0) / _LOOKS
-            at = i * _LOOKS + look
+        for look in range(looks):
+            share = (look + 1.0) / looks
+            at = i * looks + look
             shown[at] = hermite(times, keys[k : k + 2], rates[k : k + 2], share * interval)[0]
             roots[at] = interpolate_root(states[k], states[k + 1], share, interval)
     return shown, roots
