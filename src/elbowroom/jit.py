@@ -8,10 +8,13 @@ makes a plain one of a constant. See "The first start" in docs/architecture.md f
 """
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import codegen
+
+from elbowroom.kernel_sources import digest_of
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -36,17 +39,22 @@ _use_whole_vectors()
 
 def kernel(function: Function) -> Function:
     """Compile `function` for the hot path: cached on disk, without the GIL, NumPy division rules."""
-    return cast(Function, numba.njit(cache=True, nogil=True, fastmath=_FASTMATH, error_model="numpy")(function))
+    return cast(Function, _kept(numba.njit(cache=True, nogil=True, fastmath=_FASTMATH, error_model="numpy")(function)))
 
 
 def exact_kernel(function: Function) -> Function:
     """Compile `function` with strict IEEE arithmetic: for searches and state that must repeat bit for bit."""
-    return cast(Function, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    return cast(Function, _kept(numba.njit(cache=True, nogil=True, error_model="numpy")(function)))
+
+
+def _kept(dispatcher: Any) -> Any:
+    """Have what is kept on disk forgotten when any source that was compiled into it has changed."""
+    file = getattr(dispatcher._cache, "_cache_file", None)
+    if file is not None:
+        file._source_stamp = file._source_stamp, digest_of(Path(dispatcher.py_func.__code__.co_filename))
+    return dispatcher
 
 
 def inlined(function: Function) -> Function:
-    """Compile a helper that is inlined into kernels of its own file.
-
-    Numba's disk cache does not see changes in functions imported from other files, so a helper lives beside its kernel.
-    """
+    """Compile a helper that is inlined into kernels of its own file."""
     return cast(Function, numba.njit(fastmath=_FASTMATH, error_model="numpy", inline="always")(function))
