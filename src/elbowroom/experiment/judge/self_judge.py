@@ -25,6 +25,8 @@ Floats = NDArray[np.float64]
 _ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 _SPEEDS = (0.0, 0.5, 1.1, 1.6, 2.2)  # m/s of the natural walk
 _PHASES = 24
+_BALLS = 4  # along an axis
+_ROW = (2.0 * np.arange(_BALLS) + 1.0) / _BALLS - 1.0  # their places, in half lengths from the middle
 
 
 class SelfJudge:
@@ -53,11 +55,16 @@ class SelfJudge:
             ledger.enter(first + pose, Nearness(*names, float(times[pose]), float(beyond)))
 
     def _bounds(self, placed: Placed) -> Floats:
-        """A lower bound of every distance: that of the balls round two axes, less the radii."""
+        """A lower bound of every distance: that of the nearest two of the balls in rows round two axes."""
         one, other = self._pairs.T
-        apart = np.linalg.norm(placed.middles[:, one] - placed.middles[:, other], axis=2)
-        size = 0.5 * self._lengths + self._shapes.radii
-        bounds: Floats = apart - size[one] - size[other] - self._natural
+        size = 0.5 * self._lengths / _BALLS + self._shapes.radii
+        rows = placed.middles[:, :, None] + _ROW[:, None] * placed.half_axes[:, :, None]  # (N, C, _BALLS, 3)
+        apart = np.full((len(rows), len(one)), np.inf)
+        for first in range(_BALLS):
+            for second in range(_BALLS):
+                between = rows[:, one, first] - rows[:, other, second]
+                np.minimum(apart, np.einsum("npi,npi->np", between, between), out=apart)
+        bounds: Floats = np.sqrt(apart) - size[one] - size[other] - self._natural
         return bounds
 
     def _distance(self, placed: Placed, pose: int, one: int, other: int) -> float:
