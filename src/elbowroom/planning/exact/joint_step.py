@@ -235,37 +235,35 @@ def _padded_segments(postures: Postures) -> Floats32:
 def _steps(group: GroupNodes, weight: float) -> Floats32:
     """What steps cost, (n, W+E, W+E): `weight` times the squared change of the deviation from the goal."""
     longest = group.postures.step**2 * (1.0 + 1e-6)
-    return _step_costs(_padded(group.postures), group.postures.moves, group.own, group.goals, longest, weight)
+    known = np.repeat(_padded(group.postures)[None], len(group.own), axis=0)
+    nodes = np.concatenate([known, group.own], axis=1)
+    return _step_costs(nodes, group.own.shape[1], group.postures.moves, group.goals, longest, weight)
 
 
 @kernel
-def _step_costs(known: Floats, moves: Floats32, own: Floats, goals: Floats, longest: float, weight: float) -> Floats32:
-    """`_steps` for postures (W, d) with the squared lengths `moves` (V, W) of their steps, and `own` (n+1, E, d)."""
-    width, size, extra = known.shape[0], known.shape[1], own.shape[1]
-    nodes = width + extra
-    out = np.empty((own.shape[0] - 1, nodes, nodes), np.float32)
-    ends, slopes = np.empty((2, nodes, size)), np.empty((2, nodes))
-    ends[:, :width] = known
-    for t in range(own.shape[0] - 1):
+def _step_costs(nodes: Floats, extra: int, moves: Floats32, goals: Floats, longest: float, weight: float) -> Floats32:
+    """`_steps` for nodes (n+1, W+E, d), the last `extra` of a key time alone; `moves` (V, W) are squared lengths."""
+    count, size = nodes.shape[1], nodes.shape[2]
+    width = count - extra
+    out, slopes = np.empty((nodes.shape[0] - 1, count, count), np.float32), np.empty((2, count))
+    for t in range(nodes.shape[0] - 1):
         square = 0.0
         slopes[:] = 0.0
-        for i in range(2):
-            ends[i, width:] = own[t + i]
         for j in range(size):
             way = goals[t + 1, j] - goals[t, j]
             square += weight * way * way
             for i in range(2):
-                for v in range(nodes):
-                    slopes[i, v] += 2.0 * weight * way * ends[i, v, j]
-        for v in range(nodes):
+                for v in range(count):
+                    slopes[i, v] += 2.0 * weight * way * nodes[t + i, v, j]
+        for v in range(count):
             row = out[t, v]
-            for u in range(nodes):
+            for u in range(count):
                 move = 0.0
                 if v < width and u < width:
                     move = moves[v, u] if v < moves.shape[0] else np.inf
                 else:
                     for j in range(size):
-                        move += (ends[1, u, j] - ends[0, v, j]) ** 2
+                        move += (nodes[t + 1, u, j] - nodes[t, v, j]) ** 2
                 cost = max(weight * move + square + slopes[0, v] - slopes[1, u], 0.0)
                 row[u] = cost if move <= longest else np.inf
     return out
