@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
 EXAMPLES = "Examples:  elbowroom bench planners  |  elbowroom bench planners --scene d --level 3 --trials 10 --json"
 
+_LEGEND = """planning: all of a crossing's, median of the trials; longest: the longest wait for one plan; checks, median:
+capsules held against boxes by exact, candidates tested by figure6, motions checked by RRT-Connect; touching: of the
+judge's poses, 240 a second; away: from the natural walk, root mean square; swing: mean joint speed."""
+
 
 def planners(
     *,
@@ -47,7 +51,7 @@ def _show(report: "PlannersReport") -> None:
 
     from elbowroom.experiment.machine import machine_kind
 
-    columns = ("where", "planner", "through", "planning s", "longest ms", "touching", "away rad", "swing rad/s")
+    columns = "where", "planner", "through", "planning s", "longest ms", "checks", "touching", "away rad", "swing rad/s"
     table = Table(title=f"Crossings ({machine_kind()})", title_justify="left", box=None)
     for column in columns:
         table.add_column(column, justify="left" if column in columns[:2] else "right")
@@ -59,10 +63,10 @@ def _show(report: "PlannersReport") -> None:
             f"{sum(run.through for run in runs)}/{len(runs)}",
             f"{np.median([run.planning_seconds for run in runs]):.3g}",
             f"{max(run.longest_plan_ms for run in runs):.3g}",
+            f"{np.median([run.checks for run in runs]):.0f}",
             str(sum(run.touching for run in runs)),
             f"{np.mean([run.away for run in done]):.3f}" if done else "-",
             f"{np.mean([run.swing for run in done]):.2f}" if done else "-",
         )
     Console().print(table)
-    print("planning: all of a crossing's, median of the trials; longest: the longest wait for one plan; touching: of")
-    print("the judge's poses, 240 a second; away: from the natural walk, root mean square; swing: mean joint speed.")
+    print(_LEGEND)

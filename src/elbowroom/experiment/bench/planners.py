@@ -58,6 +58,9 @@ class Run:
     through: bool  # straight, for ours: never stuck; found, for the general one
     planning_seconds: float  # all planning of the crossing together
     longest_plan_ms: float  # the longest wait for one plan
+    checks: (
+        int  # as each counts them: capsule-box groups of `exact`, candidates of `figure6`, motions of the general one
+    )
     touching: int  # of the judge's poses, 240 a second
     away: float  # radians from the natural walk, root mean square over the upper body's joints and the motion
     swing: float  # rad/s, mean speed of the upper body
@@ -137,16 +140,17 @@ def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int,
         np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown]), 1.0 / DT
     )
     waits = times.plan_ms if len(times.plan_ms) else np.zeros(1)
-    costs = float(waits.sum()) / 1e3, float(waits.max())
+    costs = float(waits.sum()) / 1e3, float(waits.max()), result.collision_checks
     return _judged(humanoid, scene, motion, (where, planner, seed), result.straight, costs)
 
 
 def _general(humanoid: Humanoid, scene: Scene, where: str, seed: int, limit: float) -> Run:
     plan: GeneralPlan = plan_generally(humanoid, scene, limit, seed)
     if not plan.found:
-        return Run(where, GENERAL, seed, False, plan.seconds, 1e3 * plan.seconds, 0, np.nan, np.nan)
+        return Run(where, GENERAL, seed, False, plan.seconds, 1e3 * plan.seconds, plan.motions, 0, np.nan, np.nan)
     motion = plan.shown(crossing_problem(humanoid, scene))
-    return _judged(humanoid, scene, motion, (where, GENERAL, seed), True, (plan.seconds, 1e3 * plan.seconds))
+    costs = plan.seconds, 1e3 * plan.seconds, plan.motions
+    return _judged(humanoid, scene, motion, (where, GENERAL, seed), True, costs)
 
 
 def _judged(
@@ -155,7 +159,7 @@ def _judged(
     motion: ShownMotion,
     about: tuple[str, str, int],
     through: bool,
-    costs: tuple[float, float],
+    costs: tuple[float, float, int],
 ) -> Run:
     verdict = judge(motion, humanoid, scene, JudgeSettings(mesh=False))
     upper = motion.q[:, DofGroup.ROOT.size :]
