@@ -11,7 +11,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = "Examples:  elbowroom bench planners  |  elbowroom bench planners --scene d --level 3 --trials 10 --json"
 
-_LEGEND = """planning: all of a crossing's, median of the trials; longest: the longest wait for one plan; checks, median:
+_WIDTH = 100  # characters: of the table
+_LEGEND = """planning: all of a crossing's, median of the trials; longest: the longest wait for a plan; checks, median:
 capsules held against boxes by exact, candidates tested by figure6, motions checked by RRT-Connect; touching: of the
 judge's poses, 240 a second; away: from the natural walk, root mean square; swing: mean joint speed."""
 
@@ -68,5 +69,6 @@ def _show(report: "PlannersReport") -> None:
             f"{np.mean([run.away for run in done]):.3f}" if done else "-",
             f"{np.mean([run.swing for run in done]):.2f}" if done else "-",
         )
-    Console().print(table)
+    console = Console()
+    (console if console.width >= _WIDTH else Console(width=_WIDTH)).print(table)
     print(_LEGEND)
