@@ -117,7 +117,8 @@ class UpperBody:
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
             dressing = self._dressing(path, start, velocity, kept, near, legs)
-            found = dressing.motion(rounds)
+            between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
+            found = dressing.motion(0 if between else rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing, dressing.asked)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
