@@ -146,6 +146,39 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoi
     assert back.local.blockade is None
 
 
+def test_a_reset_leaves_no_trace(humanoid: Humanoid) -> None:
+    """Also of what was thought through: after it, a blocked way is planned as it was the first time."""
+    wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
+    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    first = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
+
+    def walked() -> list[tuple[Floats, Floats, tuple[float, float] | None]]:
+        query, seen = first, []
+        for _ in range(12):
+            motion = planner.plan_motion(roots, query)
+            local, states = motion.local, motion.root.path.states
+            assert local.velocities is not None
+            seen.append((states, local.configurations, planner._thought_of))
+            query = query._replace(
+                time=query.time + T,
+                root=RootState(*states[1].tolist()),
+                upper=local.configurations[1],
+                velocity=local.velocities[1],
+            )
+        return seen
+
+    before = walked()
+    planner.reset()
+    roots.reset()
+    after = walked()
+    assert before[-1][2] is not None
+    for one, other in zip(before, after, strict=True):
+        assert np.array_equal(one[0], other[0])
+        assert np.array_equal(one[1], other[1])
+        assert one[2] == other[2]
+
+
 def test_back_in_the_natural_swing_half_a_second_after_a_lone_obstacle(humanoid: Humanoid) -> None:
     scene = scene_of([[0.36, 0.95, 2.0]], [[0.1, 0.3, 0.1]])
     keys, _, goals, places = played(humanoid, scene, 30)

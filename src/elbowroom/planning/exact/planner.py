@@ -52,16 +52,15 @@ class ExactPlanner:
     ) -> None:
         self.settings = settings or ExactSettings()
         self._body = UpperBody(humanoid, scene, self.settings, motions)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the last plan, what was thought through, and the postures that were added."""
         self._last: Whole | None = None
         self._stand: Stand | None = None
         self._blockade: Blockade | None = None
         self._turn = self._paths = 0  # of the paths that are thought through one after the other, plan by plan
         self._thought_of: tuple[float, float] | None = None  # the place that ended the commanded path when it was
-
-    def reset(self) -> None:
-        """Forget the last plan and the postures that were added."""
-        self._last = self._stand = self._blockade = None
-        self._turn = 0
         self._body.reset()
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
@@ -88,7 +87,7 @@ class ExactPlanner:
         horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
         tried: list[_Tried] = []
-        blocked_at = 0.0
+        blocked_at, self._paths = 0.0, 0
         for root in root_planner.candidates(*at):
             if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
