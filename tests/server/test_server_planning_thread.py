@@ -53,13 +53,19 @@ def walk_of(library: Library, executor: GatedExecutor) -> Walk:
     return Walk(library.avatars.get("stock"), library.find_scene("d"), WalkSettings(), desk=desk)
 
 
-def test_playback_goes_on_while_a_plan_is_made(library: Library, executor: GatedExecutor) -> None:
+def under_way(library: Library, executor: GatedExecutor) -> Walk:
+    """A walk at some speed, whose next plan is not made before the gate opens."""
     walk = walk_of(library, executor)
     executor.gate.set()
     while walk.frame.root[3] < 0.5:
         walk.step(WALK, DT)
         wait(executor.jobs)
     executor.gate.clear()
+    return walk
+
+
+def test_playback_goes_on_while_a_plan_is_made(library: Library, executor: GatedExecutor) -> None:
+    walk = under_way(library, executor)
     plans, began = walk.plans, walk.frame
     for _ in range(60):  # if a turn waited for the plan, this would never end
         walk.step(WALK, DT)
@@ -104,12 +110,7 @@ def test_a_plan_that_was_given_up_is_never_heard_of(library: Library, executor: 
 
 
 def test_a_plan_for_what_is_not_wanted_any_more_is_called_off(library: Library, executor: GatedExecutor) -> None:
-    walk = walk_of(library, executor)
-    executor.gate.set()
-    while walk.frame.root[3] < 0.5:
-        walk.step(WALK, DT)
-        wait(executor.jobs)
-    executor.gate.clear()
+    walk = under_way(library, executor)
     jobs = len(executor.jobs)
     while len(executor.jobs) == jobs:
         walk.step(WALK, DT)

@@ -97,15 +97,6 @@ def pair_clearances(
 
 
 @kernel
-def body_clearances(segments: Floats32, bodies: Floats32, allowed: Floats32, chosen: Bools) -> Floats32:
-    """The least distance beyond what is allowed (W, N), of postures (C, 6, N) from W bodies (W, K, 6)."""
-    out = np.full((bodies.shape[0], segments.shape[2]), _INFINITE, np.float32)
-    for w in range(bodies.shape[0]):
-        lower_to_body(segments, bodies[w], allowed, chosen, out[w])
-    return out
-
-
-@kernel
 def arm_clearances(left: Floats32, right: Floats32, allowed: Floats32) -> Floats32:
     """The least distance beyond what is allowed (C, C) of each left (C, 6, L) from each right (C, 6, R): (L, R)."""
     out = np.full((left.shape[2], right.shape[2]), _INFINITE, np.float32)
