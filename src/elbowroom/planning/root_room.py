@@ -66,6 +66,15 @@ def _lower_to_box(
 
 
 @exact_kernel
+def _stand(axis: Floats32, x: Floats32, z: Floats32, first: int) -> None:
+    """Stand axes (1, 6, n) up at n places from the one numbered `first` on."""
+    for i in range(axis.shape[2]):
+        axis[0, 0, i] = axis[0, 3, i] = x[first + i]
+        axis[0, 2, i] = axis[0, 5, i] = z[first + i]
+        axis[0, 1, i], axis[0, 4, i] = np.float32(0.0), np.float32(_TALL)
+
+
+@exact_kernel
 def room_of(
     bodies: Floats32,
     groups: Indices,
@@ -87,8 +96,8 @@ def room_of(
     for n in range(total):
         ahead, left = (n // columns) * step, (n % columns - columns // 2) * aside
         x[n], z[n] = ahead * sine + left * cosine, ahead * cosine - left * sine
-    axis = np.zeros((1, 6, total), np.float32)
-    axis[0, 0], axis[0, 2], axis[0, 3], axis[0, 4], axis[0, 5] = x, z, x, np.float32(_TALL), z
+    axis, axis_of_row = np.empty((1, 6, total), np.float32), np.empty((1, 6, columns), np.float32)
+    _stand(axis, x, z, 0)
     out, away = np.full((3, turns, total), np.float32(comfort), np.float32), np.empty(total, np.float32)
     for b in range(table.shape[0]):
         box = table[b : b + 1]
@@ -99,14 +108,19 @@ def room_of(
                 _lower_to_box(bodies[t, part], radii[part], x, z, box, away, comfort, out[g, t])
     for i in range(rows):
         row = slice(i * columns, (i + 1) * columns)
+        _stand(axis_of_row, x, z, i * columns)
         for b in range(passing.shape[1]):
             box = passing[i, b : b + 1]
-            clearance_into(axis[:, :, row].copy(), np.zeros(1, np.float32), box, away[row])
+            clearance_into(axis_of_row, np.zeros(1, np.float32), box, away[row])
             for t in range(turns):
                 for g in range(3):
                     part = slice(groups[g], groups[g + 1])
                     _lower_to_box(bodies[t, part], radii[part], x[row], z[row], box, away[row], comfort, out[g, t, row])
-    clear = np.ascontiguousarray(out.reshape(3, turns, rows, columns).transpose(0, 2, 3, 1))
+    clear = np.empty((3, rows, columns, turns), np.float32)
+    for g in range(3):
+        for t in range(turns):
+            for n in range(total):
+                clear[g, n // columns, n % columns, t] = out[g, t, n]
     return _at_best(clear, comfort, aside)
 
 

@@ -80,7 +80,8 @@ def _beyond(prices: Floats32, least: Floats32) -> Floats32:
 def _ahead(prices: Floats32, steps: Floats32) -> Floats32:
     """The least cost (n+1, V) of reaching each posture, its own price included."""
     out = np.full(prices.shape, np.float32(np.inf), np.float32)
-    out[0] = prices[0]
+    for v in range(prices.shape[1]):
+        out[0, v] = prices[0, v]
     for t in range(steps.shape[0]):
         target = out[t + 1]
         for v in range(prices.shape[1]):
@@ -107,11 +108,14 @@ def _behind(prices: Floats32, steps: Floats32) -> Floats32:
                 out[t, v] = np.inf
                 continue
             row = steps[t, v]
-            best[:] = np.float32(np.inf)
+            for lane in range(np.uint64(_LANES)):
+                best[lane] = np.float32(np.inf)
             for first in range(0, whole, _LANES):
                 for lane in range(np.uint64(_LANES)):
                     best[lane] = min(best[lane], row[first + lane] + onward[first + lane])
-            least = best.min()
+            least = np.float32(np.inf)
+            for lane in range(np.uint64(_LANES)):
+                least = min(least, best[lane])
             for u in range(whole, size):
                 least = min(least, row[u] + onward[u])
             out[t, v] = least

@@ -14,9 +14,11 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.joint_bounds import Problem
 
 Bits = NDArray[np.uint64]
+Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
 _WORD = 64
+_START = 0  # the first slice
 
 
 class Reach(NamedTuple):
@@ -38,18 +40,41 @@ def _packed(flags: Bools) -> Bits:
 
 
 @exact_kernel
+def _open(costs: Floats32) -> Bools:
+    """Which prices or steps (N, R) are finite."""
+    out = np.empty(costs.shape, np.bool_)
+    for n in range(costs.shape[0]):
+        for r in range(costs.shape[1]):
+            out[n, r] = np.isfinite(costs[n, r])
+    return out
+
+
+@exact_kernel
 def _free(problem: Problem, depth: int) -> Bits:
     """The triples (W, L, words) that are free in a slice."""
-    waist, left = np.isfinite(problem.waist[depth]), np.isfinite(problem.left[depth])
-    right, apart = _packed(np.isfinite(problem.right[depth])), _packed(problem.apart[depth])
+    waist, left = problem.waist[depth], problem.left[depth]
+    right, apart = _packed(_open(problem.right[depth])), _packed(problem.apart[depth])
     out = np.zeros((left.shape[0], left.shape[1], right.shape[1]), np.uint64)
     for w in range(left.shape[0]):
-        if not waist[w]:
+        if not np.isfinite(waist[w]):
             continue
         for n in range(left.shape[1]):
-            if left[w, n]:
-                out[w, n] = right[w] & apart[n]
+            if np.isfinite(left[w, n]):
+                for i in range(right.shape[1]):
+                    out[w, n, i] = right[w, i] & apart[n, i]
     return out
+
+
+@exact_kernel
+def _keep(known: Bits, free: Bits) -> bool:
+    """Keep those triples of `known` that are free; whether there are any."""
+    kept = np.uint64(0)
+    for w in range(known.shape[0]):
+        for n in range(known.shape[1]):
+            for i in range(known.shape[2]):
+                known[w, n, i] &= free[w, n, i]
+                kept |= known[w, n, i]
+    return bool(kept != 0)
 
 
 @exact_kernel
@@ -69,12 +94,14 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
         for n in range(known.shape[1]):
             here = known[w, n]
             if not _same(here, last):
-                last[:], union[:] = here, 0
+                for i in range(union.shape[0]):
+                    last[i], union[i] = here[i], 0
                 for r in range(steps.shape[0]):
                     if here[r // _WORD] >> np.uint64(r % _WORD) & np.uint64(1):
                         for i in range(union.shape[0]):
                             union[i] |= steps[r, i]
-            out[w, n] = union
+            for i in range(union.shape[0]):
+                out[w, n, i] = union[i]
     return out
 
 
@@ -108,28 +135,31 @@ def _unpacked(bits: Bits, size: int) -> Bools:
 
 
 @exact_kernel
+def _after(problem: Problem, depth: int, known: Bits) -> Bits:
+    """The triples of the next slice to which a step leads from `known`, free or not."""
+    stepped = _stepped(known, _packed(_open(problem.right_steps[depth])))
+    return _merged(stepped, _open(problem.waist_steps[depth]), _open(problem.left_steps[depth]))
+
+
+@exact_kernel
 def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
     """The triples (W, L, R) of the next slice to which a step leads from some of these, free or not."""
     waist, left, right = triples.shape
     bits = _packed(triples.reshape(waist * left, right)).reshape(waist, left, (right + _WORD - 1) // _WORD)
-    stepped = _stepped(bits, _packed(np.isfinite(problem.right_steps[depth])))
-    return _unpacked(
-        _merged(stepped, np.isfinite(problem.waist_steps[depth]), np.isfinite(problem.left_steps[depth])), right
-    )
+    return _unpacked(_after(problem, depth, bits), right)
 
 
 @exact_kernel
 def reach(problem: Problem) -> Reach:
     """The deepest slice to which a way leads, every triple of every slice looked at."""
     size = problem.right.shape[2]
-    known = _free(problem, 0)
-    if not known.any():
+    depth, last = 0, problem.waist_steps.shape[0]
+    known = _free(problem, int(_START))
+    if not _keep(known, known):
         return Reach(-1, _unpacked(known, size))
-    for t in range(problem.waist_steps.shape[0]):
-        stepped = _stepped(known, _packed(np.isfinite(problem.right_steps[t])))
-        after = _merged(stepped, np.isfinite(problem.waist_steps[t]), np.isfinite(problem.left_steps[t]))
-        after &= _free(problem, t + 1)
-        if not after.any():
-            return Reach(t, _unpacked(known, size))
-        known = after
-    return Reach(problem.waist_steps.shape[0], _unpacked(known, size))
+    while depth < last:
+        after = _after(problem, depth, known)
+        if not _keep(after, _free(problem, depth + 1)):
+            break
+        depth, known = depth + 1, after
+    return Reach(depth, _unpacked(known, size))

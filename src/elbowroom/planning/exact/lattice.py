@@ -222,7 +222,7 @@ def _own_way(lattice: Lattice) -> float:
             for e in range(OWN):
                 if known[e] < np.inf:
                     found[f] = min(found[f], known[e] + price + step_cost(lattice, depth, width + e, width + f))
-        known[:] = found
+        known, found = found, known
     return float(known.min())
 
 

@@ -249,8 +249,9 @@ def limb_way(
         carry(chain, configurations, moved, places, turns, carrier.sway, ways.places[at], ways.turns[at], ways.sway[at])
     out = np.empty((levers.shape[0], BLOCK), np.float32)
     checks = _looks(postures, configurations, places, turns, boxes, out)
-    ways.least[at], ways.proven[at] = out.min(), _UNKNOWN
-    if out.min() < wanted:
+    least = out.min()
+    ways.least[at], ways.proven[at] = least, _UNKNOWN
+    if least < wanted:
         return int(at), checks
     waist = ends if is_waist else _ends_of(carrier.waist)
     ways.proven[at], count = _refined(postures, levers, chain, carrier, waist, ends, boxes, out, moved)

@@ -186,7 +186,11 @@ def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float
     at = admit(ways.slots, key)
     states = states_between(a, b, interval, 0.0, 1.0, SWEEP)
     places, turns = pelvis_at(chain, states)
-    ways.places[at], ways.turns[at] = places, turns
+    for i in range(SWEEP + 1):
+        for k in range(3):
+            ways.places[at, i, k] = places[i, k]
+        for k in range(4):
+            ways.turns[at, i, k] = turns[i, k]
     _root_sway(chain, states, places, interval, ways.sway[at])
     return int(at)
 
