@@ -10,6 +10,7 @@ from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
@@ -75,7 +76,7 @@ def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, floa
 
 def planned(made: Scene, body: UpperBody) -> tuple[float, float] | None:
     start = goal_configurations(natural_walk(), walk(speed=0.0))[0]
-    plan = body.plan(walk(), start, np.zeros(LOCAL)).plan
+    plan = body.plan(walk(), Start(start, np.zeros(LOCAL))).plan
     return shown_legs(made, walk(), plan.configurations) if plan.status is PlanStatus.FOUND else None
 
 
@@ -115,7 +116,7 @@ def way(depth: float) -> tuple[Floats, Floats]:
 
 def test_who_stays_upright_is_not_looked_at() -> None:
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), np.tile(np.linspace(0.0, 0.7, 9), (7, 1)))
+    crouch = Crouch(wall_before_the_knees(), standing(), lambda: np.tile(np.linspace(0.0, 0.7, 9), (7, 1)))
     assert not crouch.rules_out(*way(0.0), extra)
     assert not extra.any()
 
@@ -123,7 +124,7 @@ def test_who_stays_upright_is_not_looked_at() -> None:
 def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
     legs, lowerings = wall_before_the_knees(), np.linspace(0.0, 0.7, 9)
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(legs, standing(), np.tile(lowerings, (7, 1)))
+    crouch = Crouch(legs, standing(), lambda: np.tile(lowerings, (7, 1)))
     assert crouch.rules_out(*way(0.7), extra)
     touching = legs.clearances(np.zeros((9, 7)), lowerings) < 0.01
     assert 0 < touching.sum() < 8
@@ -134,7 +135,7 @@ def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
 def test_in_the_end_nobody_crouches() -> None:
     lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), lowerings)
+    crouch = Crouch(wall_before_the_knees(), standing(), lambda: lowerings)
     closed = []
     for _ in range(ROUNDS - 1):
         assert crouch.rules_out(*way(0.7), extra)

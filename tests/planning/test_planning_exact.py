@@ -14,7 +14,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.kept import Kept
+from elbowroom.planning.exact.kept import Kept, Start
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
@@ -105,8 +105,8 @@ def test_in_the_open_the_walk_is_natural(humanoid: Humanoid) -> None:
 
 def test_a_plan_that_is_still_good_is_kept(humanoid: Humanoid) -> None:
     body = UpperBody(humanoid, course(1), ExactSettings())
-    first = body.plan(walk(), hanging(), np.zeros(LOCAL)).plan.configurations
-    again = body.plan(walk(), hanging(), np.zeros(LOCAL), kept=Kept.freely(first)).plan.configurations
+    first = body.plan(walk(), Start(hanging(), np.zeros(LOCAL))).plan.configurations
+    again = body.plan(walk(), Start(hanging(), np.zeros(LOCAL)), kept=Kept.freely(first)).plan.configurations
     assert len(first)
     assert np.allclose(first, again)
 

@@ -14,7 +14,7 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
-from elbowroom.planning.exact.kept import Kept
+from elbowroom.planning.exact.kept import Kept, Start
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
@@ -82,15 +82,15 @@ def test_what_was_computed_before_changes_no_plan(humanoid: Humanoid) -> None:
     kept, velocity, checks = None, np.zeros(LOCAL), []
     for first in range(6):
         path = walk(16, first)
-        plan = body.plan(path, start, velocity, kept).plan
+        plan = body.plan(path, Start(start, velocity), kept).plan
         fresh = UpperBody(humanoid, posts(), ExactSettings())
-        anew = fresh.plan(path, start, velocity, kept).plan
+        anew = fresh.plan(path, Start(start, velocity), kept).plan
         assert len(plan.configurations) == 17
         assert plan.velocities is not None
         assert anew.velocities is not None
         assert np.allclose(plan.configurations, anew.configurations, atol=1e-9)
         assert np.allclose(plan.velocities, anew.velocities, atol=1e-9)
-        again = UpperBody(humanoid, posts(), ExactSettings()).plan(path, start, velocity, kept).plan
+        again = UpperBody(humanoid, posts(), ExactSettings()).plan(path, Start(start, velocity), kept).plan
         assert np.array_equal(anew.configurations, again.configurations)
         checks.append((plan.checks, anew.checks))
         kept = Kept.freely(np.concatenate([plan.configurations[1:], plan.configurations[-1:]]))
@@ -159,7 +159,7 @@ def test_a_reset_leaves_no_trace(humanoid: Humanoid) -> None:
             motion = planner.plan_motion(roots, query)
             local, states = motion.local, motion.root.path.states
             assert local.velocities is not None
-            seen.append((states, local.configurations, planner._thought_of))
+            seen.append((states, local.configurations, planner._turns.thought_through))
             query = query._replace(
                 time=query.time + T,
                 root=RootState(*states[1].tolist()),

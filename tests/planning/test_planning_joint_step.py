@@ -12,6 +12,7 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.joint_step import JointStep
+from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.own_body import SPARE
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody
@@ -57,7 +58,7 @@ def walk(horizon: int = 8) -> RootPath:
 def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> Dressing:
     body = UpperBody(humanoid, scene, SETTINGS)
     start = goal_configurations(natural_walk(), path)[0]
-    return body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT).dressing
+    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
 
 
 def step_of(dressing: Dressing) -> JointStep:
@@ -166,10 +167,10 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     plans = []
     for _ in range(2):
         body = UpperBody(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
-        coarse = body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT)
-        plans.append(body.plan(path, start, np.zeros_like(start)))
+        coarse = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
+        plans.append(body.plan(path, Start(start, np.zeros_like(start))))
         body.reset()
-        again = body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT)
+        again = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
         assert again.reached == coarse.reached
     assert coarse.reached < path.horizon
     assert plans[0].reached == path.horizon

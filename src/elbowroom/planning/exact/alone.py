@@ -18,12 +18,13 @@ _SAME = 1e-9  # radians
 
 @exact_kernel
 def alone_at(
-    known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats
+    known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats, settled: bool
 ) -> tuple[Floats, Bools, Longs]:
     """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
 
     `known` (V, d) are the group's postures, also as `columns` (d, W), with steps of at most `step`; `goals` (n+1, d),
     `last` (n+1, d) what the last plan had, `start` (d,). A posture that is among the known needs no node of its own.
+    A start that is `settled` is one of `last`, and nobody needs to stay there or to find a way back from it.
     """
     width = columns.shape[1]
     count, size = goals.shape
@@ -43,8 +44,8 @@ def alone_at(
             at = _known(known, columns, last[t], squares)
             kept[t] = at if at >= 0 else width + KEPT
         needed[t, KEPT] = kept[t] == width + KEPT
-        needed[t, BACK] = part < 1.0 and length > _SAME
-        needed[t, HOLD] = not start_is_known and not _near(start, goal)
+        needed[t, BACK] = not settled and part < 1.0 and length > _SAME
+        needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
     return own, needed, kept
 
 

@@ -5,6 +5,8 @@ they touch, every posture is looked at around every key time, once for the path;
 touch between key times, postures that crouch as deep are ruled out there, and at last all crouching.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,9 +30,10 @@ _SHALLOWER = 0.1  # half leg lengths by which to come up where legs touch betwee
 class Crouch:
     """The lowerings of one waist's search along one root path, and which of them the legs cannot follow."""
 
-    def __init__(self, legs: LoweredLegs, path: RootPath, lowerings: Floats) -> None:
-        """`lowerings` (n+1, V) are those of all nodes of the search."""
+    def __init__(self, legs: LoweredLegs, path: RootPath, lowerings: Callable[[], Floats]) -> None:
+        """`lowerings` gives those of all nodes of the search, (n+1, V)."""
         self._legs, self._path, self._lowerings = legs, path, lowerings
+        self._known: Floats | None = None
         self._round = 0
         self._margin: float | None = None
 
@@ -46,20 +49,22 @@ class Crouch:
         if not len(blocked):
             return False
         self._round += 1
+        if self._known is None:
+            self._known = self._lowerings()
         if self._round == 1:
-            extra[self._legs.blocked_nodes(self._path, self._lowerings, self._margin)] = np.inf
+            extra[self._legs.blocked_nodes(self._path, self._known, self._margin)] = np.inf
         elif self._round == ROUNDS - 1:
-            extra[1:][self._lowerings[1:] > _UPRIGHT] = np.inf
+            extra[1:][self._known[1:] > _UPRIGHT] = np.inf
         else:
-            self._come_up(blocked, deep, extra)
+            self._come_up(blocked, deep, self._known, extra)
         return True
 
-    def _come_up(self, blocked: NDArray[np.intp], deep: Floats, extra: Floats32) -> None:
+    def _come_up(self, blocked: NDArray[np.intp], deep: Floats, lowerings: Floats, extra: Floats32) -> None:
         """Forbid what crouches as deep, or nearly, at both ends of blocked intervals; after a while, all that does."""
         for k in blocked:
             most = max(deep[k], deep[k + 1]) - _SHALLOWER if self._round < _PATIENCE else _UPRIGHT
             for at in (k, k + 1):
-                extra[at, self._lowerings[at] > max(most, _UPRIGHT)] = np.inf
+                extra[at, lowerings[at] > max(most, _UPRIGHT)] = np.inf
 
 
 def node_lowerings(postures: Floats, goals: Floats, kept: Floats, start: Floats) -> Floats:

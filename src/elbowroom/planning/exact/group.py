@@ -53,6 +53,7 @@ class GroupTask(NamedTuple):
     carriers: Longs  # (n,) slots of the waist's ways, for an arm
     boxes: Floats  # (n, B, 15) in the world, in each key interval
     interval: float
+    settled: bool  # whether it goes on from a way that is proven: then the start lowers no clearance
 
 
 class GroupWay(NamedTuple):
@@ -63,6 +64,7 @@ class GroupWay(NamedTuple):
     velocities: Floats  # (reached+1, d) of the curve
     slots: Longs  # (n,) of the ways through the intervals
     price: Floats32  # (n+1, W+OWN) of the nodes, infinite where one is not free
+    most: float  # metres: no greater clearance was asked for, since the start has less
     checks: int  # capsules checked
     nodes: int
     rounds: int  # motions that were tried
@@ -75,5 +77,5 @@ def own_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Longs]:
     """
     postures = group.postures
     return alone_at(
-        postures.configurations, postures.columns, postures.step, task.goals, task.kept, task.start
+        postures.configurations, postures.columns, postures.step, task.goals, task.kept, task.start, task.settled
     )  # fmt: skip

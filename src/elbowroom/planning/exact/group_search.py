@@ -104,7 +104,7 @@ def search_group(
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
     begin_round(group.tables.slots)
-    own, needed, kept = alone_at(configurations, columns, postures.step, goals, task.kept, task.start)
+    own, needed, kept = alone_at(configurations, columns, postures.step, goals, task.kept, task.start, task.settled)
     if postures.limb.is_waist:
         carriers = carriers_at(roots.slots.ids, roots.places, roots.turns, task.roots)
     else:
@@ -127,7 +127,8 @@ def search_group(
         way = traced(lattice, work, reached)
         set_keys(lattice, way, keys)
         if reached < horizon:
-            return GroupWay(reached, keys[: reached + 1], tangents[: reached + 1], slots, price, checks, nodes, rounds)
+            until = reached + 1
+            return GroupWay(reached, keys[:until], tangents[:until], slots, price, most, checks, nodes, rounds)
         stiff[:] = False
         for attempt in range(2):
             tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
@@ -136,7 +137,7 @@ def search_group(
                 break
         first, farthest = _closed(lattice, masks, named, way, touches)
         if first == horizon:
-            return GroupWay(horizon, keys, tangents, slots, price, checks, nodes, rounds + 1)
+            return GroupWay(horizon, keys, tangents, slots, price, most, checks, nodes, rounds + 1)
         deepest = max(deepest, first)
         best = work.costs[horizon].min()
         settle_backward(lattice, work, first, best + farthest)
@@ -149,4 +150,4 @@ def search_group(
                         postures, lattice, k, steps, carriers.places[k], carriers.turns[k], boxes[k], skins[k]
                     )
     until = deepest + 1
-    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, checks, nodes, weights.rounds)
+    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, weights.rounds)

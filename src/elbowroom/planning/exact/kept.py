@@ -28,6 +28,19 @@ class Asked(NamedTuple):
         skins[:, : moved.shape[1]] = moved
         return Asked(margins, skins)
 
+    def then(self, at: int, later: "Asked") -> "Asked":
+        """These until the key time `at`, and `later` ones, which begin there."""
+        margins = np.concatenate([self.margins[:, :at], later.margins], axis=1)
+        return Asked(margins, np.concatenate([self.skins[:, :at], later.skins], axis=1))
+
+
+class Start(NamedTuple):
+    """Where a motion begins: now, or so many key intervals ahead on a plan that is kept until there."""
+
+    upper: Floats  # (11,)
+    velocity: Floats  # (11,)
+    ahead: int = 0
+
 
 class Kept(NamedTuple):
     """The last plan at the key times of a path."""

@@ -31,7 +31,6 @@ Indices = NDArray[np.int64]
 
 SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the way to the next keeps it too
 _PHASES, _SPEED = 8, 1.1  # of the stride
-_SAME = 1e-6  # radians
 _LOOKS = 6  # of a key interval at which the body is held against itself
 _CLOSE, _CLOSE_LOOKS = 0.04, 18  # metres of room at these below which it is looked at more often
 _UNSEEN = 0.0015  # metres by which parts may come nearer between two looks
@@ -90,7 +89,6 @@ class OwnBody:
         self._prices: dict[tuple[int, int], Floats32] = {}
         self._known: dict[bytes, tuple[int, float]] = {}  # the arm that comes nearest, and its gap
         self._held: dict[tuple[int, int, bytes], _Around] = {}
-        self.alert = 0  # plans to come that look at the body from the beginning, as one before ran into it
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -127,11 +125,12 @@ class OwnBody:
             self._prices[side, count] = prices
         return self._prices[side, count]
 
-    def contacts(self, path: RootPath, keys: Floats, rates: Floats, chosen: Bools) -> Indices:
+    def contacts(self, path: RootPath, keys: Floats, rates: Floats, chosen: Bools, ahead: int) -> Indices:
         """The arm, 0 or 1, that runs into the body in each chosen interval (n,) of a shown motion, or -1.
 
-        `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times. An interval that
-        was looked at for an earlier plan is known by its content. Farther ahead it leaves room for what no look sees.
+        `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times, the first of which
+        is `ahead` key intervals from now. An interval that was looked at for an earlier plan is known by its content.
+        Farther ahead it leaves room for what no look sees.
         """
         ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1)
         content = np.round(np.concatenate([ends[:-1], ends[1:]], axis=1), 6) + 0.0
@@ -150,7 +149,7 @@ class OwnBody:
                 self._known[names[k]] = min(int(np.argmin(gap)), 1), float(gap.min())
         for at in np.flatnonzero(chosen):
             arm, least = self._known[names[at]]
-            if least < (0.0 if at < _SOON else _UNSEEN):
+            if least < (0.0 if ahead + at < _SOON else _UNSEEN):
                 found[at] = arm
         return found
 
@@ -166,6 +165,7 @@ class OwnBody:
         side: int,
         postures: Postures,
         own: Floats,
+        needed: Bools,
         natural: Bools,
         waists: Floats,
         states: Floats,
@@ -173,14 +173,15 @@ class OwnBody:
     ) -> Bools:
         """Which nodes of an arm are ruled out by the avatar's own body along a root path, (n+1, W + E).
 
-        `own` (n+1, E, d) are each key time's own postures, the first of them the goal's. Waists (n+1, d), root states
+        `own` (n+1, E, d) are each key time's own postures as far as they are `needed` (n+1, E), the first of them the
+        goal's. Waists (n+1, d), root states
         (n+1, 7) and the other arm (n+1, d), if it is to be minded, are where `natural` (n+1,) as the goals have them.
         """
         width = len(postures.lanes) * BLOCK
         count, extra = own.shape[:2]
         out = np.zeros((count, width + extra), np.bool_)
         out[:, :width] = self.resting(side, postures)
-        rows = np.flatnonzero(~natural | (np.abs(own - own[:, :1]).max(axis=(1, 2)) > _SAME))
+        rows = np.flatnonzero(~natural | needed[:, 1:].any(axis=1))
         if not len(rows):
             return out
         around = self._around(side, postures, waists[rows], states[rows], None if other is None else other[rows])

@@ -5,7 +5,6 @@ and taken if it gets beyond the place where the faster one failed; else the root
 comes to a stand there: a posture that is free stays free when the root stands.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -15,10 +14,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.kept import Kept
+from elbowroom.planning.exact.kept import Kept, Start
+from elbowroom.planning.exact.prolonging import prolonged, rest_of, settled
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, first_part, part, stands
+from elbowroom.planning.exact.whole import Stand, Whole, first_part, key_at, part, stands
 from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -31,7 +32,6 @@ Floats = NDArray[np.float64]
 
 _EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that has no way, at which braking is tried
 _FARTHER = 0.05  # metres that a slower way must get beyond the place where a faster one failed
-_SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _FAR_OFF = 1.2  # seconds until a place that is not asked about yet
 _WORTH = 0.3  # seconds that a path must cost less than one on which there is a way, to be thought of before it
 _STANDING = 0.02  # metres: a path that is shorter stands
@@ -59,14 +59,13 @@ class ExactPlanner:
         self._last: Whole | None = None
         self._stand: Stand | None = None
         self._blockade: Blockade | None = None
-        self._turn = self._paths = 0  # of the paths that are thought through one after the other, plan by plan
-        self._thought_of: tuple[float, float] | None = None  # the place that ended the commanded path when it was
+        self._turns = Turns()
         self._body.reset()
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
-        return self._body.plan(path, start, np.zeros_like(start)).plan
+        return self._body.plan(path, Start(start, np.zeros_like(start))).plan
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
@@ -77,7 +76,7 @@ class ExactPlanner:
         else:
             before = self._body.versions
             whole = self._whole(root_planner, query)
-            left = stand.left - 1 if again and stand is not None else max(self._paths - 1, 0)
+            left = stand.left - 1 if again and stand is not None else self._turns.left
             known = alone and self._body.versions == before and stands(whole, query)
             self._stand = Stand(query, before, whole, left) if known else None
         self._last = whole
@@ -87,17 +86,21 @@ class ExactPlanner:
         horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
         tried: list[_Tried] = []
-        blocked_at, self._paths = 0.0, 0
+        blocked_at = 0.0
+        self._turns.begin()
         for root in root_planner.candidates(*at):
             if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
-            upper = self._dress(root.path, query, Effort.QUICK)
-            if not tried and upper.reached < horizon and not query.hurry and self._is_new(upper):
-                upper = self._dress(root.path, query, Effort.REFINED)
-            if upper.reached == horizon:
+            found = None if len(root_planner.moving) else self._prolonged(root, query)
+            if found is None:
+                upper = self._dress(root.path, query, Effort.QUICK)
+                if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
+                    upper = self._dress(root.path, query, Effort.REFINED)
+                found = Whole(root, upper.plan, upper.asked) if upper.reached == horizon else None
+            if found is not None:
                 if not tried:
-                    self._turn, self._thought_of = 0, None
-                return self._cheaper(root_planner, query, tried, root) or Whole(root, upper.plan, upper.asked)
+                    self._turns.found()
+                return self._cheaper(root_planner, query, tried, root) or found
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         found = None if query.hurry else self._thought_through(root_planner, query, tried)
@@ -115,26 +118,9 @@ class ExactPlanner:
                     return Whole(root, upper.plan, upper.asked)
         return None
 
-    def _is_new(self, upper: UpperPlan) -> bool:
-        """Whether the path as commanded ends at another place than the one that it was thought through for."""
-        place = _blocked_place(upper)
-        if self._thought_of is not None and math.dist(place, self._thought_of) < _SAME_PLACE:
-            return False
-        self._thought_of, self._turn = place, 0
-        return True
-
     def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole | None:
-        """A path on which all groups together have a way after all.
-
-        Every path gets the joint step's first answer. In each plan one of them is thought through with all means: the
-        commanded one as soon as it is blocked, then the one that leads farthest, and so on.
-        """
-        ranked = [0, *sorted(range(1, len(tried)), key=lambda i: -tried[i].upper.reached)]
-        turn, self._paths, self._turn = self._turn % len(tried), len(tried), self._turn + 1
-        for place, number in enumerate(ranked):
-            if number == 0 and self._turn == 1:
-                continue  # it was thought through just now
-            effort = Effort.GLANCE if place != turn else Effort.JOINT if number else Effort.REFINED
+        """A path on which all groups together have a way after all."""
+        for number, effort in self._turns.efforts([one.upper.reached for one in tried]):
             root = tried[number].root
             upper = self._dress(root.path, query, effort)
             if upper.reached == root.path.horizon:
@@ -182,8 +168,8 @@ class ExactPlanner:
         answer, which names obstacles, says more.
         """
         path, depth, last = upper.dressing.path, upper.dressing.blocked[1], self._blockade
-        place, moves = _blocked_place(upper), bool(query.root.forward or query.root.lateral)
-        near = last is not None and math.dist(place, last.place) < _SAME_PLACE
+        place, moves = _place(upper), bool(query.root.forward or query.root.lateral)
+        near = last is not None and same_place(place, last.place)
         if moves and not near and depth * path.interval > _FAR_OFF:
             return None
         if last is not None and near and moves:
@@ -198,22 +184,29 @@ class ExactPlanner:
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
         if query.superseded():
             raise SupersededError
-        return self._body.plan(path, query.upper, query.velocity, self._kept(path), query.others, effort)
+        begins = Start(query.upper, query.velocity)
+        return self._body.plan(path, begins, self._kept(path), query.others, effort)
+
+    def _prolonged(self, root: RootPlan, query: MotionQuery) -> Whole | None:
+        """The last plan with a new end, if the root goes on as it was going to and that end has a way."""
+        kept = settled(self._last, root.path, query, round(self.settings.revisited / query.interval))
+        if kept is None:
+            return None
+        path = rest_of(root.path, kept.at)
+        rest = self._body.plan(path, kept.begins, self._kept(path), query.others, Effort.QUICK)
+        return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
     def _kept(self, path: RootPath) -> Kept | None:
         """What the last plan had at the key times of `path`, if it has any of them."""
-        if self._last is None or self._last.asked is None:
+        first = None if self._last is None else key_at(self._last, path)
+        if self._last is None or first is None or self._last.asked is None:
             return None
-        last, known = self._last.root.path, self._last.local.configurations
-        at = (path.start_time - last.start_time) / path.interval
-        if path.interval != last.interval or abs(at - round(at)) > 1e-6 or not 0 <= round(at) < len(known):
-            return None
-        first = round(at)
+        known = self._last.local.configurations
         keys = known[np.minimum(first + np.arange(len(path.states)), len(known) - 1)]
         return Kept(keys, len(known) - first, self._last.asked.since(first, path.horizon))
 
 
-def _blocked_place(upper: UpperPlan) -> tuple[float, float]:
+def _place(upper: UpperPlan) -> tuple[float, float]:
     """Where the root is, x and z, at the key time that the upper body did not reach."""
     x, z = upper.dressing.path.states[upper.dressing.blocked[1], :2].tolist()
     return x, z

@@ -140,10 +140,12 @@ def node_prices(
     Also the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
     """
     limb, columns, goals, boxes = postures.limb, postures.columns, task.goals, task.boxes
-    clearance, checks = held_clearance(
-        postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
-    )
-    most = max(0.5 * clearance, 0.0)
+    most, checks = np.inf, 0
+    if not task.settled:
+        clearance, checks = held_clearance(
+            postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
+        )
+        most = max(0.5 * clearance, 0.0)
     clear, count = _clearances(tables, postures, carriers, goals, boxes, own, needed)
     price = _priced(columns, goals, own, clear, task.extra, task.margins, most, weights, kept)
     _rule_out(price, postures.configurations.shape[0], needed)

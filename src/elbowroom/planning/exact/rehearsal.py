@@ -15,6 +15,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.exact.joint import joint_way
 from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
+from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.postures import postures_of
 from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
@@ -43,7 +44,7 @@ def rehearse(humanoid: Humanoid) -> None:
         scene = replace(Scene.load("empty"), boxes=boxes, box_names=("box",))
         body = UpperBody(humanoid, scene, ExactSettings())
         start = goal_configurations(body.goals, path)[0]
-        dressing = body.plan(path, start, np.zeros_like(start)).dressing
+        dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
         dressing.together(1)
         dressing.blockade()
 

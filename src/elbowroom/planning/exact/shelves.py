@@ -1,4 +1,4 @@
-"""What is kept for all plans with the same key interval and horizon."""
+"""What is kept for all plans with the same key interval."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -10,12 +10,13 @@ from elbowroom.planning.exact.ways import Chain, RootWays
 
 
 class Shelves(NamedTuple):
-    """All that depends on the interval and the horizon."""
+    """All that depends on the interval, with room for so many of them."""
 
     groups: Mapping[DofGroup, Group]
     works: Mapping[DofGroup, Work]
     roots: RootWays
     chain: Chain
+    horizon: int  # the greatest number of key intervals that there is room for
 
     def with_group(self, group: DofGroup, made: Group, room: Work) -> "Shelves":
         """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""

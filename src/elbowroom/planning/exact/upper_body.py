@@ -19,14 +19,16 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.group import Group, Weights
-from elbowroom.planning.exact.kept import Asked, Kept
+from elbowroom.planning.exact.kept import Asked, Kept, Start
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.path_problem import PathProblem
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
+from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.tables import new_tables
@@ -85,8 +87,8 @@ class UpperBody:
             settings.step_weight, settings.near_weight, settings.comfort, settings.keeping, settings.rounds
         )
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
-        self._shelves: dict[tuple[float, int], Shelves] = {}
-        self._own_body = OwnBody(self._model, self.goals)
+        self._shelves: dict[float, Shelves] = {}
+        self._own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
@@ -101,13 +103,12 @@ class UpperBody:
     def plan(
         self,
         path: RootPath,
-        start: Floats,
-        velocity: Floats,
+        begins: Start,
         kept: Kept | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
     ) -> UpperPlan:
-        """Motion along `path` from `start` (11,) at `velocity` (11,); near `kept`, the last plan.
+        """Motion along `path` from where it `begins`; near `kept`, the last plan.
 
         `others` move besides the scene's own.
         """
@@ -116,7 +117,7 @@ class UpperBody:
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, start, velocity, kept, near, legs)
+            dressing = self._dressing(path, begins, kept, near, legs)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
             found = dressing.motion(0 if between else rounds)
             if found is not None:
@@ -129,23 +130,22 @@ class UpperBody:
 
     def reset(self) -> None:
         """Forget the postures that were added, and what was computed of late."""
-        self._own_body.alert = 0
+        self._contacts.forget()
         self._shelves.clear()
         for group, pool in self._pools.items():
             if pool.clear():
                 self._take_in(group)
 
     def _dressing(
-        self, path: RootPath, start: Floats, velocity: Floats, kept: Kept | None, near: NearBoxes, legs: LoweredLegs
+        self, path: RootPath, begins: Start, kept: Kept | None, near: NearBoxes, legs: LoweredLegs
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
         roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval, near.stamps)
-        margins, skins = self._margins(path)
-        return Dressing(
-            shelves, self._weights, self.settings, self._own_body, legs, path, goals,
-            kept, start, velocity, roots, near, margins, skins,
-        )  # fmt: skip
+        margins, skins = self._margins(path, begins.ahead)
+        self._contacts.begin(path.start_time)
+        problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
+        return Dressing(shelves, self._weights, self.settings, self._own_body, self._contacts, legs, problem)
 
     def _refine(self, dressing: Dressing) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""
@@ -173,8 +173,8 @@ class UpperBody:
         """Link a group's postures anew; what was computed for its old set is forgotten."""
         for key in [key for key in self._postures if key[0] is group]:
             del self._postures[key]
-        for (interval, horizon), shelves in self._shelves.items():
-            self._shelves[interval, horizon] = shelves.with_group(group, *self._shelf(group, interval, horizon))
+        for interval, shelves in self._shelves.items():
+            self._shelves[interval] = shelves.with_group(group, *self._shelf(group, interval, shelves.horizon))
 
     def _shelf(self, group: DofGroup, interval: float, horizon: int) -> tuple[Group, Work]:
         count, postures = _SHELVES * (horizon + 1), self.postures(group, interval)
@@ -186,17 +186,17 @@ class UpperBody:
         made = Group(postures, levers_of(self._model, postures.limb), limits(group), most, tables, ways, masks)
         return made, new_work(horizon + 1, width + OWN)
 
-    def _margins(self, path: RootPath) -> tuple[Floats, Floats]:
+    def _margins(self, path: RootPath, ahead: int) -> tuple[Floats, Floats]:
         """Clearances of nodes (n+1,) and of the motion in each interval (n,): less is asked for soon than later."""
-        settings, times = self.settings, path.interval * np.arange(len(path.states))
+        settings, times = self.settings, path.interval * np.arange(ahead, ahead + len(path.states))
         shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * times / settings.soon, 1.0)
         return settings.margin * shares, settings.skin * shares[:-1]
 
     def _shelves_for(self, path: RootPath) -> Shelves:
-        key = (path.interval, path.horizon)
-        if key not in self._shelves:
-            self._shelves[key] = self._new_shelves(*key)
-        return self._shelves[key]
+        known = self._shelves.get(path.interval)
+        if known is None or known.horizon < path.horizon:
+            known = self._shelves[path.interval] = self._new_shelves(path.interval, path.horizon)
+        return known
 
     def _new_shelves(self, interval: float, horizon: int) -> Shelves:
         made = {group: self._shelf(group, interval, horizon) for group in LOCAL_GROUPS}
@@ -204,7 +204,7 @@ class UpperBody:
         works = {group: room for group, (_, room) in made.items()}
         reach = max(groups[arm].postures.reach for arm in LOCAL_GROUPS[1:])
         chain = chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
-        return Shelves(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain)
+        return Shelves(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain, horizon)
 
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""

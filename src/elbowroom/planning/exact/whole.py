@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
 
 
@@ -17,6 +18,15 @@ class Whole(NamedTuple):
     root: RootPlan
     local: LocalPlan
     asked: Asked | None = None  # None: not a way that was found
+
+
+def key_at(whole: Whole, path: RootPath) -> int | None:
+    """Which of a motion's key times a path begins at; None if it is none of them."""
+    known = whole.root.path
+    at = (path.start_time - known.start_time) / path.interval
+    if path.interval != known.interval or abs(at - round(at)) > 1e-6:
+        return None
+    return round(at) if 0 <= round(at) < len(whole.local.configurations) else None
 
 
 def first_part(whole: Whole, horizon: int) -> Motion:

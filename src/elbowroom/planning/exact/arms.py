@@ -1,0 +1,126 @@
+"""The ways of the arms under the waist's: clear of the obstacles, of the body, and the right arm of the left one."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, columns_of
+from elbowroom.planning.exact.group import GroupWay, own_postures
+from elbowroom.planning.exact.kept import Asked
+from elbowroom.planning.exact.ledger import Ledger
+from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.path_problem import PathProblem
+from elbowroom.planning.exact.self_contacts import SelfContacts
+from elbowroom.planning.exact.shelves import Shelves
+from elbowroom.planning.exact.together import Guide
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_NATURAL = 1e-6  # radians from the goal
+_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
+_ARMS = LOCAL_GROUPS[1:]
+
+
+class Ways(NamedTuple):
+    """The ways of the groups, in order, as far as they were found; and the one that ended it."""
+
+    ways: tuple[GroupWay, ...]
+    failed: GroupWay | None
+    reached: int  # the key time that all groups reached
+    asked: Asked | None = None  # what clearances were asked for; None if a group failed
+
+
+class Arms:
+    """Searches the arms' ways along one root path."""
+
+    def __init__(
+        self, shelves: Shelves, problem: PathProblem, own_body: OwnBody, contacts: SelfContacts, rounds: int
+    ) -> None:
+        """At most `rounds` motions may turn out to run into the body."""
+        self._shelves, self._problem, self._own_body, self._contacts = shelves, problem, own_body, contacts
+        self._rounds = rounds
+
+    def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Ways:
+        """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
+        horizon = self._problem.path.horizon
+        if waist.reached < horizon:
+            return Ways((), waist, waist.reached)
+        ways, first, whole, touching = [waist], 0, self._contacts.alert, 0
+        for _ in range(self._rounds):
+            del ways[1 + first :]
+            for side in range(first, len(_ARMS)):
+                way = self._way(side, ways, None if guides is None else guides[1 + side], ledger, whole=whole)
+                if way.reached < horizon:
+                    return Ways(tuple(ways), way, way.reached)
+                ways.append(way)
+            contact = self._self_contact(ways)
+            if contact is None:
+                return Ways(tuple(ways), None, horizon, self._asked(ways))
+            first, touching, whole = *contact, True
+            self._remember(ways, *contact)
+        return Ways(tuple(ways[:-1]), ways[-1], touching)
+
+    def _way(self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool) -> GroupWay:
+        """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
+        group = _ARMS[side]
+        own = self._folded(side, ways, follow) if whole else self._resting(side)
+        return ledger.search(group, self._problem.task(group, ways[0].slots, own, follow))
+
+    def _resting(self, side: int) -> Floats32:
+        """Infinite where a node touches the naturally walking body."""
+        return self._own_body.resting_prices(side, self._shelves.groups[_ARMS[side]].postures, len(self._problem.goals))
+
+    def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None) -> Floats32:
+        """Infinite where a node touches the body on its ways, or is near to one that did."""
+        problem, made = self._problem, self._shelves.groups[_ARMS[side]]
+        own, needed, _ = own_postures(made, problem.task(_ARMS[side], ways[0].slots, None, follow))
+        keys = [way.keys for way in ways[: 1 + side]]
+        natural = np.ones(len(problem.goals), np.bool_)
+        for known, group in zip(keys, LOCAL_GROUPS, strict=False):
+            natural &= np.abs(known - problem.goals[:, columns_of(group)]).max(axis=1) < _NATURAL
+        other = keys[1] if side == 1 else None
+        folded = self._own_body.folded_nodes(
+            side, made.postures, own, needed, natural, keys[0], problem.path.states, other
+        )
+        prices = np.where(folded, np.float32(np.inf), np.float32(0.0))
+        self._rule_out(side, keys, own, prices)
+        return prices
+
+    def _rule_out(self, side: int, keys: list[Floats], own: Floats, prices: Floats32) -> None:
+        """Rule out the nodes at key times near to postures that ran into the body there, the body being as it is."""
+        known, times = self._contacts.times, self._problem.path.times
+        postures = self._shelves.groups[_ARMS[side]].postures
+        size, width = len(postures.configurations), postures.moves.shape[1]
+        for t in range(1, len(times)):
+            if (side, times[t]) not in known:
+                continue
+            nodes = np.concatenate([postures.configurations, own[t]])
+            for posture in self._contacts.at(side, times[t], np.concatenate([key[t] for key in keys])):
+                near = np.linalg.norm(nodes - posture, axis=1) < _ALIKE
+                prices[t, np.flatnonzero(near[:size])] = np.inf
+                prices[t, width + np.flatnonzero(near[size:])] = np.inf
+
+    def _remember(self, ways: list[GroupWay], side: int, interval: int) -> None:
+        """Remember what an arm did at both ends of an interval in which it ran into the body."""
+        for t in range(max(interval, 1), interval + 2):
+            around = np.concatenate([way.keys[t] for way in ways[: 1 + side]])
+            self._contacts.add(side, float(self._problem.path.times[t]), around, ways[1 + side].keys[t].copy())
+
+    def _self_contact(self, ways: list[GroupWay]) -> tuple[int, int] | None:
+        """The arm and the first interval in which the shown motion runs into the body, or None."""
+        keys, goals = np.concatenate([way.keys for way in ways], axis=1), self._problem.goals
+        natural = np.abs(keys - goals).max(axis=1) < _NATURAL
+        if natural.all():
+            return None
+        rates = np.concatenate([way.velocities for way in ways], axis=1)
+        chosen = ~(natural[:-1] & natural[1:])
+        arms = self._own_body.contacts(self._problem.path, keys, rates, chosen, self._problem.begins.ahead)
+        touching = np.flatnonzero(arms >= 0)
+        return None if not len(touching) else (int(arms[touching[0]]), int(touching[0]))
+
+    def _asked(self, ways: list[GroupWay]) -> Asked:
+        """The clearances that were asked for: less where the start has less."""
+        most = np.array([[way.most] for way in ways])
+        return Asked(np.minimum(self._problem.asked_margins, most), np.minimum(self._problem.asked_skins, most))
