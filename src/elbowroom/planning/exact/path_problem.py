@@ -37,8 +37,14 @@ class PathProblem:
 
     @cached_property
     def kept(self) -> Floats:
-        """What the last plan had (n+1, 11); the goals if there was none."""
-        return self.goals if self.last is None else self.last.keys
+        """What the last plan had (n+1, 11), its end where it did not reach; the goals if there was none.
+
+        One who goes on from the last plan has other postures to end with.
+        """
+        if self.last is None:
+            return self.goals
+        reached = self.last.known if self.begins.ahead else len(self.goals)
+        return np.concatenate([self.last.keys[:reached], self.goals[reached:]])
 
     @cached_property
     def asked_margins(self) -> Floats:

@@ -94,6 +94,7 @@ class UpperBody:
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
         self._boxes, self._moving = scene.boxes.table, scene.moving
         self._legs = LoweredLegs(self._model, scene.boxes)
+        self._prepare()
 
     @property
     def versions(self) -> tuple[int, ...]:
@@ -135,6 +136,14 @@ class UpperBody:
         for group, pool in self._pools.items():
             if pool.clear():
                 self._take_in(group)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Make what the first plan would have to wait for: empty shelves, and which postures run into the body."""
+        interval, horizon = self.settings.interval, round(self.settings.look_ahead / self.settings.interval)
+        self._shelves[interval] = self._new_shelves(interval, horizon)
+        for side, group in enumerate(LOCAL_GROUPS[1:]):
+            self._own_body.resting(side, self.postures(group, interval))
 
     def _dressing(
         self, path: RootPath, begins: Start, kept: Kept | None, near: NearBoxes, legs: LoweredLegs
