@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.kept import Kept, Start
-from elbowroom.planning.exact.prolonging import prolonged, rest_of, settled
+from elbowroom.planning.exact.prolonging import Walk, prolonged, rest_of, settled
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, first_part, key_at, part, stands
+from elbowroom.planning.exact.whole import Stand, Whole, first_part, key_at, later, stands
 from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -58,6 +58,7 @@ class ExactPlanner:
         """Forget the last plan, what was thought through, and the postures that were added."""
         self._last: Whole | None = None
         self._stand: Stand | None = None
+        self._walk: Walk | None = None
         self._blockade: Blockade | None = None
         self._turns = Turns()
         self._body.reset()
@@ -69,21 +70,51 @@ class ExactPlanner:
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
-        stand, alone = self._stand, not len(root_planner.moving) and not query.hurry
-        again = alone and stand is not None and stand.answers(query, self._body.versions)
-        if again and stand is not None and stand.left == 0:
-            whole = stand.at(query.time)
-        else:
-            before = self._body.versions
-            whole = self._whole(root_planner, query)
-            left = stand.left - 1 if again and stand is not None else self._turns.left
-            known = alone and self._body.versions == before and stands(whole, query)
-            self._stand = Stand(query, before, whole, left) if known else None
+        alone = not len(root_planner.moving) and not query.hurry
+        whole = self._gone_on(root_planner, query) if alone else None
+        if whole is None:
+            whole = self._answered(root_planner, query, alone=alone)
+            self._walk = Walk(query, whole) if alone and _is_commanded(whole, root_planner) else None
         self._last = whole
         return first_part(whole, query.horizon)
 
+    def _answered(self, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
+        """What is planned, or still known from when the avatar stood here; `alone`: nothing moves or is in a hurry."""
+        stand = self._stand
+        again = alone and stand is not None and stand.answers(query, self._body.versions)
+        if again and stand is not None and stand.left == 0:
+            return stand.at(query.time)
+        before = self._body.versions
+        whole = self._whole(root_planner, query)
+        left = stand.left - 1 if again and stand is not None else self._turns.left
+        known = alone and self._body.versions == before and stands(whole, query)
+        self._stand = Stand(query, before, whole, left) if known else None
+        return whole
+
+    def _horizon(self, query: MotionQuery) -> int:
+        return max(query.horizon, round(self.settings.look_ahead / query.interval))
+
+    def _gone_on(self, root_planner: RootPlanner, query: MotionQuery) -> Whole | None:
+        """The walk that goes on as planned, prolonged if it gets short; None if it does not, or has no new end."""
+        left, horizon = None if self._walk is None else self._walk.left(query), self._horizon(query)
+        if left is None or left.root.path.horizon >= horizon:
+            return left
+        farther = horizon + round(self.settings.spare / query.interval)
+        root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
+        kept = settled(left, root.path, round(self.settings.revisited / query.interval))
+        if kept is None or root.lost >= root_planner.settings.untroubled:
+            return None
+        path = rest_of(root.path, kept.at)
+        self._last = left
+        rest = self._body.plan(path, kept.begins, self._kept(path), query.others, Effort.QUICK)
+        if rest.reached < path.horizon:
+            return None
+        whole = prolonged(kept, rest, root)
+        self._walk = Walk(query, whole)
+        return whole
+
     def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
-        horizon = max(query.horizon, round(self.settings.look_ahead / query.interval))
+        horizon = self._horizon(query)
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
         tried: list[_Tried] = []
         blocked_at = 0.0
@@ -91,16 +122,13 @@ class ExactPlanner:
         for root in root_planner.candidates(*at):
             if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
-            found = None if len(root_planner.moving) else self._prolonged(root, query)
-            if found is None:
-                upper = self._dress(root.path, query, Effort.QUICK)
-                if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
-                    upper = self._dress(root.path, query, Effort.REFINED)
-                found = Whole(root, upper.plan, upper.asked) if upper.reached == horizon else None
-            if found is not None:
+            upper = self._dress(root.path, query, Effort.QUICK)
+            if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
+                upper = self._dress(root.path, query, Effort.REFINED)
+            if upper.reached == horizon:
                 if not tried:
                     self._turns.found()
-                return self._cheaper(root_planner, query, tried, root) or found
+                return self._cheaper(root_planner, query, tried, root) or Whole(root, upper.plan, upper.asked)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         found = None if query.hurry else self._thought_through(root_planner, query, tried)
@@ -151,14 +179,12 @@ class ExactPlanner:
         """What is left of the last plan, if it led to where this one starts."""
         if self._last is None or not len(self._last.local.configurations):
             return None
-        root, local, asked = self._last
-        at = round((query.time - root.path.start_time) / query.interval)
-        if not 0 <= at < len(root.path.states) - 1 or not np.allclose(root.path.states[at], query.root, atol=1e-9):
+        path = self._last.root.path
+        at = round((query.time - path.start_time) / query.interval)
+        if not 0 <= at < len(path.states) - 1 or not np.allclose(path.states[at], query.root, atol=1e-9):
             return None
-        path = RootPath(query.time, query.interval, root.path.states[at:])
-        rest = part(local, slice(at, None))
-        asked = None if asked is None else asked.since(at, path.horizon)
-        return Whole(replace(root, path=path, kind=RootPlanKind.SHORTENED), rest, asked)
+        left = later(self._last, at)
+        return left._replace(root=replace(left.root, kind=RootPlanKind.SHORTENED))
 
     def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:
         """Why there is no way; None as long as that is far off: most of it is solved when it has come nearer.
@@ -187,15 +213,6 @@ class ExactPlanner:
         begins = Start(query.upper, query.velocity)
         return self._body.plan(path, begins, self._kept(path), query.others, effort)
 
-    def _prolonged(self, root: RootPlan, query: MotionQuery) -> Whole | None:
-        """The last plan with a new end, if the root goes on as it was going to and that end has a way."""
-        kept = settled(self._last, root.path, query, round(self.settings.revisited / query.interval))
-        if kept is None:
-            return None
-        path = rest_of(root.path, kept.at)
-        rest = self._body.plan(path, kept.begins, self._kept(path), query.others, Effort.QUICK)
-        return prolonged(kept, rest, root) if rest.reached == path.horizon else None
-
     def _kept(self, path: RootPath) -> Kept | None:
         """What the last plan had at the key times of `path`, if it has any of them."""
         first = None if self._last is None else key_at(self._last, path)
@@ -204,6 +221,11 @@ class ExactPlanner:
         known = self._last.local.configurations
         keys = known[np.minimum(first + np.arange(len(path.states)), len(known) - 1)]
         return Kept(keys, len(known) - first, self._last.asked.since(first, path.horizon))
+
+
+def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:
+    """Whether a motion follows the path as commanded, and the upper body has a way along it."""
+    return whole.asked is not None and whole.root.lost < root_planner.settings.untroubled
 
 
 def _place(upper: UpperPlan) -> tuple[float, float]:

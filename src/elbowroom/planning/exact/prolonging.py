@@ -1,8 +1,9 @@
 """A plan that is still good is kept, and only its end is searched anew, together with what has come into view.
 
-The last plan's motion is proven where it leads. If the root goes on as it was going to, among things that stand, its
-first part can be played as it is. Its last part was planned for a world that ended there, so that part is left free: an
-obstacle is reckoned with in every search from where it comes into view until it is that near.
+A plan's motion is proven where it leads. While the user wants the same, among things that stand, it is played as it is,
+and nothing is planned until it gets shorter than the look-ahead. Then it is made longer. Its last part was planned for
+a world that ended there, so that part is left free: an obstacle is reckoned with from where it comes into view, and
+what was planned for it can be bettered until it is that near.
 """
 
 from dataclasses import replace
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from elbowroom.planning.exact.kept import Asked, Start
 from elbowroom.planning.exact.upper_body import UpperPlan
-from elbowroom.planning.exact.whole import Whole, key_at
+from elbowroom.planning.exact.whole import Whole, later
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
@@ -38,20 +39,15 @@ class Settled(NamedTuple):
         return Start(self.configurations[-1], self.velocities[-1], self.at)
 
 
-def settled(last: Whole | None, path: RootPath, query: MotionQuery, free: int) -> Settled | None:
-    """What of the last plan can be kept on a path, of which the last `free` key intervals are searched anew."""
-    at = path.horizon - free
-    first = None if last is None else key_at(last, path)
-    if last is None or first is None or at < 1 or last.asked is None:
+def settled(left: Whole, path: RootPath, free: int) -> Settled | None:
+    """What is kept, of what is `left` of a plan, on a path of which the last `free` key intervals are searched anew."""
+    at, local = path.horizon - free, left.local
+    if not 0 < at < len(local.configurations) or local.velocities is None or left.asked is None:
         return None
-    rows, velocities = slice(first, first + at + 1), last.local.velocities
-    if velocities is None:
+    if not np.array_equal(left.root.path.states[: at + 1], path.states[: at + 1]):
         return None
-    kept = Settled(at, last.local.configurations[rows], velocities[rows], last.local.goals[rows], last.asked)
-    if len(kept.configurations) <= at or not np.array_equal(last.root.path.states[rows], path.states[: at + 1]):
-        return None
-    apart = max(_apart(kept.configurations[0], query.upper), _apart(kept.velocities[0], query.velocity))
-    return kept._replace(asked=last.asked.since(first, path.horizon)) if apart <= _SAME else None
+    rows = slice(at + 1)
+    return Settled(at, local.configurations[rows], local.velocities[rows], local.goals[rows], left.asked)
 
 
 def rest_of(path: RootPath, at: int) -> RootPath:
@@ -73,5 +69,22 @@ def prolonged(kept: Settled, rest: UpperPlan, root: RootPlan) -> Whole:
     return Whole(root, local, kept.asked.then(at, rest.asked))
 
 
-def _apart(a: Floats, b: Floats) -> float:
-    return float(np.abs(a - b).max())
+class Walk(NamedTuple):
+    """A plan that answered a query with the path as commanded: who is asked to walk on does as planned."""
+
+    query: MotionQuery
+    whole: Whole
+
+    def left(self, query: MotionQuery) -> Whole | None:
+        """What is left of it at a later query, if that goes on from where the plan leads, and wants the same."""
+        known, whole = self.query, self.whole
+        at = round((query.time - known.time) / query.interval)
+        local = whole.local
+        if known.command != query.command or known.interval != query.interval or local.velocities is None:
+            return None
+        if not 0 <= at < len(local.configurations) or abs(query.time - float(whole.root.path.times[at])) > _SAME:
+            return None
+        there = (whole.root.path.states[at], local.configurations[at], local.velocities[at])
+        asked = (query.root.as_array(), query.upper, query.velocity)
+        same = all(np.abs(a - b).max() <= _SAME for a, b in zip(there, asked, strict=True))
+        return later(whole, at) if same else None

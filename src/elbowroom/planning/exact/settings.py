@@ -21,7 +21,8 @@ class ExactSettings:
     skin: float = 0.006  # clearance of the motion that is shown
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
     soon_share: float = 0.5  # of margin and skin, at this moment
-    revisited: float = 0.9  # seconds at the end of a plan that are searched anew for the next; the rest is kept
+    spare: float = 0.45  # seconds that a walk which goes on as planned is planned beyond the look-ahead
+    revisited: float = 1.2  # seconds at the end of a plan that are searched anew with that; the rest is kept
     comfort: float = 0.05  # postures with less clearance cost more
     rounds: int = 16  # motions that may turn out to touch before a group gives up
     guided_rounds: int = 4  # answers of the joint step that may turn out to touch

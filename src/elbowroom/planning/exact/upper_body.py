@@ -140,7 +140,8 @@ class UpperBody:
 
     def _prepare(self) -> None:
         """Make what the first plan would have to wait for: empty shelves, and which postures run into the body."""
-        interval, horizon = self.settings.interval, round(self.settings.look_ahead / self.settings.interval)
+        interval = self.settings.interval
+        horizon = round(self.settings.look_ahead / interval)
         self._shelves[interval] = self._new_shelves(interval, horizon)
         for side, group in enumerate(LOCAL_GROUPS[1:]):
             self._own_body.resting(side, self.postures(group, interval))

@@ -7,7 +7,7 @@ import numpy as np
 
 from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.result import GroupEvidence, LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
 
@@ -42,6 +42,19 @@ def part(local: LocalPlan, rows: slice) -> LocalPlan:
     return replace(local, configurations=local.configurations[rows], goals=local.goals[rows], velocities=velocities)
 
 
+def later(whole: Whole, at: int) -> Whole:
+    """What is left of a motion from its key time `at` on, for which nothing was searched."""
+    root, local, asked = whole
+    path = RootPath(float(root.path.times[at]), root.path.interval, root.path.states[at:])
+    rest = part(replace(local, evidence=_free_of_charge(local), joint=None), slice(at, None))
+    asked = None if asked is None else asked.since(at, path.horizon)
+    return Whole(replace(root, path=path, checks=0, nanoseconds=0), rest, asked)
+
+
+def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
+    return tuple(replace(row, checks=0, nodes=0, enhanced=0, nanoseconds=0) for row in local.evidence)
+
+
 class Stand(NamedTuple):
     """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
 
@@ -62,13 +75,12 @@ class Stand(NamedTuple):
     def at(self, time: float) -> Whole:
         """The answer at another time, for which nothing was searched."""
         root, local = self.whole.root, self.whole.local
-        later = time - self.query.time
-        evidence = tuple(replace(row, checks=0, nodes=0, enhanced=0, nanoseconds=0) for row in local.evidence)
-        why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + later)
+        passed = time - self.query.time
+        why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + passed)
         path = replace(root.path, start_time=time)
         return Whole(
             replace(root, path=path, checks=0, nanoseconds=0),
-            replace(local, evidence=evidence, joint=None, blockade=why),
+            replace(local, evidence=_free_of_charge(local), joint=None, blockade=why),
             self.whole.asked,
         )
 
