@@ -21,7 +21,10 @@ def test_calls_walk_to_the_finish() -> None:
     assert 20 < len(calls) < 400, "the walk did not get to the finish"
     assert all(call.found for call in calls)
     assert all(call.milliseconds > 0.0 and call.waited > 0.0 for call in calls)
-    assert sum(call.checks for call in calls) > 0
+    searched = [call for call in calls if call.searched]
+    assert 0 < len(searched) < len(calls), "a walk that goes on as planned is not planned at every call"
+    assert sum(call.checks for call in searched) > 0
+    assert sum(call.checks for call in calls) == sum(call.checks for call in searched)
 
 
 def test_equal_walks_do_equal_work() -> None:
@@ -38,7 +41,7 @@ def test_lane_has_its_posts_beside_the_way() -> None:
 
 
 def test_plots_are_svg_documents() -> None:
-    costs = CallCosts(3, 0.2, 0.4, 0.5, 0.2, 0.6, 100.0, 300, 1.0)
+    costs = CallCosts(3, 2, 0.2, 0.4, 0.5, 0.2, 0.6, 0.3, 100.0, 300, 1.0)
     settings = PlanSettings(horizons=(4, 8), obstacles=(0, 8))
     for picture in growth_plots(PlanReport(settings, costs, (costs,) * 2, (costs,) * 2)).values():
         assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"

@@ -43,11 +43,12 @@ def show(report: "PlanReport") -> None:
 
     settings, calls = report.settings, report.calls
     rows = {
-        "calls": str(calls.calls),
+        "calls": f"{calls.calls}, of which {calls.searched} searched; the rest go on as planned",
         "median": f"{calls.median_ms:.3g} ms ({calls.median_clock_ms:.3g} by the clock)",
+        "median of those that searched": f"{calls.search_median_ms:.3g} ms",
         "99 %": f"{calls.p99_ms:.3g} ms",
         "worst": f"{calls.worst_ms:.3g} ms ({calls.worst_clock_ms:.3g} by the clock)",
-        "checks, median": f"{calls.median_checks:.0f}",
+        "checks, median of those that searched": f"{calls.median_checks:.0f}",
         "checks, worst": f"{calls.worst_checks}, {calls.worst_to_median_checks:.1f} times the median",
         "found": f"{100.0 * calls.found:.1f} %",
     }
@@ -56,7 +57,10 @@ def show(report: "PlanReport") -> None:
         ("By key frames ahead", settings.horizons, report.by_horizon),
         ("By posts at a lane", settings.obstacles, report.by_obstacles),
     ):
-        texts = [f"{cost.median_ms:.3g} ms (99 %: {cost.p99_ms:.3g})" for cost in costs]
+        texts = [
+            f"{cost.median_ms:.3g} ms, {cost.search_median_ms:.3g} with a search (99 %: {cost.p99_ms:.3g})"
+            for cost in costs
+        ]
         print_row(name, dict(zip(map(str, places), texts, strict=True)))
 
 

@@ -41,18 +41,20 @@ class CallCosts:
     """The calls of some crossings together; milliseconds of processor time, and by the clock where it says so."""
 
     calls: int
+    searched: int  # of these; the others were answered with the rest of an earlier plan
     median_ms: float
     p99_ms: float
     worst_ms: float
     median_clock_ms: float
     worst_clock_ms: float
-    median_checks: float
+    search_median_ms: float  # of the calls that searched, and
+    median_checks: float  # theirs
     worst_checks: int
     found: float  # share of the calls
 
     @property
     def worst_to_median_checks(self) -> float:
-        """How much more collision work the worst call has than the usual one."""
+        """How much more collision work the worst call has than the usual one of those that search."""
         return self.worst_checks / max(self.median_checks, 1.0)
 
 
@@ -112,15 +114,17 @@ def lane(posts: int) -> Scene:
 
 def _costs(calls: Sequence[PlanCall]) -> CallCosts:
     times, waits = np.array([call[:2] for call in calls]).T
-    checks = np.array([call.checks for call in calls])
+    checks, searched = np.array([call.checks for call in calls]), np.array([call.searched for call in calls])
     return CallCosts(
         calls=len(calls),
+        searched=int(searched.sum()),
         median_ms=float(np.median(times)),
         p99_ms=float(np.percentile(times, 99)),
         worst_ms=float(times.max()),
         median_clock_ms=float(np.median(waits)),
         worst_clock_ms=float(waits.max()),
-        median_checks=float(np.median(checks)),
+        search_median_ms=float(np.median(times[searched])),
+        median_checks=float(np.median(checks[searched])),
         worst_checks=int(checks.max()),
         found=float(np.mean([call.found for call in calls])),
     )

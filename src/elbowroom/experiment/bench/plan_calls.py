@@ -33,6 +33,7 @@ class PlanCall(NamedTuple):
     waited: float  # milliseconds by the clock
     checks: int  # capsule-box checks of the upper body
     found: bool
+    searched: bool  # whether anything was planned: who walks on as planned is given the rest of an earlier plan
 
 
 def crossing_calls(humanoid: Humanoid, scene: Scene, key_frames: int, most: int = 400) -> Iterator[PlanCall]:
@@ -48,7 +49,7 @@ def crossing_calls(humanoid: Humanoid, scene: Scene, key_frames: int, most: int 
         motion = planner.plan_motion(roots, query)
         spent, waited = thread_time_ns() - began, perf_counter_ns() - clock
         found = len(motion.local.configurations) > 1
-        yield PlanCall(1e-6 * spent, 1e-6 * waited, motion.local.checks, found)
+        yield PlanCall(1e-6 * spent, 1e-6 * waited, motion.local.checks, found, motion.local.nodes > 0)
         if not found or scene.finished(query.root):
             return
         query = _next_query(query, motion)

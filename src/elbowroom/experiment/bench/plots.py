@@ -14,11 +14,12 @@ _STYLE = (
 
 
 def growth_plots(report: PlanReport) -> dict[str, str]:
-    """SVG documents by name: "horizon" and "obstacles"; dots are medians, bars reach to the 99th percentile."""
+    """SVG documents: "horizon" and "obstacles"; dots are medians of the calls that search, bars reach to the 99th
+    percentile of all."""
     settings = report.settings
     return {
-        "horizon": _plot("ms a call, by key frames ahead", settings.horizons, report.by_horizon),
-        "obstacles": _plot("ms a call, by posts at the lane", settings.obstacles, report.by_obstacles),
+        "horizon": _plot("ms a search, by key frames ahead", settings.horizons, report.by_horizon),
+        "obstacles": _plot("ms a search, by posts at the lane", settings.obstacles, report.by_obstacles),
     }
 
 
@@ -26,7 +27,8 @@ def _plot(name: str, places: Sequence[int], costs: Sequence[CallCosts]) -> str:
     top = _round_up(max(cost.p99_ms for cost in costs))
     axis = Axis(0.0, top, ticks=tuple(top * part for part in (0.0, 0.25, 0.5, 0.75, 1.0)))
     marks = tuple(
-        Mark(place, cost.median_ms, cost.median_ms, cost.p99_ms) for place, cost in zip(places, costs, strict=True)
+        Mark(place, cost.search_median_ms, cost.search_median_ms, cost.p99_ms)
+        for place, cost in zip(places, costs, strict=True)
     )
     panel = Panel(name, tuple(places), axis, (Series("exact", "planner0", marks),))
     drawn = draw(panel, "planning call").replace("<svg ", f'<svg width="{2 * WIDTH:g}" height="{2 * HEIGHT:g}" ', 1)

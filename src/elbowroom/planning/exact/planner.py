@@ -101,17 +101,22 @@ class ExactPlanner:
             return left
         farther = horizon + round(self.settings.spare / query.interval)
         root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
-        kept = settled(left, root.path, round(self.settings.revisited / query.interval))
-        if kept is None or root.lost >= root_planner.settings.untroubled:
+        if root.lost >= root_planner.settings.untroubled:
+            return None
+        self._last = left
+        near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
+        whole = self._prolonged(left, root) or self._prolonged(left, near)
+        self._walk = None if whole is None else Walk(query, whole)
+        return whole
+
+    def _prolonged(self, left: Whole, root: RootPlan) -> Whole | None:
+        """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
+        kept = settled(left, root.path, round(self.settings.revisited / root.path.interval))
+        if kept is None:
             return None
         path = rest_of(root.path, kept.at)
-        self._last = left
-        rest = self._body.plan(path, kept.begins, self._kept(path), query.others, Effort.QUICK)
-        if rest.reached < path.horizon:
-            return None
-        whole = prolonged(kept, rest, root)
-        self._walk = Walk(query, whole)
-        return whole
+        rest = self._body.plan(path, kept.begins, self._kept(path), None, Effort.QUICK)
+        return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
     def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
         horizon = self._horizon(query)
