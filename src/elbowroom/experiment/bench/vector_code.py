@@ -7,7 +7,7 @@ from typing import Any, cast
 import numba
 import numpy as np
 
-from elbowroom.world import clearance
+from elbowroom.world import capsule_tiles
 
 _ARITHMETIC = r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%"
 _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
@@ -16,10 +16,11 @@ _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
 @cache
 def clearance_loop_code() -> str:
     """The assembly of the hot loop, compiled anew: what comes from the disk cache cannot be read."""
-    kernel = cast(Any, clearance.lower_to_box)
+    kernel = cast(Any, capsule_tiles.lower_squares)
     options = {key: value for key, value in kernel.targetoptions.items() if key != "nopython"}
     fresh = numba.njit(**options)(kernel.py_func)
-    fresh(np.zeros((7, 16), np.float32), np.zeros(15, np.float32), np.zeros(16, np.float32))
+    tile, box = np.zeros(capsule_tiles.TILE, np.float32), np.zeros(capsule_tiles.BOX, np.float32)
+    fresh(tile, box, np.zeros((1, 2), np.int64), 0, np.zeros(capsule_tiles.LANES, np.float32))
     return "\n".join(fresh.inspect_asm().values())
 
 
@@ -28,4 +29,4 @@ def vector_bits() -> int:
     code = clearance_loop_code()
     counts = {bits: len(re.findall(_ARITHMETIC + register, code)) for register, bits in _BITS.items()}
     most = max(counts, key=lambda bits: counts[bits])
-    return most if counts[most] >= 100 else 0
+    return most if counts[most] >= 60 else 0

@@ -3,14 +3,22 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, kernel
 from elbowroom.planning.exact.postures import BLOCK
-from elbowroom.world.clearance import lower_to_box
+from elbowroom.world.capsule_tiles import BOX, PER_METRE, lower_squares, lower_to_squares
+from elbowroom.world.clearance import box_rows
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
 
 COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
+_ROUNDING = 1e-5  # metres: balls are held against boxes in single precision
+_PAIRS = 512  # pairs of a tile and a box that are collected before they are checked
+_FAR = np.float32(np.inf)
+_ZERO = np.float32(0.0)
+_QUARTER = np.float32(0.25)
+_LAST = BLOCK - 1
 
 
 @exact_kernel
@@ -40,18 +48,6 @@ def relative_to(origin: Floats, boxes: Floats, count: int, places: Floats, out: 
 
 
 @exact_kernel
-def box_gap(box: Floats, x: float, y: float, z: float) -> float:
-    """Distance of a point from a box (15,)."""
-    total = 0.0
-    dx, dy, dz = x - box[0], y - box[1], z - box[2]
-    for i in range(3):
-        place = box[3 + 3 * i] * dx + box[4 + 3 * i] * dy + box[5 + 3 * i] * dz
-        beyond = max(abs(place) - box[12 + i], 0.0)
-        total += beyond * beyond
-    return float(np.sqrt(total))
-
-
-@exact_kernel
 def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
     """The row (15,) of a box as seen from a frame at `place` (3,) with the unit quaternion `turn` (4,)."""
     x, y, z, w = turn[0], turn[1], turn[2], turn[3]
@@ -68,22 +64,62 @@ def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
 
 
 @exact_kernel
+def _spread(balls: Floats) -> Floats32:
+    """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
+
+    The last W - B C are such that nothing is near them; W is a multiple of `BLOCK`. The last row is left empty.
+    """
+    parts = balls.shape[1]
+    total = balls.shape[0] * parts
+    out = np.empty((5, (total + BLOCK - 1) // BLOCK * BLOCK), np.float32)
+    t = 0
+    for b in range(balls.shape[0]):
+        for c in range(parts):
+            reach = (balls[b, c, 3] + COMFORT + _ROUNDING) * PER_METRE
+            out[0, t], out[1, t], out[2, t], out[3, t] = balls[b, c, 0], balls[b, c, 1], balls[b, c, 2], reach * reach
+            t += 1
+    for t in range(total, out.shape[1]):
+        out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
+    return out
+
+
+@kernel
+def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> None:
+    """How far (W,) balls as `_spread` are out of reach of box b; negative where they are within."""
+    row = rows[b * BOX : (b + 1) * BOX]
+    cx, cy, cz, hx, hy, hz = row[0], row[1], row[2], row[12], row[13], row[14]
+    m = (row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])
+    for t in range(np.uint64(out.shape[0])):
+        x, y, z = balls[0, t] - cx, balls[1, t] - cy, balls[2, t] - cz
+        p = max(abs(m[0] * x + m[1] * y + m[2] * z) - hx, _ZERO)
+        q = max(abs(m[3] * x + m[4] * y + m[5] * z) - hy, _ZERO)
+        r = max(abs(m[6] * x + m[7] * y + m[8] * z) - hz, _ZERO)
+        out[t] = p * p + q * q + r * r - balls[3, t]
+
+
+@exact_kernel
 def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
     """Lower `out` (B, 16) to the clearance of blocks of postures from `count` boxes, all in one frame.
 
     What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
     """
-    checks = 0
-    row = np.empty(15, np.float32)
-    for i in range(count):
-        box = boxes[i]
-        for k in range(15):
-            row[k] = box[k]
-        for b in range(lanes.shape[0]):
-            for c in range(lanes.shape[1]):
-                if box_gap(box, balls[b, c, 0], balls[b, c, 1], balls[b, c, 2]) < balls[b, c, 3] + COMFORT:
-                    lower_to_box(lanes[b, c], row, out[b])
-                    checks += BLOCK
+    parts = lanes.shape[1]
+    total = lanes.shape[0] * parts
+    rows, spread, tiles = box_rows(boxes, count), _spread(balls), lanes.reshape(lanes.size)
+    squares, pairs = np.full(total * BLOCK, _FAR, np.float32), np.empty((_PAIRS + total, 2), np.int64)
+    found, checks, beyond = 0, 0, spread[4]
+    for b in range(count):
+        _beyond_reach(spread, rows, b, beyond)
+        for t in range(total):
+            pairs[found, 0], pairs[found, 1] = t, b
+            found += beyond[t] < 0.0
+        if found >= _PAIRS or b == count - 1:
+            lower_squares(tiles, rows, pairs, found, squares)
+            checks, found = checks + found * BLOCK, 0
+    for t in range(total):
+        if squares[t * BLOCK] < _FAR:
+            radius = lanes[t // parts, t % parts, 6, 0]
+            lower_to_squares(squares[t * BLOCK : (t + 1) * BLOCK], radius, out[t // parts])
     return checks
 
 
@@ -109,28 +145,30 @@ def place_capsules(segments: Floats32, radii: Floats32, places: Floats, turns: F
             lanes[c, 6, n] = radii[c]
 
 
+@kernel
+def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
+    """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
+    ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
+    x = _QUARTER * (ax[0] + bx[0] + ax[_LAST] + bx[_LAST])
+    y = _QUARTER * (ay[0] + by[0] + ay[_LAST] + by[_LAST])
+    z = _QUARTER * (az[0] + bz[0] + az[_LAST] + bz[_LAST])
+    for i in range(np.uint64(scratch.shape[0])):
+        a = (ax[i] - x) * (ax[i] - x) + (ay[i] - y) * (ay[i] - y) + (az[i] - z) * (az[i] - z)
+        b = (bx[i] - x) * (bx[i] - x) + (by[i] - y) * (by[i] - y) + (bz[i] - z) * (bz[i] - z)
+        scratch[i] = max(a, b)
+    farthest = _ZERO
+    for i in range(scratch.shape[0]):
+        farthest = max(farthest, scratch[i])
+    ball[0], ball[1], ball[2], ball[3] = x, y, z, lanes[6, 0] + np.sqrt(farthest)
+
+
 @exact_kernel
 def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
-    """Lower `out` (C, W) to the clearance of each capsule in each lane; boxes far from all of a capsule's are left out.
+    """Lower `out` (C, 16) to the clearance of each capsule in each lane (C, 7, 16).
 
-    Returns the capsules that were checked.
+    Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
     """
-    row = np.empty(15, np.float32)
-    checks = 0
+    balls, scratch = np.empty((lanes.shape[0], 1, 4)), np.empty(BLOCK, np.float32)
     for c in range(lanes.shape[0]):
-        low, high, total = np.empty(3), np.empty(3), 0.0
-        for k in range(3):
-            low[k], high[k] = np.inf, -np.inf
-            for e in range(0, 6, 3):
-                for n in range(lanes.shape[2]):
-                    low[k], high[k] = min(low[k], lanes[c, e + k, n]), max(high[k], lanes[c, e + k, n])
-            total += (high[k] - low[k]) * (high[k] - low[k])
-        ball = lanes[c, 6, 0] + 0.5 * np.sqrt(total)
-        x, y, z = 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])
-        for b in range(count):
-            if box_gap(boxes[b], x, y, z) < ball + COMFORT:
-                for k in range(15):
-                    row[k] = boxes[b, k]
-                lower_to_box(lanes[c], row, out[c])
-                checks += lanes.shape[2]
-    return checks
+        _ball_around(lanes[c], scratch, balls[c, 0])
+    return int(lower_blocks(lanes.reshape(lanes.shape[0], 1, lanes.shape[1], lanes.shape[2]), balls, boxes, count, out))

@@ -1,0 +1,119 @@
+"""Squared distances of capsules' axes from oriented boxes, sixteen at a time: the innermost loop of all planning.
+
+A tile is one capsule in sixteen configurations, seven rows of sixteen: ax, ay, az, bx, by, bz, radius. Which tile is
+held against which box is a list of pairs, so that a kernel may leave out the pairs that it knows to be far apart and
+still enter the loop once. Everything is flat, with distances known to the compiler: then it needs no proof that the
+rows do not overlap, and sixteen lanes become one instruction where vectors are that wide, a few where they are not.
+
+The distance. In the axes of a box f(t) = |q(t) - clamp(q(t))|^2 along the axis q(t) = t d - n is convex. Coordinate i
+is between its faces while t is in [in_i, out_i], and half the derivative of f is the sum of d_i^2 (t - clamp(t, in_i,
+out_i)): f is least where each coordinate pulls t into its own span with the weight d_i^2. Let t be where only two pull,
+the span that ends first and the one that begins last. If these two overlap then so do all three, and any t between the
+two is within all. If not, then t lies before the one and after the other, and for the third coordinate the minimum is
+on the same side as t: either t is in its span, or it pulls t towards its nearer end, but no farther than there. So the
+weighted mean of t clamped to each span is the minimum on the whole line; for the axis it is clamped to [0, 1]. No
+branch, no search; two divisions.
+
+A coordinate that the axis does not move along has no span. Its weight is a tiny number instead, and its span one place;
+this moves no point of the axis by as much as rounding does. Instead of t, its product with the three weights is
+handled, which saves three divisions. Lengths are in parts of a metre such that products of four weights keep within
+single precision for steps from a micrometre to a kilometre.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import inlined, kernel
+
+LANES = 16  # float32 lanes of the widest vector register
+TILE = 7 * LANES  # numbers of a tile
+BOX = 15  # numbers of a box: centre, the three axes, half sizes
+PER_METRE = 32.0  # a power of two: changing units does not round
+
+_LANES, _TILE, _BOX = np.uint64(LANES), np.uint64(TILE), np.uint64(BOX)
+_METRES: Any = np.float32(1.0 / PER_METRE)
+_ZERO: Any = np.float32(0.0)  # single precision on purpose: a bare 0.0 would widen the whole loop
+_ONE: Any = np.float32(1.0)
+_TINY: Any = np.float32(1e-9)
+
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+Span = tuple[float, float]
+Vector = tuple[float, float, float]
+Matrix = tuple[float, float, float, float, float, float, float, float, float]
+
+
+@inlined
+def _beyond(x: Any, h: Any) -> Any:
+    """How far a coordinate lies beyond the faces at -h and h; 0 between them."""
+    return x - max(min(x, h), -h)
+
+
+@inlined
+def _span(n: Any, d: Any, h: Any, factor: Any) -> Span:
+    """The least and the greatest t, times d * factor, at which t d - n is between -h and h."""
+    along = d * factor
+    middle, reach = n * along, h * abs(along)
+    return middle - reach, middle + reach
+
+
+@inlined
+def _squared_distance(n: Vector, d: Vector, h: Vector) -> Any:
+    """Squared distance of the axis t d - n, t in [0, 1], from the box |x| <= h in its own axes."""
+    u, v, w = d[0] * d[0] + _TINY, d[1] * d[1] + _TINY, d[2] * d[2] + _TINY
+    uv = u * v
+    in_x, out_x = _span(n[0], d[0], h[0], v * w)
+    in_y, out_y = _span(n[1], d[1], h[1], u * w)
+    in_z, out_z = _span(n[2], d[2], h[2], uv)
+    first_out, last_in = min(out_x, out_y), max(in_x, in_y)
+    out_weight, in_weight = (u if out_x < out_y else v), (u if in_x > in_y else v)
+    out_weight, in_weight = (out_weight if first_out < out_z else w), (in_weight if last_in > in_z else w)
+    first_out, last_in = min(first_out, out_z), max(last_in, in_z)
+    t = (out_weight * first_out + in_weight * last_in) / (out_weight + in_weight)
+    pulls = u * max(min(t, out_x), in_x) + v * max(min(t, out_y), in_y) + w * max(min(t, out_z), in_z)
+    t = max(min(pulls / ((u + v + w) * (uv * w)), _ONE), _ZERO)
+    x, y, z = _beyond(t * d[0] - n[0], h[0]), _beyond(t * d[1] - n[1], h[1]), _beyond(t * d[2] - n[2], h[2])
+    return x * x + y * y + z * z
+
+
+@inlined
+def _turned(m: Matrix, x: float, y: float, z: float) -> Vector:
+    """The vector (x, y, z) in the axes of a box."""
+    return m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z, m[6] * x + m[7] * y + m[8] * z
+
+
+@kernel
+def lower_squares(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
+    """Lower the squared distances of tiles to those from boxes, for the first `count` of `pairs` (P, 2), tile and box.
+
+    `tiles` (T * TILE,), `rows` (B * BOX,) as `box_rows` makes them, `squares` (T * LANES,) in units of their own.
+    """
+    for p in range(count):
+        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * BOX
+        cx, cy, cz = rows[box], rows[box + 1], rows[box + 2]
+        matrix = (
+            rows[box + 3], rows[box + 4], rows[box + 5],
+            rows[box + 6], rows[box + 7], rows[box + 8],
+            rows[box + 9], rows[box + 10], rows[box + 11],
+        )  # fmt: skip
+        half = (rows[box + 12], rows[box + 13], rows[box + 14])
+        for i in range(_LANES):
+            at = tile + i
+            ax, ay, az = tiles[at], tiles[at + _LANES], tiles[at + np.uint64(2) * _LANES]
+            bx, by, bz = (
+                tiles[at + np.uint64(3) * _LANES],
+                tiles[at + np.uint64(4) * _LANES],
+                tiles[at + np.uint64(5) * _LANES],
+            )
+            start, step = _turned(matrix, cx - ax, cy - ay, cz - az), _turned(matrix, bx - ax, by - ay, bz - az)
+            squares[least + i] = min(squares[least + i], _squared_distance(start, step, half))
+
+
+@kernel
+def lower_to_squares(squares: Floats32, radius: float, out: Floats32) -> None:
+    """out[i] = min(out[i], clearance in metres), of capsules of one radius whose axes have these squared distances."""
+    for i in range(np.uint64(out.shape[0])):
+        out[i] = min(out[i], math.sqrt(squares[i]) * _METRES - radius)
