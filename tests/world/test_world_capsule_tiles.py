@@ -66,7 +66,7 @@ def test_only_the_listed_pairs_count() -> None:
     assert np.all(np.isposinf(squares[[1, 3]]))
     metres = np.full((4, LANES), np.inf, np.float32)
     for tile in range(4):
-        lower_to_squares(squares[tile], np.float32(0.0), metres[tile])
+        lower_to_squares(squares[tile], 0.0, metres[tile])
     every = pairwise_clearance(tiles[:, :6], np.zeros(4), table)
     np.testing.assert_array_equal(metres[0], every[0, 0])
     np.testing.assert_array_equal(metres[2], every[2, 1:].min(axis=0))
