@@ -76,15 +76,17 @@ def box_rows(table: Floats32 | NDArray[np.float64], count: int) -> Floats32:
 @kernel
 def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> None:
     """Copy `count` configurations of one capsule (6, N); what is left of the last tile repeats the last of them."""
-    for t in range((count + LANES - 1) // LANES):
-        first, width = start + t * LANES, min(count - t * LANES, LANES)
-        for row in range(6):
-            at = t * TILE + row * LANES
-            source, target = segment[row, first : first + width], tiles[at : at + LANES]
-            for i in range(np.uint64(width)):
-                target[i] = source[i]
-            for i in range(width, LANES):
-                target[i] = source[width - 1]
+    whole, width = count // LANES, np.uint64(min(count, LANES))  # a known width would be unrolled, number by number
+    rest, last = whole * LANES, start + count - 1
+    for k in range(6):
+        row = np.uint64(k)
+        for t in range(whole):
+            source, target = np.uint64(start + t * LANES), np.uint64(t * TILE + k * LANES)
+            for i in range(width):
+                tiles[target + i] = segment[row, source + i]
+        if count > rest:
+            for i in range(LANES):
+                tiles[whole * TILE + k * LANES + i] = segment[k, min(start + rest + i, last)]
 
 
 @kernel
@@ -111,11 +113,12 @@ def _infinitely_far(values: Floats32) -> None:
 def clearance_into(segments: Floats32, radii: Floats32, table: Floats32, out: Floats32) -> None:
     """`clearance` for other kernels: C-contiguous float32 arrays, the result written to `out` (N,)."""
     rows, pairs = box_rows(table, table.shape[0]), np.empty((_PAIRS, 2), np.int64)
-    tiles, lanes = np.empty(_TILES * TILE, np.float32), np.empty((2, _TILES * LANES), np.float32)
+    scratch = np.empty(_TILES * (TILE + 2 * LANES), np.float32)
+    tiles, lanes = scratch[: _TILES * TILE], scratch[_TILES * TILE :]
     for start in range(0, out.shape[0], _TILES * LANES):
         count = min(_TILES * LANES, out.shape[0] - start)
         used = (count + LANES - 1) // LANES
-        squares, least = lanes[0, : used * LANES], lanes[1, : used * LANES]
+        squares, least = lanes[: used * LANES], lanes[used * LANES : 2 * used * LANES]
         _infinitely_far(least)
         for c in range(segments.shape[0]):
             _fill_tiles(segments[c], start, count, tiles)
