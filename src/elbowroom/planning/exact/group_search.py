@@ -13,7 +13,7 @@ from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
 from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, set_keys, settle_backward, traced
-from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask
+from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
 from elbowroom.planning.exact.prices import carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way
 from elbowroom.planning.exact.slots import begin_round
@@ -46,15 +46,15 @@ def _carrier(roots: RootWays, waists: LimbWays, task: GroupTask, k: int, is_wais
 @inlined
 def _proven(
     group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, keys: Floats, tangents: Floats,
-    skins: Floats, slots: Longs, touches: Bools,
-) -> int:  # fmt: skip
-    """Prove the curve through `keys` (n+1, d) free: the capsules checked; `touches` (n,) where it is not.
+    skins: Floats, slots: Longs, touches: Bools, gentle: bool,
+) -> tuple[int, bool]:  # fmt: skip
+    """Prove the curve through `keys` (n+1, d) free: `touches` (n,) where it is not; the capsules checked.
 
-    An interval fails too if its curve asks for too much. Not the first: it begins with a velocity that is given, and
-    may have to brake hard. The ways through the intervals are put into `slots` (n,).
+    An interval fails too if its curve asks for too much, the first only if it has to be `gentle`: it begins with a
+    velocity that is given. Also whether it asks for too much. The ways through the intervals are put into `slots` (n,).
     """
     ways, postures, levers, most, checks = group.ways, group.postures, group.levers, group.acceleration, 0
-    is_waist = postures.limb.is_waist
+    is_waist, harsh = postures.limb.is_waist, False
     begin_round(ways.slots)
     for k in range(slots.shape[0]):
         carrier = _carrier(roots, waists, task, k, is_waist)
@@ -63,8 +63,9 @@ def _proven(
         slots[k] = at
         checks += count
         asked = peak_acceleration(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval)
-        touches[k] = ways.least[at] < skins[k] or ways.proven[at] < ENOUGH or (k > 0 and asked > most)
-    return checks
+        harsh = harsh or (k == 0 and asked > most)
+        touches[k] = ways.least[at] < skins[k] or ways.proven[at] < ENOUGH or ((k > 0 or gentle) and asked > most)
+    return checks, harsh
 
 
 @exact_kernel
@@ -99,7 +100,10 @@ def _closed(lattice: Lattice, masks: Masks, keys: Floats, way: Longs, touches: B
 def search_group(
     group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, work: Work
 ) -> GroupWay:
-    """The cheapest way whose motion is free as shown, at every moment."""
+    """The cheapest way whose motion is free as shown, at every moment.
+
+    It begins gently if there is such a way; who would run into something else may brake as hard as it takes.
+    """
     postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
@@ -119,20 +123,25 @@ def search_group(
     touches, stiff = np.zeros(horizon, np.bool_), np.zeros(horizon + 1, np.bool_)
     for k in range(horizon):
         skins[k] = min(task.skins[k], most)
-    first, deepest, nodes = int(_BEGIN), 0, 0
+    first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
     keys, tangents = np.empty_like(goals), np.empty_like(goals)
     for rounds in range(weights.rounds):
         reached, count = cheapest_way(lattice, work, first)
         nodes += count
         way = traced(lattice, work, reached)
         set_keys(lattice, way, keys)
+        if reached < horizon and gentle and harsh:
+            gentle, first = False, int(_BEGIN)
+            reopen(masks, lattice.masks[0])
+            continue
         if reached < horizon:
             until = reached + 1
             return GroupWay(reached, keys[:until], tangents[:until], slots, price, most, checks, nodes, rounds)
         stiff[:] = False
         for attempt in range(2):
             tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
-            checks += _proven(group, roots, waists, chain, task, keys, tangents, skins, slots, touches)
+            count, asks_much = _proven(group, roots, waists, chain, task, keys, tangents, skins, slots, touches, gentle)
+            checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):
                 break
         first, farthest = _closed(lattice, masks, named, way, touches)

@@ -64,6 +64,13 @@ def new_mask(masks: Masks, key: Floats) -> int:
 
 
 @exact_kernel
+def reopen(masks: Masks, at: int) -> None:
+    """Open all steps of a mask, if it is one."""
+    if at >= 0:
+        masks.closed[at], masks.seen[at], masks.slack[at] = 0.0, False, 0.0
+
+
+@exact_kernel
 def mask_keys(ids: Longs, goals: Floats) -> Floats:
     """The keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
     horizon, size = goals.shape[0] - 1, goals.shape[1]

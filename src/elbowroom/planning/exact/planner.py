@@ -19,7 +19,7 @@ from elbowroom.planning.exact.prolonging import Walk, prolonged, rest_of, settle
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, first_part, key_at, later, stands
+from elbowroom.planning.exact.whole import Stand, Whole, first_part, kept_of, later, stands
 from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -220,12 +220,7 @@ class ExactPlanner:
 
     def _kept(self, path: RootPath) -> Kept | None:
         """What the last plan had at the key times of `path`, if it has any of them."""
-        first = None if self._last is None else key_at(self._last, path)
-        if self._last is None or first is None or self._last.asked is None:
-            return None
-        known = self._last.local.configurations
-        keys = known[np.minimum(first + np.arange(len(path.states)), len(known) - 1)]
-        return Kept(keys, len(known) - first, self._last.asked.since(first, path.horizon))
+        return None if self._last is None else kept_of(self._last, path)
 
 
 def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:

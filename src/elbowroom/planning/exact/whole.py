@@ -1,15 +1,19 @@
 """A motion over the whole look-ahead: what is handed over of it, and when it answers a later query too."""
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from elbowroom.planning.exact.kept import Asked
+from elbowroom.planning.exact.kept import Asked, Kept
+from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import GroupEvidence, LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
+
+_SAME = 1e-6  # of a key interval
 
 
 class Whole(NamedTuple):
@@ -20,13 +24,24 @@ class Whole(NamedTuple):
     asked: Asked | None = None  # None: not a way that was found
 
 
-def key_at(whole: Whole, path: RootPath) -> int | None:
-    """Which of a motion's key times a path begins at; None if it is none of them."""
-    known = whole.root.path
-    at = (path.start_time - known.start_time) / path.interval
-    if path.interval != known.interval or abs(at - round(at)) > 1e-6:
+def kept_of(whole: Whole, path: RootPath) -> Kept | None:
+    """What a motion has at the key times of a path, if it has any; between its own key times it is on its curve."""
+    known, keys, velocities = whole.root.path, whole.local.configurations, whole.local.velocities
+    at = (path.start_time - known.start_time) / known.interval
+    first, last = math.floor(at + _SAME), len(keys) - 1
+    if path.interval != known.interval or velocities is None or whole.asked is None or not 0 <= first <= last:
         return None
-    return round(at) if 0 <= round(at) < len(whole.local.configurations) else None
+    asked, share = whole.asked.since(first, path.horizon), at - first
+    rows = first + np.arange(len(path.states))
+    if share < _SAME:
+        return Kept(keys[np.minimum(rows, last)], len(keys) - first, asked)
+    span, later = np.array([0.0, known.interval]), whole.asked.since(first + 1, path.horizon)
+    between = [
+        hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
+        for k in rows
+    ]
+    both = Asked(np.minimum(asked.margins, later.margins), np.minimum(asked.skins, later.skins))
+    return Kept(np.array(between), last - first, both)
 
 
 def first_part(whole: Whole, horizon: int) -> Motion:
