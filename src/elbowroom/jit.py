@@ -22,6 +22,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _FASTMATH = {"nsz", "contract", "arcp", "afn", "reassoc"}
 # No kernel is called from C: without the wrapper for that, all compile in a twelfth less time.
 _KEPT: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+_LEAF: dict[str, Any] = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def _use_whole_vectors() -> None:
@@ -58,5 +59,14 @@ def _kept(dispatcher: Any) -> Any:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a helper that is inlined into kernels of its own file."""
+    """Compile a helper that is inlined into kernels of its own file, by Numba: for what calls kernels, in one place."""
     return cast(Function, numba.njit(fastmath=_FASTMATH, error_model="numpy", inline="always")(function))
+
+
+def leaf(function: Function) -> Function:
+    """Compile a helper that LLVM inlines into kernels of its own file: for what is small and used in many places.
+
+    It calls no kernel, and calculates as the first kernel that calls it does: kernels that share one are of one kind.
+    It cannot be called from Python.
+    """
+    return cast(Function, numba.njit(**_LEAF)(function))

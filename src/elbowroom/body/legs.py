@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import inlined, kernel
+from elbowroom.jit import kernel, leaf
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def leg_rest(skeleton: Skeleton) -> Floats:
     return np.array(rows)
 
 
-@inlined
+@leaf
 def _soft_reach(distance: float, length: float) -> float:
     """`distance`, approaching `length` exponentially: the knee does not snap when the leg straightens."""
     soft = _SOFT * length
@@ -32,7 +32,7 @@ def _soft_reach(distance: float, length: float) -> float:
     return distance if beyond <= 0.0 else length - soft * np.exp(-beyond / soft)
 
 
-@inlined
+@leaf
 def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, out: Floats) -> None:
     """Columns: the bone's direction, the knee axis made perpendicular to it, and their cross product."""
     length = np.sqrt(x * x + y * y + z * z)
@@ -46,7 +46,7 @@ def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, o
     out[0, 2], out[1, 2], out[2, 2] = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
 
 
-@inlined
+@leaf
 def _turn_between(rest: Floats, posed: Floats, out: Floats) -> None:
     """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn."""
     m = np.empty((3, 3))
@@ -60,7 +60,7 @@ def _turn_between(rest: Floats, posed: Floats, out: Floats) -> None:
     out[3] = w
 
 
-@inlined
+@leaf
 def _relative(a: Floats, b: Floats, out: Floats) -> None:
     """The quaternion `a^-1 b`."""
     out[0] = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1]
@@ -107,7 +107,8 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
             _turn_between(at_rest, posed, shin)
             cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
             foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
-            out[n, side, 0] = thigh
+            for i in range(4):
+                out[n, side, 0, i] = thigh[i]
             _relative(thigh, shin, out[n, side, 1])
             _relative(shin, foot, out[n, side, 2])
             out[n, side, 3, 0], out[n, side, 3, 1] = np.sin(0.5 * f[5]), 0.0

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait import hips_sinks
-from elbowroom.jit import inlined, kernel
+from elbowroom.jit import kernel, leaf
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
 
-@inlined
+@leaf
 def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     """out[k] = a[i] b[j]."""
     ax, ay, az, aw = a[i, 0], a[i, 1], a[i, 2], a[i, 3]
@@ -25,7 +25,7 @@ def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     out[k, 3] = aw * bw - ax * bx - ay * by - az * bz
 
 
-@inlined
+@leaf
 def _offset(
     q: Floats, j: int, x: float, y: float, z: float, base: Floats, i: int, out: Floats, k: int, at: int
 ) -> None:
@@ -37,7 +37,7 @@ def _offset(
     out[k, at + 2] = base[i, 2] + z + qw * tz + qx * ty - qy * tx
 
 
-@inlined
+@leaf
 def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) -> None:
     """out[k] = exp(scale (x, y, z))."""
     half = 0.5 * scale * np.sqrt(x * x + y * y + z * z)
@@ -45,7 +45,7 @@ def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) 
     out[k, 0], out[k, 1], out[k, 2], out[k, 3] = factor * x, factor * y, factor * z, np.cos(half)
 
 
-@inlined
+@leaf
 def _set_trunk(
     spine: Indices, spine_weights: Floats, gaze: Indices, gaze_weights: Floats, bend: float, twist: float, local: Floats
 ) -> None:
@@ -61,7 +61,7 @@ def _set_trunk(
         _set_power(x * factor, y * factor, z * factor, gaze_weights[i], local, gaze[i])
 
 
-@inlined
+@leaf
 def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
     """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
     upper, lower = joints[0], joints[1]
@@ -75,7 +75,7 @@ def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch
     local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
 
 
-@inlined
+@leaf
 def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
     """Thigh, shin, foot and toes of both legs; joints (2, 4), -1 where the avatar has no such bone."""
     for side in range(2):
@@ -86,7 +86,7 @@ def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
                     local[joint, i] = rotations[side, part, i]
 
 
-@inlined
+@leaf
 def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rotations: Floats, places: Floats) -> None:
     """Frames of the joints in `order`, parents first; the parent of the first is in place already."""
     for i in range(len(order)):
@@ -98,7 +98,7 @@ def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rot
         _product(rotations, parent, local, joint, rotations, joint)
 
 
-@inlined
+@leaf
 def _segments(
     joints: Indices, ends: Floats, rotations: Floats, places: Floats, row: Floats, n: int, out: Segments
 ) -> None:
@@ -111,7 +111,7 @@ def _segments(
             out[c, i, n] = row[0, i]
 
 
-@inlined
+@leaf
 def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z: float, heading: float) -> None:
     """Put a base frame at a point, turned about +Y."""
     rotations[joint, 0], rotations[joint, 1] = 0.0, np.sin(0.5 * heading)
@@ -119,7 +119,7 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
     places[joint, 0], places[joint, 1], places[joint, 2] = x, y, z
 
 
-@inlined
+@leaf
 def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, places: Floats, joint: int) -> None:
     """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, `sink` (2,) below and behind."""
     c, s = np.cos(root[2]), np.sin(root[2])
@@ -128,7 +128,7 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
     _place(joint, rotations, places, x, hips[1] - sink[0], z, root[2])
 
 
-@inlined
+@leaf
 def _set_body(
     spine: Indices,
     spine_weights: Floats,
@@ -253,8 +253,10 @@ def pose_trunk(
         _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], local)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
-        chest_places[n] = places[chest]
-        chest_rotations[n] = rotations[chest]
+        for i in range(3):
+            chest_places[n, i] = places[chest, i]
+        for i in range(4):
+            chest_rotations[n, i] = rotations[chest, i]
     return out, chest_places, chest_rotations
 
 

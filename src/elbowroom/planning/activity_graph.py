@@ -209,7 +209,8 @@ def insert(graph: GraphArrays, configuration: Floats) -> int:
     if known >= 0 or graph.size[0] == graph.capacity:
         return known
     new = graph.size[0]
-    graph.vertices[new] = configuration
+    for k in range(configuration.shape[0]):
+        graph.vertices[new, k] = configuration[k]
     graph.degrees[new] = 0
     reach = graph.radius * graph.radius
     for i in range(new):
@@ -227,7 +228,8 @@ def insert(graph: GraphArrays, configuration: Floats) -> int:
 def _admit(graph: GraphArrays, configuration: Floats) -> None:
     """Add a visitor with edges to every vertex within r."""
     new = graph.capacity + graph.visitors[0]
-    graph.vertices[new] = configuration
+    for k in range(configuration.shape[0]):
+        graph.vertices[new, k] = configuration[k]
     graph.degrees[new] = 0
     reach = graph.radius * graph.radius
     for i in range(graph.size[0]):

@@ -23,7 +23,8 @@ def monotone_tangents(times: Floats, values: Floats, first: Floats) -> Floats:
     """
     count, size = values.shape
     tangents = np.zeros((count, size))
-    tangents[0] = first
+    for i in range(size):
+        tangents[0, i] = first[i]
     for k in range(1, count - 1):
         before, after = times[k] - times[k - 1], times[k + 1] - times[k]
         weight_before, weight_after = 2.0 * after + before, after + 2.0 * before
@@ -45,7 +46,9 @@ def hermite(times: Floats, values: Floats, tangents: Floats, time: float) -> tup
         k += 1
     width = times[k + 1] - times[k]
     u = max((time - times[k]) / width, 0.0)
-    a, b, m, n = values[k], values[k + 1], width * tangents[k], width * tangents[k + 1]
-    value = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
-    velocity = (m + u * (2.0 * (3.0 * (b - a) - 2.0 * m - n) + u * 3.0 * (2.0 * (a - b) + m + n))) / width
+    value, velocity = np.empty(values.shape[1]), np.empty(values.shape[1])
+    for i in range(values.shape[1]):
+        a, b, m, n = values[k, i], values[k + 1, i], width * tangents[k, i], width * tangents[k + 1, i]
+        value[i] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
+        velocity[i] = (m + u * (2.0 * (3.0 * (b - a) - 2.0 * m - n) + u * 3.0 * (2.0 * (a - b) + m + n))) / width
     return value, velocity

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel, inlined
+from elbowroom.jit import exact_kernel, leaf
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -75,7 +75,7 @@ def stride_hull(model: BodyModel) -> StrideHull:
     return StrideHull(np.ascontiguousarray(reach) + _SPARE, np.array([axis[1] for axis in axes]))
 
 
-@inlined
+@leaf
 def _meets(x: float, z: float, heading: float, low: Floats, high: Floats, ground: Ground) -> bool:
     """Whether the rectangle from `low` to `high` (2,), to the left and ahead of a place, may meet a box."""
     sine, cosine = np.sin(heading), np.cos(heading)
@@ -104,7 +104,7 @@ def _meets(x: float, z: float, heading: float, low: Floats, high: Floats, ground
     return found
 
 
-@inlined
+@leaf
 def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, low: Floats, high: Floats) -> bool:
     """The rectangle in the frame of state `a` that holds the strides from there to place and heading of `b`.
 
@@ -135,7 +135,7 @@ def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, l
     return True
 
 
-@inlined
+@leaf
 def _change(a: Floats, b: Floats) -> float:
     """The change of the ground velocity between two states, m/s."""
     sine_a, cosine_a, sine_b, cosine_b = np.sin(a[2]), np.cos(a[2]), np.sin(b[2]), np.cos(b[2])

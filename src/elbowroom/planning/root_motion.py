@@ -201,13 +201,16 @@ def stopping_states(
     for k in range(1, states.shape[0]):
         if not wanted[k - 1]:
             continue
-        tail[0] = states[k]
+        for c in range(ROOT_STATE):
+            tail[0, c] = states[k, c]
         brake(tail, 0, interval, bounds)
         for i in range(steps):
             if abs(tail[i, 3]) + abs(tail[i, 4]) + abs(tail[i, 5]) < _REST:
                 break
             for j in range(count):
-                out[used] = interpolate_root(tail[i], tail[i + 1], (j + 1.0) / count, interval)
+                shown = interpolate_root(tail[i], tail[i + 1], (j + 1.0) / count, interval)
+                for c in range(ROOT_STATE):
+                    out[used, c] = shown[c]
                 owner[used] = k
                 used += 1
     return out[:used], owner[:used]
@@ -226,7 +229,9 @@ def dense_states(states: Floats, interval: float, spacing: float, wanted: Bools)
         if not wanted[k]:
             continue
         for j in range(count):
-            out[used] = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
+            shown = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
+            for c in range(ROOT_STATE):
+                out[used, c] = shown[c]
             owner[used] = k + 1
             used += 1
     return out[:used], owner[:used]

@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
+_FIRST = 0  # place of the grid
 _TALL = 2.0  # metres: height of the axis round which a body is looked for
 
 
@@ -97,7 +98,7 @@ def room_of(
         ahead, left = (n // columns) * step, (n % columns - columns // 2) * aside
         x[n], z[n] = ahead * sine + left * cosine, ahead * cosine - left * sine
     axis, axis_of_row = np.empty((1, 6, total), np.float32), np.empty((1, 6, columns), np.float32)
-    _stand(axis, x, z, 0)
+    _stand(axis, x, z, int(_FIRST))
     out, away = np.full((3, turns, total), np.float32(comfort), np.float32), np.empty(total, np.float32)
     for b in range(table.shape[0]):
         box = table[b : b + 1]

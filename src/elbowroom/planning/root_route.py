@@ -209,13 +209,13 @@ def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     """Only the corners that are needed: from each, the farthest cell in sight is the next."""
     here = float(interpolate_grid(grid, search.start_a, search.start_l))
     corners = np.empty_like(cells)
-    corners[0] = cells[0]
+    corners[0, 0], corners[0, 1] = cells[0, 0], cells[0, 1]
     count, at, last = 1, 0, cells.shape[0] - 1
     while at < last:
         reached = last
         while reached > at + 1 and not _in_sight(grid, search, here, cells[at], cells[reached]):
             reached -= 1
-        corners[count] = cells[reached]
+        corners[count, 0], corners[count, 1] = cells[reached, 0], cells[reached, 1]
         count += 1
         at = reached
     return corners[:count].copy()

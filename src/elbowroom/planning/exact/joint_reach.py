@@ -153,8 +153,8 @@ def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
 def reach(problem: Problem) -> Reach:
     """The deepest slice to which a way leads, every triple of every slice looked at."""
     size = problem.right.shape[2]
-    depth, last = 0, problem.waist_steps.shape[0]
-    known = _free(problem, int(_START))
+    depth, last = int(_START), problem.waist_steps.shape[0]
+    known = _free(problem, depth)
     if not _keep(known, known):
         return Reach(-1, _unpacked(known, size))
     while depth < last:

@@ -14,6 +14,8 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
+_START = 0  # the first slice
+
 
 @kernel
 def _compact(steps: Floats32, sources: Indices, targets: Indices) -> Floats32:
@@ -130,7 +132,7 @@ def sweep(problem: Problem, waist: Bools, left: Bools, right: Bools) -> tuple[fl
     rows = [(np.flatnonzero(waist[t]), np.flatnonzero(left[t]), np.flatnonzero(right[t])) for t in range(depths)]
     costs = [np.zeros((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
     path = np.zeros((depths, 3), np.int64)
-    if not _add_prices(problem, 0, rows[0][0], rows[0][1], rows[0][2], costs[0]):
+    if not _add_prices(problem, int(_START), rows[0][0], rows[0][1], rows[0][2], costs[0]):
         return np.inf, path[:0]
     for t in range(depths - 1):
         here, there = rows[t], rows[t + 1]

@@ -64,7 +64,8 @@ def admit(slots: Slots, key: Floats) -> int:
     while slots.ids[s] >= 0 and slots.rounds[s] == slots.clock[_ROUND]:
         s = (s + 1) % count
     slots.clock[_HAND] = (s + 1) % count
-    slots.keys[s, : key.shape[0]] = key
+    for k in range(key.shape[0]):
+        slots.keys[s, k] = key[k]
     slots.ids[s] = slots.clock[_NEXT]
     slots.clock[_NEXT] += 1
     slots.rounds[s] = slots.clock[_ROUND]
