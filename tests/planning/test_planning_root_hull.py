@@ -58,9 +58,11 @@ def test_a_stride_stays_in_its_rectangle() -> None:
     rng = np.random.default_rng(1)
     states = np.zeros((400, 7))
     states[:, 3:] = rng.uniform([-0.7, -0.7, -2.5, 0.0], [2.3, 0.7, 2.5, 1.0], (400, 4))
+    states[200:, 4:6] *= 0.005 / 0.7, 0.01 / 2.5  # nearly straight: as straight
     body = LowerBody(AVATAR, Scene.load("empty").boxes)
     ends = leg_capsules(body.model, states).reshape(len(body.radii), 2, 3, 400)
     cell = np.ceil(np.abs(states[:, 3:6]) / hull.cell).astype(int)
+    cell[200:, 1:] = 0
     side, behind, ahead = hull.extents[tuple(cell.T)].T
     radii = body.radii[:, None, None]
     assert np.all(np.abs(ends[:, :, 0]) + radii <= side)

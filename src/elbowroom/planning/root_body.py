@@ -18,6 +18,7 @@ Floats32 = NDArray[np.float32]
 _WALK, _RUN = 1.1, 2.2  # m/s
 _SPARE = 0.2  # metres: more than any clearance that is asked for
 _SPARE_HEIGHT = 0.05  # metres above the pelvis as it walks
+_HALF_DIAGONAL = 0.71  # of a square metre
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
@@ -42,7 +43,7 @@ class Neighbours(NamedTuple):
 
 
 class LowerBody:
-    """Legs and pelvis, and the boxes low enough to matter to them; frozen once made."""
+    """Legs and pelvis, and the boxes low enough to matter to them."""
 
     def __init__(self, humanoid: Humanoid, boxes: Boxes) -> None:
         self.model: BodyModel = body_model(humanoid)
@@ -53,6 +54,14 @@ class LowerBody:
         self.height = height
         self.hull = stride_hull(self.model)
         self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground_below(corners[low], height))
+        self._near: tuple[tuple[int, int, float], Neighbours] | None = None
+
+    def near(self, x: float, z: float, reach: float) -> Neighbours:
+        """The boxes within `reach` metres of a place, and perhaps some a little farther: those of a square metre."""
+        asked = (round(x), round(z), reach)
+        if self._near is None or self._near[0] != asked:
+            self._near = asked, self.boxes.around(np.array([asked[:2]], np.float64), reach + _HALF_DIAGONAL)
+        return self._near[1]
 
     def clearance(self, boxes: Neighbours, states: Floats) -> Floats32:
         """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7); infinite where far."""

@@ -16,23 +16,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.body.root import RootState
 from elbowroom.planning.root_cells import Prices, cheapest, pulled_taut
 from elbowroom.planning.root_line import TravelLine
-from elbowroom.planning.root_profile import Profile, turned_speed
-from elbowroom.planning.root_room import Room, room_of
-from elbowroom.world.boxes import BOX_ROW
+from elbowroom.planning.root_profile import Profile
+from elbowroom.planning.root_room import Room
+from elbowroom.planning.root_rooms import Grid, LineRooms
+from elbowroom.planning.root_turned import TurnedBody
 from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 _GAIN = 2.0  # m/s^2, of speeding up
-_PHASES = 6  # moments of the stride in which the legs are looked at
 
 
 @dataclass(frozen=True)
@@ -87,19 +84,12 @@ class Evasion(NamedTuple):
 
 
 class EvasionFinder:
-    """Finds evasions for one humanoid among some boxes; frozen once made."""
+    """Finds evasions for one humanoid among some boxes. What it keeps is what it would find again."""
 
     def __init__(self, humanoid: Humanoid, table: Floats, settings: EvasionSettings | None = None) -> None:
-        self.settings = settings or EvasionSettings()
-        self._table = table
-        self._model, capsules = body_model(humanoid), humanoid.capsules
-        legs = capsules.of(DofGroup.ROOT)
-        arms = np.concatenate([capsules.of(DofGroup.LEFT_ARM), capsules.of(DofGroup.RIGHT_ARM)])
-        self._members = (legs, capsules.of(DofGroup.WAIST), arms)
-        counts = [_PHASES * len(legs), len(self._members[1]), len(arms)]
-        self._groups = np.concatenate([[0], np.cumsum(counts)])
-        radii = capsules.radii.astype(np.float32)
-        self._radii = np.concatenate([np.tile(radii[legs], _PHASES), radii[self._members[1]], radii[arms]])
+        self.settings = s = settings or EvasionSettings()
+        grid = Grid(s.step, s.aside, 2 * round(s.widest / s.aside) + 1, s.comfort)
+        self._rooms = LineRooms(TurnedBody(humanoid), table, s.angles, grid)
 
     def ahead_of(
         self,
@@ -112,47 +102,22 @@ class EvasionFinder:
     ) -> "EvasionGrid":
         """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
 
-        What moves is where it will be about when a row is reached, by who speeds up at once.
+        The first row is that next to the start, of rows at whole steps from the line's first point: so they are found
+        again from plan to plan. Where something moves it is at the start itself. What moves is where it will be about
+        when a row is reached, by who speeds up at once.
         """
-        s = self.settings
-        headings = line.facing + s.angles
-        bodies = np.stack([self._body(line.heading - heading, heading, speeds) for heading in headings])
-        first = line.coordinates(start.x, start.z)[0]
-        origin = line.point(first)
-        table = self._table.copy()
-        table[:, 0] -= origin[0]
-        table[:, 2] -= origin[1]
-        reach = sight + s.widest + float(np.abs(bodies).max()) + np.linalg.norm(table[:, 12:], axis=1)
-        near = np.hypot(table[:, 0], table[:, 2]) < reach
-        place = np.array([math.sin(line.heading), math.cos(line.heading), s.step, s.aside, s.comfort])
-        shape = (math.ceil(sight / s.step) + 1, 2 * round(s.widest / s.aside) + 1)
-        passing = self._passing(moving, time, s.step * np.arange(float(shape[0])), start, speeds[0])
-        passing[:, :, 0] -= origin[0]
-        passing[:, :, 2] -= origin[1]
-        rows = np.ascontiguousarray(table[near], np.float32)
-        room = room_of(bodies, self._groups, self._radii, rows, passing.astype(np.float32), place, shape)
-        return EvasionGrid(s, line, start, speeds, first, room, len(moving) > 0)
+        s, ahead = self.settings, line.coordinates(start.x, start.z)[0]
+        first, rows = ahead / s.step if len(moving) else float(round(ahead / s.step)), math.ceil(sight / s.step) + 1
+        passing = self._passing(moving, time, s.step * np.arange(float(rows)), start, speeds[0])
+        room, slowness = self._rooms.ahead(line, speeds, first, rows, passing)
+        return EvasionGrid(s, line, start, slowness, first * s.step, room, len(moving) > 0)
 
     def _passing(self, moving: MovingBoxes, time: float, ahead: Floats, start: RootState, speed: float) -> Floats:
         """Rows (n, M, 15) of what moves about when places `ahead` (n,) metres are reached, a little larger."""
-        s, out = self.settings, np.zeros((len(ahead), len(moving), BOX_ROW))
-        if not len(moving):
-            return out
-        for i, then in enumerate(time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)):
-            out[i] = moving.swept([max(then - s.punctual, time), then + s.punctual])[0]
-        out[..., [12, 14]] += s.polite
-        return out
-
-    def _body(self, way: float, heading: float, speeds: tuple[float, float]) -> Floats32:
-        """Capsules (C, 6) of a body at the origin that walks `way` from where it faces; every phase's legs."""
-        speed = turned_speed(*speeds, way)
-        states = np.zeros((_PHASES, ROOT_STATE))
-        states[:, 2], states[:, 3], states[:, 4] = heading, speed * math.cos(way), speed * math.sin(way)
-        states[:, 6] = np.arange(_PHASES) / _PHASES
-        segments = posture_capsules(self._model, np.zeros((_PHASES, DOF)), states)
-        legs, trunk, arms = self._members
-        posed = [segments[legs, :, phase] for phase in range(_PHASES)]
-        return np.concatenate([*posed, segments[trunk, :, 0], segments[arms, :, 0]])
+        s, then = self.settings, time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)
+        rows = moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual)
+        rows[..., [12, 14]] += s.polite
+        return rows
 
 
 def _arrival(ahead: Floats, now: float, speed: float) -> Floats:
@@ -170,7 +135,7 @@ class EvasionGrid(NamedTuple):
     settings: EvasionSettings
     line: TravelLine
     start: RootState
-    speeds: tuple[float, float]
+    slowness: Floats  # (T,) seconds for each metre, in each turn
     first: float  # metres: the first row's place on the line
     room: Room
     passing: bool  # whether something moves
@@ -186,9 +151,7 @@ class EvasionGrid(NamedTuple):
         Legs keep `care` metres more than the settings ask for.
         """
         s, rows = self.settings, self.room.clear.shape[1]
-        ways = s.angles + self.line.facing - self.line.heading
-        seconds = np.array([1.0 / turned_speed(*self.speeds, way) for way in ways])
-        standing = s.step * (seconds - seconds.min() + s.turned * s.angles**2)
+        standing = s.step * (self.slowness - self.slowness.min() + s.turned * s.angles**2)
         ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
         leftward = s.step * s.aside * s.leftward if self.passing else 0.0
         prices = Prices(

@@ -18,8 +18,9 @@ Bools = NDArray[np.bool_]
 
 _STEPS = (6, 2, 2)  # cells of the table of strides: forward, lateral, turn
 _GREATEST = (2.4, 0.8, 2.6)  # m/s, m/s, rad/s; what is faster is always looked at
+_STRAIGHT = (0.005, 0.01)  # m/s, rad/s: who goes aside or turns no faster has the stride of one who does not, nearly
 _PHASES = 16
-_SPARE = 0.01  # metres: strides between those that were measured
+_SPARE = 0.01  # metres: strides between those that were measured, and nearly straight ones
 _FLAT = 1e-12  # metres
 _MORE = 0.003  # metres
 
@@ -113,8 +114,8 @@ def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, l
     speed = max(np.sqrt(a[3] * a[3] + a[4] * a[4]), np.sqrt(b[3] * b[3] + b[4] * b[4]))
     mixed = abs(turned) * speed
     i = int(np.ceil((max(abs(a[3]), abs(b[3])) + mixed) / hull.cell[0] - 1e-9))
-    j = int(np.ceil((max(abs(a[4]), abs(b[4])) + mixed) / hull.cell[1] - 1e-9))
-    k = int(np.ceil(max(abs(a[5]), abs(b[5])) / hull.cell[2] - 1e-9))
+    j = int(np.ceil(max(max(abs(a[4]), abs(b[4])) + mixed - _STRAIGHT[0], 0.0) / hull.cell[1] - 1e-9))
+    k = int(np.ceil(max(max(abs(a[5]), abs(b[5])) - _STRAIGHT[1], 0.0) / hull.cell[2] - 1e-9))
     if i >= hull.extents.shape[0] or j >= hull.extents.shape[1] or k >= hull.extents.shape[2]:
         return False
     side, behind, ahead = hull.extents[i, j, k, 0], hull.extents[i, j, k, 1], hull.extents[i, j, k, 2]
@@ -167,6 +168,17 @@ def to_look_at(
         known = _swept(hull, b, rest, turning * b[5], skin + _MORE, low, high)
         stopping[k] = not known or _meets(b[0], b[1], b[2], low, high, ground)
     return moving, stopping
+
+
+@exact_kernel
+def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Ground) -> Bools:
+    """Which states (N, 7), each by itself, may come within `skin` of something, (N,)."""
+    near, low, high = np.zeros(states.shape[0], np.bool_), np.empty(2), np.empty(2)
+    for n in range(states.shape[0]):
+        row = states[n]
+        known = _swept(hull, row, row, 0.0, skin + _MORE, low, high)
+        near[n] = not known or _meets(row[0], row[1], row[2], low, high, ground)
+    return near
 
 
 @exact_kernel

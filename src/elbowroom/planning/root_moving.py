@@ -1,5 +1,6 @@
 """Legs and pelvis among boxes that move: each moment of a path is held against what the boxes sweep around it."""
 
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -25,12 +26,21 @@ class MovingAround:
     """What moves during one plan, in spans of a key interval."""
 
     def __init__(self, body: LowerBody, moving: MovingBoxes, begin: float, horizon: int, interval: float) -> None:
-        self._body, self._interval = body, interval
-        self._rows = moving.swept(begin + interval * np.arange(horizon + _AFTER + 1.0))
-        self._reach = np.linalg.norm(self._rows[..., 12:], axis=-1) + body.reach
+        self._body, self._moving, self._begin, self._horizon, self._interval = body, moving, begin, horizon, interval
 
     def __bool__(self) -> bool:
-        return bool(self._rows.shape[1] > 0)
+        return len(self._moving) > 0
+
+    @cached_property
+    def _rows(self) -> Floats:
+        """What each box sweeps in each span, (spans, B, 15)."""
+        return self._moving.swept(self._begin + self._interval * np.arange(self._horizon + _AFTER + 1.0))
+
+    @cached_property
+    def _reach(self) -> Floats:
+        """How far from a box's middle legs may be that touch it, (spans, B) metres."""
+        reach: Floats = np.linalg.norm(self._rows[..., 12:], axis=-1) + self._body.reach
+        return reach
 
     def clearance(self, states: Floats, after: Floats) -> Floats32:
         """Clearance (N,) of legs and pelvis at root states (N, 7), `after` (N,) seconds from the plan's beginning."""
@@ -48,6 +58,7 @@ class MovingAround:
             out[near[lanes]] = clearance(segments[:, :, lanes], self._body.radii, self._rows[span])
         return out
 
+    @cached_property
     def standing(self) -> Neighbours:
         """What could move but stays where it is for now, a little larger: there are ways round it as round walls."""
         stays = np.all(np.ptp(self._rows[..., [0, 2]], axis=0) < _STAYS, axis=1)

@@ -2,37 +2,26 @@
 
 import math
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_body import Neighbours
 from elbowroom.planning.root_evasion import Evasion
-from elbowroom.planning.root_hull import strip_is_free, to_look_at
+from elbowroom.planning.root_free import FreeLegs, LegCheck
 from elbowroom.planning.root_line import TravelLine
-from elbowroom.planning.root_motion import (
-    MotionBounds,
-    Travel,
-    brake,
-    dense_states,
-    follow,
-    steer,
-    stopping_states,
-)
+from elbowroom.planning.root_motion import Travel, brake, follow, steer
 from elbowroom.planning.root_moving import MovingAround
 from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root_profile import Course, follow_profile
-from elbowroom.planning.root_route import find_route, route_points, shortened_route
-from elbowroom.world.walkable import WalkableMap, walkable_window
+from elbowroom.planning.root_way import Way, WayFinder
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
-Indices = NDArray[np.int64]
 
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
-_BEHIND = 0.64  # metres behind the start that a way round may use
 
 
 class Answer(NamedTuple):
@@ -46,86 +35,39 @@ class Answer(NamedTuple):
 
 
 class RootQuery:
-    """One plan in the making: the start, the boxes within reach, and the count of checks."""
+    """All that is asked of one start: paths of `horizon` key intervals, `interval` seconds each."""
 
     def __init__(
         self,
         settings: RootPlannerSettings,
-        body: LowerBody,
-        bounds: MotionBounds,
+        check: LegCheck,
         start: RootState,
         horizon: int,
         interval: float,
         around: MovingAround,
     ) -> None:
-        self.settings, self.body, self.bounds, self.around = settings, body, bounds, around
+        self.settings, self.bounds, self.around = settings, check.bounds, around
         self.start, self.horizon, self.interval = start, horizon, interval
-        run = self.settings.motion.run_speed
-        reach = max(self.settings.sight + self.settings.widest_detour, run * (horizon * interval + 1.0)) + 1.0
-        self.boxes = self.body.boxes.around(np.array([[start.x, start.z]]), reach)
-        self.mapped = self.boxes + around.standing() if around else self.boxes
-        self.checks = 0
-        self.skin = self._skin_at(np.array([start, start]))
+        reach = max(settings.sight + settings.widest_detour, settings.motion.run_speed * (horizon * interval + 1.0))
+        self._boxes = check.body.near(start.x, start.z, reach + 1.0)
+        self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), WayFinder(settings, check.body)
+        self._way: tuple[TravelLine, Way] | None = None
+        self._looks = 0
 
-    def _skin_at(self, standing: Floats) -> float:
-        """The clearance to ask for: less where the start, twice in `standing` (2, 7), has little."""
-        full, bounds = self.settings.skin, self.bounds
-        if not len(self.boxes.table) or not to_look_at(
-            standing, self.interval, bounds.braking, bounds.turn_acceleration, 2.0 * full, self.body.hull,
-            self.boxes.ground,
-        )[0].any():  # fmt: skip
-            return full
-        return min(full, max(0.5 * float(self._clearance(standing[:1])[0]), 0.0))
+    @property
+    def checks(self) -> int:
+        """The number of postures and places whose clearance was computed."""
+        return self._looks + self._legs.checks
 
-    def _clearance(self, states: Floats) -> Floats32:
-        if not len(states) or not len(self.boxes.table):
-            return np.full(len(states), np.inf, np.float32)
-        self.checks += len(states)
-        return self.body.clearance(self.boxes, states)
+    @cached_property
+    def _mapped(self) -> Neighbours:
+        """What ways lead round: what stands, and what could move but stays where it is."""
+        return self._boxes + self.around.standing if self.around else self._boxes
 
     def _blank(self) -> Floats:
         states = np.empty((self.horizon + 1, ROOT_STATE))
         states[0] = self.start
         return states
-
-    def _kept(self, states: Floats) -> int:
-        """The number of leading key intervals that are free, with a free stop from the end of each."""
-        kept = self._kept_in_motion(states) if self.around else self.horizon
-        return min(kept, self._kept_at_rest(states))
-
-    def _kept_in_motion(self, states: Floats) -> int:
-        """The number of leading key intervals that no moving box comes into."""
-        every = np.ones(self.horizon, np.bool_)
-        shown, owner = dense_states(states, self.interval, self.settings.spacing, every)
-        after = self.interval * self.horizon / len(shown) * np.arange(1.0, len(shown) + 1.0)
-        self.checks += len(shown)
-        clear = self.around.clearance(shown, after)
-        touching = owner[clear < min(self.skin, max(0.5 * float(clear[0]), 0.0))]
-        return int(touching[0]) - 1 if len(touching) else self.horizon
-
-    def _kept_at_rest(self, states: Floats) -> int:
-        """The number of leading key intervals that no standing box is in, with a free stop from the end of each."""
-        if not len(self.boxes.table):
-            return self.horizon
-        moving, stopping = to_look_at(
-            states, self.interval, self.bounds.braking, self.bounds.turn_acceleration, self.skin, self.body.hull,
-            self.boxes.ground,
-        )  # fmt: skip
-        kept = self.horizon
-        if moving.any():
-            shown, owner = dense_states(states, self.interval, self.settings.spacing, moving)
-            kept = self._before_contact(shown, owner, kept + 1)
-        if stopping[:kept].any():
-            tails, owner = stopping_states(
-                states[: kept + 1], self.interval, self.bounds, self.settings.spacing, stopping
-            )
-            kept = self._before_contact(tails, owner, kept + 1)
-        return kept
-
-    def _before_contact(self, shown: Floats, owner: Indices, never: int) -> int:
-        """One less than the `owner` (M,) of the first of the states (M, 7) that touches; `never` less one if none."""
-        touching = owner[self._clearance(shown) < self.skin]
-        return int(touching[0] if len(touching) else never) - 1
 
     def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, int]:
         """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
@@ -134,7 +76,7 @@ class RootQuery:
         """
         best, farthest = None, 0.0
         for i, states in enumerate(candidates):
-            kept = self._kept(states)
+            kept = self._legs.kept(states)
             if kept == self.horizon:
                 return states, i
             if self.around:
@@ -153,7 +95,7 @@ class RootQuery:
         """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
         best, longest = self._stopped(), -1
         for states in (best, *self._steps_aside()):
-            kept = self._kept(states)
+            kept = self._legs.kept(states)
             if kept == self.horizon:
                 return states
             if kept > longest:
@@ -162,7 +104,7 @@ class RootQuery:
 
     def steps_aside(self) -> Iterator[Floats]:
         """Those short ways back, to both sides and on that are free, in the order in which they are liked."""
-        return (states for states in self._steps_aside() if self._kept(states) == self.horizon)
+        return (states for states in self._steps_aside() if self._legs.kept(states) == self.horizon)
 
     def _steps_aside(self) -> Iterator[Floats]:
         for forward, lateral in self.settings.steps_aside:
@@ -182,8 +124,7 @@ class RootQuery:
                 braking=hard * self.bounds.braking, turn_acceleration=hard * self.bounds.turn_acceleration
             )
             brake(states, 0, self.interval, bounds)
-            shown, _ = dense_states(states, self.interval, self.settings.spacing, np.ones(self.horizon, np.bool_))
-            if not np.any(self._clearance(shown) < 0.0):
+            if not self._legs.touches(states):
                 return states
         states = np.repeat(self._blank()[:1], self.horizon + 1, axis=0)
         states[:, 3:6] = 0.0
@@ -203,16 +144,24 @@ class RootQuery:
 
     def travelled(self, line: TravelLine, speed: float) -> Answer:
         """Walk along the line of travel, or round what stands in it."""
-        route, detour, stops = self._route(line)
+        way = self._way_along(line)
 
         def candidate(share: float) -> Floats:
             states, wanted = self._blank(), share * speed
-            travel = Travel(wanted, line.facing, line.turns, stops, 0.3 + 0.3 * wanted)
-            follow(states, route, travel, self.interval, self.bounds)
+            travel = Travel(wanted, line.facing, line.turns, way.ends, 0.3 + 0.3 * wanted)
+            follow(states, way.route, travel, self.interval, self.bounds)
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
-        return Answer(states, self._kind(states, whole=number == 0, detour=detour), _place(route[-1]), stops)
+        kind = self._kind(states, whole=number == 0, detour=way.detour)
+        return Answer(states, kind, _place(way.route[-1]), way.ends)
+
+    def _way_along(self, line: TravelLine) -> Way:
+        """The way along a line of travel; the same at every pace."""
+        if self._way is None or self._way[0] != line:
+            self._way = line, self._ways.ahead(self.start, line, self._mapped)
+            self._looks += self._way[1].checks
+        return self._way[1]
 
     def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
         """Walk along an evasion from the line of travel, or as much of it as is free."""
@@ -238,59 +187,6 @@ class RootQuery:
         if not whole:
             return RootPlanKind.SHORTENED
         return RootPlanKind.DETOUR if detour else RootPlanKind.STRAIGHT
-
-    def _route(self, line: TravelLine) -> tuple[Floats, bool, bool]:
-        """Corner points of the way to go; whether it is a way round; whether it ends before an obstacle."""
-        ahead, left = line.coordinates(self.start.x, self.start.z)
-        sight = self.settings.sight
-        back = ahead + max(0.6, 1.5 * abs(left))
-        straight = np.array(
-            [[self.start.x, self.start.z], line.point(back), line.point(max(ahead + sight, back + 0.1))]
-        )
-        free = self._free_length(straight)
-        if free >= sight:
-            return straight, False, False
-        windows: dict[float, WalkableMap] = {}
-        for margin, cell in self.settings.searches:
-            window = windows.get(cell) or windows.setdefault(cell, self._window(line, ahead, cell))
-            behind, middle = _cells(_BEHIND, cell), _cells(self.settings.widest_detour, cell)
-            route = find_route(window, (behind, left + middle), middle, margin, self.settings.route)
-            gained = line.coordinates(*route[-1])[0] - ahead
-            if gained > free + self.settings.worth_it:
-                return route, True, gained < sight - 2.0 * cell
-        return shortened_route(straight, max(0.0, free - 0.05)), False, True
-
-    def _free_length(self, route: Floats) -> float:
-        """Metres along the route before the standing figure would touch; infinite if it never does."""
-        if not len(self.mapped.table):
-            return math.inf
-        legs = np.diff(route, axis=0)
-        ways, lengths = np.arctan2(legs[:, 0], legs[:, 1]), np.hypot(legs[:, 0], legs[:, 1])
-        half = self.body.stance.radius + self.settings.margin + 1e-3
-        rows = zip(route[:-1, 0], route[:-1, 1], ways, lengths, strict=True)
-        if all(strip_is_free(x, z, way, length, half, self.mapped.ground) for x, z, way, length in rows):
-            return math.inf
-        points, along = route_points(route, 0.04)
-        clear = self.body.standing_clearance(self.mapped, points)
-        self.checks += len(points)
-        leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - 1e-3)
-        blocked = np.flatnonzero((clear < self.settings.margin) & ~leaving)
-        return float(along[blocked[0]]) if len(blocked) else math.inf
-
-    def _window(self, line: TravelLine, ahead: float, cell: float) -> WalkableMap:
-        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
-        behind, middle = _cells(_BEHIND, cell), _cells(self.settings.widest_detour, cell)
-        shape = (round((behind + _cells(self.settings.sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
-        origin = line.point(ahead - behind, -middle)
-        roomy = max(margin for margin, _ in self.settings.searches) + self.settings.route.roomy
-        window = walkable_window(self.mapped.table, self.body.stance, origin, line.heading, shape, cell, roomy)
-        self.checks += window.clearance.size
-        return window
-
-
-def _cells(length: float, cell: float) -> float:
-    """`length` rounded up to whole cells, metres."""
-    return math.ceil(length / cell - 1e-9) * cell
 
 
 def _place(row: Floats) -> tuple[float, float]:

@@ -118,31 +118,41 @@ class MovingBoxes:
 
     def swept(self, times: Sequence[float] | Floats) -> Floats:
         """Rows (n, B, 15) of boxes that hold what each box sweeps from each of the times (n+1,) to the next."""
-        spans = len(times) - 1
-        out = np.empty((spans, len(self), BOX_ROW))
-        for b, track in enumerate(self.tracks):
-            for n in range(spans):
-                out[n, b] = _sweep(track, float(times[n]), float(times[n + 1]))
+        moments = np.asarray(times, np.float64)
+        return self.swept_between(moments[:-1], moments[1:])
+
+    def swept_between(self, first: Floats, last: Floats) -> Floats:
+        """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
+        out = np.empty((len(first), len(self), BOX_ROW))
+        if len(first):
+            for b, track in enumerate(self.tracks):
+                out[:, b] = _sweeps(track, first, last)
         return out
 
 
-def _sweep(track: Track, first: float, last: float) -> Floats:
-    """The row (15,) of a box, turned as the track is in the middle, round its corners at all times of a span."""
-    looks = np.concatenate([np.linspace(first, last, _PARTS + 1), track.turning_points(first, last)])
-    centers, yaws = track.poses(np.sort(looks))
-    yaw = float(track.poses([0.5 * (first + last)])[1][0])
-    turned, half = yaws - yaw, 0.5 * track.size
-    reach = float(np.hypot(half[0], half[2]))
-    bulge = 0.125 * reach * float(np.abs(np.diff(yaws)).max(initial=0.0)) ** 2  # of an arc beyond its chord
-    sine, cosine = math.sin(yaw), math.cos(yaw)
-    across, along = centers[:, 0] * cosine - centers[:, 2] * sine, centers[:, 0] * sine + centers[:, 2] * cosine
-    wide = half[0] * np.abs(np.cos(turned)) + half[2] * np.abs(np.sin(turned)) + bulge
-    deep = half[0] * np.abs(np.sin(turned)) + half[2] * np.abs(np.cos(turned)) + bulge
-    low = np.array([(across - wide).min(), centers[:, 1].min() - half[1], (along - deep).min()])
-    high = np.array([(across + wide).max(), centers[:, 1].max() + half[1], (along + deep).max()])
-    middle = 0.5 * (low + high)
-    center = np.array([middle[0] * cosine + middle[2] * sine, middle[1], middle[2] * cosine - middle[0] * sine])
-    return _rows(center, np.array(yaw), 0.5 * (high - low))
+def _sweeps(track: Track, first: Floats, last: Floats) -> Floats:
+    """The rows (n, 15) of boxes, turned as the track is in the middle of a span, round its corners at all its times."""
+    turning = track.turning_points(float(first.min()), float(last.max()))
+    within = (turning > first[:, None]) & (turning < last[:, None])
+    looks = np.concatenate(
+        [np.linspace(first, last, _PARTS + 1, axis=1), np.where(within, turning, first[:, None])], axis=1
+    )
+    centers, yaws = track.poses(np.sort(looks, axis=1).ravel())
+    centers, yaws = centers.reshape(*looks.shape, 3), yaws.reshape(looks.shape)
+    yaw, half = track.poses(0.5 * (first + last))[1], 0.5 * track.size
+    turned, reach = yaws - yaw[:, None], math.hypot(half[0], half[2])
+    bulge = 0.125 * reach * np.abs(np.diff(yaws, axis=1)).max(axis=1)[:, None] ** 2  # of an arc beyond its chord
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    across = centers[..., 0] * cosine[:, None] - centers[..., 2] * sine[:, None]
+    along = centers[..., 0] * sine[:, None] + centers[..., 2] * cosine[:, None]
+    cosines, sines = np.abs(np.cos(turned)), np.abs(np.sin(turned))
+    wide, deep = half[0] * cosines + half[2] * sines + bulge, half[0] * sines + half[2] * cosines + bulge
+    heights = centers[..., 1]
+    low = np.stack([(across - wide).min(1), heights.min(1) - half[1], (along - deep).min(1)], axis=1)
+    high = np.stack([(across + wide).max(1), heights.max(1) + half[1], (along + deep).max(1)], axis=1)
+    middle, size = 0.5 * (low + high), 0.5 * (high - low)
+    x, z = middle[:, 0] * cosine + middle[:, 2] * sine, middle[:, 2] * cosine - middle[:, 0] * sine
+    return _rows(np.stack([x, middle[:, 1], z], axis=1), yaw, size)
 
 
 def _rows(centers: Floats, yaws: Floats, half_sizes: Floats) -> Floats:
