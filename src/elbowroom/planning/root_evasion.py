@@ -29,6 +29,7 @@ from elbowroom.world.moving import MovingBoxes
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+_SLOW = 0.1  # m/s along the line
 _GAIN = 2.0  # m/s^2, of speeding up
 
 
@@ -159,8 +160,7 @@ class EvasionGrid(NamedTuple):
             s.spot, (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip
         favoured = np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.first, s.step, rows))
-        left = self.line.coordinates(self.start.x, self.start.z)[1]
-        turned = math.remainder(self.start.heading - self.line.facing, math.tau)
+        left, turned = self._at_first_row()
         begin = self._cells(np.array([left]), np.array([turned]))[0]
         cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
         places = pulled_taut(self.room, cells, left, s.aside, s.slack)
@@ -168,6 +168,23 @@ class EvasionGrid(NamedTuple):
         if cells[0, 1] == begin[1]:
             way[0, 1] = turned
         return Evasion(Profile(self.first, s.step, way), len(way) == rows, cost)
+
+    def _at_first_row(self) -> tuple[float, float]:
+        """Distance from the line and turn at the first row's place, of who moves on as the start does.
+
+        No steeper than the grid leads.
+        """
+        s, start, line = self.settings, self.start, self.line
+        ahead, left = line.coordinates(start.x, start.z)
+        turned = math.remainder(start.heading - line.facing, math.tau)
+        sine, cosine = math.sin(start.heading - line.heading), math.cos(start.heading - line.heading)
+        along, across = start.forward * cosine - start.lateral * sine, start.forward * sine + start.lateral * cosine
+        if along < _SLOW:
+            return left, turned
+        steps, swing = (self.first - ahead) / s.step, s.most / s.turns
+        aside = min(max(across / along * s.step, -s.aside), s.aside)
+        swung = min(max(start.turn / along * s.step, -swing), swing)
+        return left + steps * aside, turned + steps * swung
 
     def _cells(self, left: Floats, turned: Floats) -> Indices:
         """The columns and turns (N, 2) nearest to distances from the line and to turns (N,)."""
