@@ -110,10 +110,14 @@ def test_no_velocity_jumps_between_plans() -> None:
 
 @pytest.mark.parametrize("scene", ["b", *SCENES])
 def test_half_a_second_after_the_last_obstacle_the_walk_is_natural(scene: str) -> None:
-    """The last obstacle is passed when the natural walk would clear everything from then on."""
+    """The last obstacle is passed when the natural walk would clear everything from then on.
+
+    Where it clears everything all the time, as of a body that turns in a doorway, that is where it comes nearest.
+    """
     frames, check = walk(scene, None), BodyCheck(AVATAR, Scene.load(scene))
     clear = np.array([check.clearance(frame.root, frame.goal, frame.time) for frame in frames])
-    passed = int(np.flatnonzero(clear < LIMITS.margin)[-1])
+    touching = np.flatnonzero(clear < LIMITS.margin)
+    passed = int(touching[-1]) if len(touching) else int(clear.argmin())
     later = frames[passed + round(0.5 / DT) :]
     assert later
     for plan in {frame.plan.number: frame.plan for frame in later if frame.plan is not None}.values():
