@@ -48,10 +48,7 @@ def lower_rows(
         for e in (0, 3):
             axis[0, e, j], axis[0, e + 2, j] = left * cosine, -left * sine
         axis[0, 4, j] = _TALL
-    extents, farthest = _extents(bodies, groups, radii, axis), 0.0
-    for t in range(turns):
-        for g in range(3):
-            farthest = max(farthest, extents[t, g, 0])
+    extents, farthest = _extents(bodies, groups, radii, axis)
     none, box, away = np.zeros(1, np.float32), np.empty((1, BOX_ROW), np.float32), np.empty(columns, np.float32)
     found = np.empty(columns, np.float32)
     for i in range(clear.shape[0]):
@@ -82,9 +79,12 @@ def lower_rows(
 
 
 @exact_kernel
-def _extents(bodies: Floats32, groups: Indices, radii: Floats32, axis: Floats32) -> Floats:
-    """How far the parts of a body reach from its axis, seen from above, their lowest and highest point, (T, 3, 3)."""
-    out = np.empty((bodies.shape[0], 3, 3))
+def _extents(bodies: Floats32, groups: Indices, radii: Floats32, axis: Floats32) -> tuple[Floats, float]:
+    """How far the parts of a body reach from its axis, seen from above, their lowest and highest point, (T, 3, 3).
+
+    And how far any of them reaches.
+    """
+    out, farthest = np.empty((bodies.shape[0], 3, 3)), 0.0
     for t in range(bodies.shape[0]):
         for g in range(3):
             most, low, high = 0.0, np.inf, -np.inf
@@ -97,7 +97,8 @@ def _extents(bodies: Floats32, groups: Indices, radii: Floats32, axis: Floats32)
                         max(high, bodies[t, c, e + 1, 0] + radii[c]),
                     )
             out[t, g, 0], out[t, g, 1], out[t, g, 2] = most, low, high
-    return out
+            farthest = max(farthest, most)
+    return out, farthest
 
 
 @exact_kernel
