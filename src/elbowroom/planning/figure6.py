@@ -22,7 +22,7 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.activity_graph import GraphArrays, insert, squared_distance
 from elbowroom.planning.limb import pose
 from elbowroom.planning.result import PlanStatus, SearchResult
-from elbowroom.planning.roadmap import Roadmap, RoadmapArrays, add_column, clearance_at, touch
+from elbowroom.planning.roadmap import Roadmap, RoadmapArrays, clearance_at, touch
 from elbowroom.planning.self_contact import clear_of_trunk
 
 Floats = NDArray[np.float64]
@@ -131,7 +131,8 @@ def _enhance(
     size = graph.size[0]
     vertex = insert(graph, candidate)
     if vertex >= size:
-        add_column(roadmap, segments, vertex)
+        for t in range(roadmap.tables.shape[0]):
+            roadmap.clearances[t, vertex] = clearance_at(roadmap, segments, t)
     return vertex
 
 
@@ -174,6 +175,7 @@ def _search(
             if vertex >= 0:
                 stack[top] = vertex
                 count = 1
-        depths[top : top + count] = depth + 1
+        for i in range(count):
+            depths[top + i] = depth + 1
         top += count
     return _EXHAUSTED, checks, nodes, graph.size[0] - size

@@ -112,10 +112,3 @@ def clearance_at(roadmap: RoadmapArrays, segments: Floats32, depth: int) -> floa
     out = np.empty(1, np.float32)
     clearance_into(segments, roadmap.limb.radii, roadmap.tables[depth], out)
     return float(out[0])
-
-
-@exact_kernel
-def add_column(roadmap: RoadmapArrays, segments: Floats32, vertex: int) -> None:
-    """Enter the clearances of a new vertex, capsules (C, 6, 1), at every depth."""
-    for depth in range(roadmap.tables.shape[0]):
-        roadmap.clearances[depth, vertex] = clearance_at(roadmap, segments, depth)
