@@ -105,17 +105,19 @@ class ExactPlanner:
             return None
         self._last = left
         near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
-        whole = self._prolonged(left, root) or self._prolonged(left, near)
+        whole = self._prolonged(left, root, Effort.QUICK) or self._prolonged(left, near, Effort.REFINED)
         self._walk = None if whole is None else Walk(query, whole)
         return whole
 
-    def _prolonged(self, left: Whole, root: RootPlan) -> Whole | None:
+    def _prolonged(self, left: Whole, root: RootPlan, effort: Effort) -> Whole | None:
         """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
         kept = settled(left, root.path, round(self.settings.revisited / root.path.interval))
         if kept is None:
             return None
         path = rest_of(root.path, kept.at)
         rest = self._body.plan(path, kept.begins, self._kept(path), None, Effort.QUICK)
+        if rest.reached < path.horizon and effort is not Effort.QUICK and self._turns.is_new(_place(rest)):
+            rest = self._body.plan(path, kept.begins, self._kept(path), None, effort)
         return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
     def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
