@@ -75,6 +75,10 @@ class RootPaths:
             self._last = key, RootQuery(self.settings, self._check, start, horizon, interval, around)
         return self._last[1]
 
+    def _sight(self, asked: Asked, speed: float) -> float:
+        """How far ahead the way is looked at, metres."""
+        return max(self.settings.sight, speed * asked.horizon * asked.interval + self.settings.beyond)
+
     def stopped(self, asked: Asked) -> RootPlan:
         """To a stand, or out of the way of what comes."""
         began, query = perf_counter_ns(), self._query(asked)
@@ -93,7 +97,7 @@ class RootPaths:
         """Along a line of travel."""
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(asked.command, self.settings.motion)
         looks = query.checks
-        answer = query.travelled(line, pace * speed)
+        answer = query.travelled(line, pace * speed, self._sight(asked, speed))
         return _plan(asked, answer, query.checks - looks, began, self._lost(asked, line, speed, answer))
 
     def evaded(
@@ -104,7 +108,7 @@ class RootPaths:
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(command, self.settings.motion)
         evasion, looks = finder.settings, query.checks
         speeds = (speed, min(speed, evasion.sideways))
-        grid = finder.ahead_of(line, start, self.settings.sight, speeds, self.moving, start_time)
+        grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self.moving, start_time)
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
             for care in evasion.cares:

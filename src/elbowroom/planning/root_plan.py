@@ -28,7 +28,8 @@ class RootPlannerSettings:
     evasion: EvasionSettings = field(default_factory=EvasionSettings)
     wide: EvasionSettings = WIDE
     wide_from: float = 0.3  # seconds lost by what is known, from which on wide ways are thought of
-    sight: float = 3.2  # how far ahead the way is looked at
+    sight: float = 3.2  # how far ahead the way is looked at, at least as far as one gets within the plan
+    beyond: float = 0.5  # and so much farther
     widest_detour: float = 1.6  # how far from the line of travel a way round may lead
     worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
     # Searches for a way round, in turn: the clearance that it must have, and the cells of the map.

@@ -48,10 +48,11 @@ class RootQuery:
     ) -> None:
         self.settings, self.bounds, self.around = settings, check.bounds, around
         self.start, self.horizon, self.interval = start, horizon, interval
-        reach = max(settings.sight + settings.widest_detour, settings.motion.run_speed * (horizon * interval + 1.0))
+        run = settings.motion.run_speed * (horizon * interval + 1.0)
+        reach = max(settings.sight + settings.widest_detour, run + settings.beyond)
         self._boxes = check.body.near(start.x, start.z, reach + 1.0)
         self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), WayFinder(settings, check.body)
-        self._way: tuple[TravelLine, Way] | None = None
+        self._way: tuple[TravelLine, float, Way] | None = None
         self._looks = 0
 
     @property
@@ -142,9 +143,9 @@ class RootQuery:
         states, number = self._best(candidate(share) for share in self.settings.slower)
         return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
-    def travelled(self, line: TravelLine, speed: float) -> Answer:
-        """Walk along the line of travel, or round what stands in it."""
-        way = self._way_along(line)
+    def travelled(self, line: TravelLine, speed: float, sight: float) -> Answer:
+        """Walk along the line of travel, of which `sight` metres are looked at, or round what stands in it."""
+        way = self._way_along(line, sight)
 
         def candidate(share: float) -> Floats:
             states, wanted = self._blank(), share * speed
@@ -156,12 +157,12 @@ class RootQuery:
         kind = self._kind(states, whole=number == 0, detour=way.detour)
         return Answer(states, kind, _place(way.route[-1]), way.ends)
 
-    def _way_along(self, line: TravelLine) -> Way:
+    def _way_along(self, line: TravelLine, sight: float) -> Way:
         """The way along a line of travel; the same at every pace."""
-        if self._way is None or self._way[0] != line:
-            self._way = line, self._ways.ahead(self.start, line, self._mapped)
-            self._looks += self._way[1].checks
-        return self._way[1]
+        if self._way is None or self._way[:2] != (line, sight):
+            self._way = line, sight, self._ways.ahead(self.start, line, self._mapped, sight)
+            self._looks += self._way[2].checks
+        return self._way[2]
 
     def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
         """Walk along an evasion from the line of travel, or as much of it as is free."""

@@ -37,10 +37,9 @@ class WayFinder:
     def __init__(self, settings: RootPlannerSettings, body: LowerBody) -> None:
         self._settings, self._body = settings, body
 
-    def ahead(self, start: RootState, line: TravelLine, boxes: Neighbours) -> Way:
-        """The way from a start along a line of travel among `boxes`."""
+    def ahead(self, start: RootState, line: TravelLine, boxes: Neighbours, sight: float) -> Way:
+        """The way from a start along a line of travel among `boxes`, `sight` metres of it."""
         ahead, left = line.coordinates(start.x, start.z)
-        sight = self._settings.sight
         back = ahead + max(0.6, 1.5 * abs(left))
         end = max(ahead + sight, back + 0.1)
         straight = np.array([(start.x, start.z), line.point(back), line.point(end)])
@@ -49,7 +48,7 @@ class WayFinder:
         free, checks = self._free_length(straight, boxes)
         if free >= sight:
             return Way(straight, detour=False, ends=False, checks=checks)
-        return self._round(straight, free, line, (ahead, left), boxes, checks)
+        return self._round(straight, free, line, (ahead, left), boxes, sight, checks)
 
     def _is_open(self, route: Floats, boxes: Neighbours) -> bool:
         """Whether nothing at all stands on a strip along the route as broad as the standing figure."""
@@ -78,6 +77,7 @@ class WayFinder:
         line: TravelLine,
         at: tuple[float, float],
         boxes: Neighbours,
+        sight: float,
         checks: int,
     ) -> Way:
         """The way round what stands `free` metres on in the straight way from `at`, metres ahead and to the left."""
@@ -85,20 +85,20 @@ class WayFinder:
         windows: dict[float, WalkableMap] = {}
         for margin, cell in s.searches:
             if cell not in windows:
-                windows[cell] = self._window(line, ahead, cell, boxes)
+                windows[cell] = self._window(line, ahead, cell, boxes, sight)
                 checks += windows[cell].clearance.size
             behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
             route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
             gained = line.coordinates(*route[-1])[0] - ahead
             if gained > free + s.worth_it:
-                return Way(route, detour=True, ends=bool(gained < s.sight - 2.0 * cell), checks=checks)
+                return Way(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
         return Way(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
 
-    def _window(self, line: TravelLine, ahead: float, cell: float, boxes: Neighbours) -> WalkableMap:
+    def _window(self, line: TravelLine, ahead: float, cell: float, boxes: Neighbours, sight: float) -> WalkableMap:
         """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
         s = self._settings
         behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
-        shape = (round((behind + _cells(s.sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
+        shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
         roomy = max(margin for margin, _ in s.searches) + s.route.roomy
         return walkable_window(boxes.table, self._body.stance, origin, line.heading, shape, cell, roomy)

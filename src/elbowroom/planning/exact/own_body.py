@@ -239,8 +239,12 @@ def _looked_at(
         for look in range(looks):
             share = (look + 1.0) / looks
             at = i * looks + look
-            shown[at] = hermite(times, keys[k : k + 2], rates[k : k + 2], share * interval)[0]
-            roots[at] = interpolate_root(states[k], states[k + 1], share, interval)
+            upper, _ = hermite(times, keys[k : k + 2], rates[k : k + 2], share * interval)
+            for j in range(upper.shape[0]):
+                shown[at, j] = upper[j]
+            root = interpolate_root(states[k], states[k + 1], share, interval)
+            for j in range(root.shape[0]):
+                roots[at, j] = root[j]
     return shown, roots
 
 
