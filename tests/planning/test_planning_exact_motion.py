@@ -20,7 +20,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.interpolation import hermite
-from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.motion import MotionQuery, SupersededError
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.boxes import Boxes
@@ -207,3 +207,31 @@ def test_the_law_of_the_curve_s_acceleration(seed: int) -> None:
     for time in np.linspace(0.0, times[-1], 200):
         value, _ = hermite(times, values, inside, float(time))
         assert np.all((value >= narrow[:, 0] - 1e-9) & (value <= narrow[:, 1] + 1e-9))
+
+
+def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_trace(humanoid: Humanoid) -> None:
+    wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
+    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    asked: list[None] = []
+
+    def superseded() -> bool:
+        asked.append(None)
+        return len(asked) == limit
+
+    query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T, superseded=superseded)
+    limit = 0
+    whole = planner.plan_motion(roots, query).local.configurations
+    stages = len(asked)
+    assert stages > 20
+    for limit in range(1, stages + 1, 5):
+        planner.reset()
+        roots.reset()
+        asked.clear()
+        with pytest.raises(SupersededError):
+            planner.plan_motion(roots, query)
+        assert len(asked) == limit
+        planner.reset()
+        roots.reset()
+        again = planner.plan_motion(roots, query._replace(superseded=lambda: False)).local.configurations
+        assert np.array_equal(again, whole)

@@ -40,7 +40,12 @@ class MotionQuery(NamedTuple):
     interval: float  # seconds between key frames
     others: MovingBoxes = MovingBoxes()  # that move, besides the scene's own
     hurry: bool = False  # something else is wanted than what is played: what is found soon, better later
-    superseded: Callable[[], bool] = _wanted  # looked at now and then; then `SupersededError` may be raised
+    superseded: Callable[[], bool] = _wanted  # whether nobody waits for the motion any more
+
+    def go_on(self) -> None:
+        """Called now and then while planning: raises `SupersededError` if nobody waits for the motion any more."""
+        if self.superseded():
+            raise SupersededError
 
 
 class Motion(NamedTuple):

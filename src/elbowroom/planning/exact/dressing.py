@@ -18,7 +18,7 @@ from elbowroom.planning.exact.group import GroupTask, GroupWay, Weights, own_pos
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep, Surroundings
 from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.exact.lattice import KEPT, OWN
-from elbowroom.planning.exact.ledger import Ledger
+from elbowroom.planning.exact.ledger import GoOn, Ledger
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.path_problem import PathProblem, no_prices
 from elbowroom.planning.exact.reaching import Blocked
@@ -53,11 +53,12 @@ class Dressing:
     contacts: SelfContacts
     legs: LoweredLegs
     problem: PathProblem
+    go_on: GoOn
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
         self._arms = Arms(self.shelves, self.problem, self.own_body, self.contacts, self.settings.self_rounds)
-        self.ledger = Ledger(self.shelves, self.weights)
+        self.ledger = Ledger(self.shelves, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self._waist: GroupWay | None = None
@@ -142,7 +143,7 @@ class Dressing:
         ways = Ways((), waist, 0)
         for _ in range(rounds):
             began = perf_counter_ns()
-            answer = step.search()
+            answer = step.search(self.go_on)
             self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)
             if answer.status is not PlanStatus.FOUND:
                 break

@@ -1,5 +1,6 @@
 """What the searches of one plan cost, group by group."""
 
+from collections.abc import Callable
 from time import perf_counter_ns
 
 from elbowroom.body.dof import DofGroup
@@ -10,17 +11,21 @@ from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.ways import LimbWays
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
 
+GoOn = Callable[[], None]
+
 
 class Ledger:
     """Searches one group after the other and keeps what each group's searches cost together."""
 
-    def __init__(self, shelves: Shelves, weights: Weights) -> None:
-        self._shelves, self._weights = shelves, weights
+    def __init__(self, shelves: Shelves, weights: Weights, go_on: GoOn) -> None:
+        """`go_on` is called before each search, and raises an exception if it is of no use any more."""
+        self._shelves, self._weights, self._go_on = shelves, weights, go_on
         self._rows: dict[DofGroup, GroupEvidence] = {}
         self.joint: JointEvidence | None = None
 
     def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
         """`search_group`, entered under `group`."""
+        self._go_on()
         began = perf_counter_ns()
         shelves = self._shelves
         waists: LimbWays = shelves.groups[DofGroup.WAIST].ways

@@ -20,7 +20,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
 from elbowroom.planning.exact.whole import Stand, Whole, first_part, kept_of, later, stands
-from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
+from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
 from elbowroom.planning.root_path import RootPath
@@ -105,19 +105,19 @@ class ExactPlanner:
             return None
         self._last = left
         near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
-        whole = self._prolonged(left, root, Effort.QUICK) or self._prolonged(left, near, Effort.REFINED)
+        whole = self._prolonged(left, root, query, Effort.QUICK) or self._prolonged(left, near, query, Effort.REFINED)
         self._walk = None if whole is None else Walk(query, whole)
         return whole
 
-    def _prolonged(self, left: Whole, root: RootPlan, effort: Effort) -> Whole | None:
+    def _prolonged(self, left: Whole, root: RootPlan, query: MotionQuery, effort: Effort) -> Whole | None:
         """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
         kept = settled(left, root.path, round(self.settings.revisited / root.path.interval))
         if kept is None:
             return None
         path = rest_of(root.path, kept.at)
-        rest = self._body.plan(path, kept.begins, self._kept(path), None, Effort.QUICK)
+        rest = self._dress_from(kept.begins, path, query, Effort.QUICK)
         if rest.reached < path.horizon and effort is not Effort.QUICK and self._turns.is_new(_place(rest)):
-            rest = self._body.plan(path, kept.begins, self._kept(path), None, effort)
+            rest = self._dress_from(kept.begins, path, query, effort)
         return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
     def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
@@ -215,10 +215,11 @@ class ExactPlanner:
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
-        if query.superseded():
-            raise SupersededError
-        begins = Start(query.upper, query.velocity)
-        return self._body.plan(path, begins, self._kept(path), query.others, effort)
+        return self._dress_from(Start(query.upper, query.velocity), path, query, effort)
+
+    def _dress_from(self, begins: Start, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
+        query.go_on()
+        return self._body.plan(path, begins, self._kept(path), query.others, effort, query.go_on)
 
     def _kept(self, path: RootPath) -> Kept | None:
         """What the last plan had at the key times of `path`, if it has any of them."""

@@ -21,6 +21,7 @@ from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.group import Group, Weights
 from elbowroom.planning.exact.kept import Asked, Kept, Start
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
+from elbowroom.planning.exact.ledger import GoOn
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
@@ -108,17 +109,19 @@ class UpperBody:
         kept: Kept | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
+        go_on: GoOn = lambda: None,
     ) -> UpperPlan:
         """Motion along `path` from where it `begins`; near `kept`, the last plan.
 
-        `others` move besides the scene's own.
+        `others` move besides the scene's own. `go_on` is called now and then, and raises an exception if the plan is of
+        no use any more.
         """
         moving = self._moving if others is None else self._moving + others
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, begins, kept, near, legs)
+            dressing = self._dressing(path, begins, kept, near, legs, go_on)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
             found = dressing.motion(0 if between else rounds)
             if found is not None:
@@ -147,7 +150,7 @@ class UpperBody:
             self._own_body.resting(side, self.postures(group, interval))
 
     def _dressing(
-        self, path: RootPath, begins: Start, kept: Kept | None, near: NearBoxes, legs: LoweredLegs
+        self, path: RootPath, begins: Start, kept: Kept | None, near: NearBoxes, legs: LoweredLegs, go_on: GoOn
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
@@ -155,7 +158,7 @@ class UpperBody:
         margins, skins = self._margins(path, begins.ahead)
         self._contacts.begin(path.start_time)
         problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
-        return Dressing(shelves, self._weights, self.settings, self._own_body, self._contacts, legs, problem)
+        return Dressing(shelves, self._weights, self.settings, self._own_body, self._contacts, legs, problem, go_on)
 
     def _refine(self, dressing: Dressing) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""
