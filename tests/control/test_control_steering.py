@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from elbowroom.control.steering import changed, checked, overturned
+from elbowroom.control.steering import changed, checked, overturned, steady
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 
@@ -68,3 +68,21 @@ def test_shares_are_clipped() -> None:
 def test_what_is_no_number_is_refused(command: Command) -> None:
     with pytest.raises(InputError, match="finite"):
         checked(command)
+
+
+def test_a_trembling_stick_asks_for_the_same() -> None:
+    held = Command(forward=0.97, direction=3.14)
+    assert steady(held, Command(forward=0.98, direction=3.145)) is held
+    assert steady(held, Command(forward=0.98, direction=-3.14)) is held  # across the back
+    turned, slower = Command(forward=0.97, direction=3.16), Command(forward=0.94, direction=3.14)
+    assert steady(held, turned) is turned
+    assert steady(held, slower) is slower
+    strafing, running = Command(forward=1.0, strafe=0.03), Command(forward=1.0, run=True)
+    assert steady(WALK, strafing) is strafing
+    assert steady(WALK, running) is running
+
+
+def test_letting_go_of_a_stick_and_barely_moving_it_are_heard() -> None:
+    barely = Command(forward=0.01)
+    assert steady(IDLE, barely) is barely
+    assert steady(barely, IDLE) is IDLE

@@ -9,6 +9,8 @@ from elbowroom.planning.command import Command
 _BENT = math.radians(20.0)  # a change of walking direction that is worth a plan of its own
 _REVERSED = math.radians(90.0)
 _SHARE = 0.25  # the same for shares of full speed and of full turning
+_TREMOR = 0.01  # radians: what a hand on a stick does not mean, and
+_TREMOR_SHARE = 0.02  # of shares
 
 
 def checked(command: Command) -> Command:
@@ -20,6 +22,15 @@ def checked(command: Command) -> Command:
         return command
     forward, strafe, turn = (max(-1.0, min(1.0, share)) for share in shares)
     return replace(command, forward=forward, strafe=strafe, turn=turn)
+
+
+def steady(held: Command, command: Command) -> Command:
+    """The command, or the one held until now while they differ by no more than a stick trembles: the plan stays good."""
+    if (held.idle, held.run, held.direction is None) != (command.idle, command.run, command.direction is None):
+        return command
+    pairs = ((held.forward, command.forward), (held.strafe, command.strafe), (held.turn, command.turn))
+    trembles = max(abs(a - b) for a, b in pairs) <= _TREMOR_SHARE and _angle(held, command) <= _TREMOR
+    return held if trembles else command
 
 
 def changed(planned: Command, command: Command) -> bool:

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from elbowroom.control.frame import Phase
+from elbowroom.control.steering import steady
 from elbowroom.planning.command import Command
 from elbowroom.server import pose_frame
 from elbowroom.server.clip_walk import ClipWalk
@@ -59,6 +60,7 @@ class Stage:
     def obey(self, message: Input, now: float) -> bool:
         """Hold what an input asks for; whether that is something else than before."""
         command = Command(message.forward, message.strafe, message.turn, message.direction, message.run)
+        command = steady(self.command, command)
         changed = command != self.command
         self.command, self._acknowledged = command, message.seq
         if changed and not self.walk.heeds(command):
