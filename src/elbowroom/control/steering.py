@@ -25,7 +25,7 @@ def checked(command: Command) -> Command:
 
 
 def steady(held: Command, command: Command) -> Command:
-    """The command, or the one held until now while they differ by no more than a stick trembles: the plan stays good."""
+    """The command, or the one held until now while they differ by no more than a stick trembles: its plan is good."""
     if (held.idle, held.run, held.direction is None) != (command.idle, command.run, command.direction is None):
         return command
     pairs = ((held.forward, command.forward), (held.strafe, command.strafe), (held.turn, command.turn))
