@@ -10,6 +10,7 @@ from elbowroom.planning.exact.group import GroupWay, own_postures
 from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem
 from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.shelves import Shelves
@@ -36,11 +37,17 @@ class Arms:
     """Searches the arms' ways along one root path."""
 
     def __init__(
-        self, shelves: Shelves, problem: PathProblem, own_body: OwnBody, contacts: SelfContacts, rounds: int
+        self,
+        shelves: Shelves,
+        problem: PathProblem,
+        own_body: OwnBody,
+        own_motion: OwnMotion,
+        contacts: SelfContacts,
+        rounds: int,
     ) -> None:
         """At most `rounds` motions may turn out to run into the body."""
-        self._shelves, self._problem, self._own_body, self._contacts = shelves, problem, own_body, contacts
-        self._rounds = rounds
+        self._shelves, self._problem, self._contacts, self._rounds = shelves, problem, contacts, rounds
+        self._own_body, self._own_motion = own_body, own_motion
 
     def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Ways:
         """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
@@ -116,7 +123,7 @@ class Arms:
             return None
         rates = np.concatenate([way.velocities for way in ways], axis=1)
         chosen = ~(natural[:-1] & natural[1:])
-        arms = self._own_body.contacts(self._problem.path, keys, rates, chosen, self._problem.begins.ahead)
+        arms = self._own_motion.contacts(self._problem.path, keys, rates, chosen, self._problem.begins.ahead)
         touching = np.flatnonzero(arms >= 0)
         return None if not len(touching) else (int(arms[touching[0]]), int(touching[0]))
 

@@ -20,6 +20,7 @@ from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.exact.lattice import KEPT, OWN
 from elbowroom.planning.exact.ledger import GoOn, Ledger
 from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem, no_prices
 from elbowroom.planning.exact.reaching import Blocked
 from elbowroom.planning.exact.self_contacts import SelfContacts
@@ -50,6 +51,7 @@ class Dressing:
     weights: Weights
     settings: ExactSettings
     own_body: OwnBody
+    own_motion: OwnMotion
     contacts: SelfContacts
     legs: LoweredLegs
     problem: PathProblem
@@ -57,7 +59,9 @@ class Dressing:
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
-        self._arms = Arms(self.shelves, self.problem, self.own_body, self.contacts, self.settings.self_rounds)
+        self._arms = Arms(
+            self.shelves, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
+        )
         self.ledger = Ledger(self.shelves, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach

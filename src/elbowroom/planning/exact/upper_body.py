@@ -25,6 +25,7 @@ from elbowroom.planning.exact.ledger import GoOn
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.reaching import arms_for, waists_for
@@ -90,6 +91,7 @@ class UpperBody:
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
         self._shelves: dict[float, Shelves] = {}
         self._own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
+        self._own_motion = OwnMotion(self._model, self._own_body.pairs)
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
@@ -158,7 +160,17 @@ class UpperBody:
         margins, skins = self._margins(path, begins.ahead)
         self._contacts.begin(path.start_time)
         problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
-        return Dressing(shelves, self._weights, self.settings, self._own_body, self._contacts, legs, problem, go_on)
+        return Dressing(
+            shelves,
+            self._weights,
+            self.settings,
+            self._own_body,
+            self._own_motion,
+            self._contacts,
+            legs,
+            problem,
+            go_on,
+        )
 
     def _refine(self, dressing: Dressing) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""

@@ -1,0 +1,72 @@
+"""A shown motion against the avatar's own body: what a close look finds is found, and known again by its content."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
+from elbowroom.body.kinematics import body_model
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.planning.exact.curve import smooth_tangents
+from elbowroom.planning.exact.own_motion import OwnMotion
+from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.interpolation import hermite
+from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.self_pairs import self_clearances, self_pairs
+
+Floats = NDArray[np.float64]
+T, LOOKS, FAR = 0.15, 500, 99  # seconds, of a key interval; so many key intervals ahead
+
+MODEL = body_model(proportional_humanoid(1.72))
+PAIRS = self_pairs(MODEL)
+
+
+def swung(seed: int, horizon: int = 12) -> tuple[RootPath, Floats, Floats]:
+    """A walk whose arms swing up to 0.5 rad beside the natural way, now and then into the body."""
+    rng = np.random.default_rng(seed)
+    states, times = np.zeros((horizon + 1, 7)), T * np.arange(horizon + 1)
+    states[:, 1], states[:, 3], states[:, 6] = 1.1 * times, 1.1, 0.9 * times
+    path = RootPath(0.0, T, states)
+    keys = goal_configurations(natural_walk(), path) + rng.uniform(-0.5, 0.5, (1, LOCAL))
+    keys[:, columns_of(DofGroup.WAIST)] = 0.3 * rng.uniform(-1.0, 1.0, 3) * [1.0, 1.0, 0.0]
+    keys += rng.uniform(-0.08, 0.08, keys.shape)
+    rates = [
+        smooth_tangents(
+            np.ascontiguousarray(keys[:, columns_of(group)]), T, np.zeros(group.size), limits(group),
+            np.zeros(horizon + 1, np.bool_),
+        )
+        for group in LOCAL_GROUPS
+    ]  # fmt: skip
+    return path, keys, np.concatenate(rates, axis=1)
+
+
+def looked_at_closely(path: RootPath, keys: Floats, rates: Floats, k: int) -> float:
+    """The least gap within a key interval."""
+    times = np.linspace(0.0, T, LOOKS)
+    shown = [hermite(np.array([0.0, T]), keys[k : k + 2], rates[k : k + 2], float(t))[0] for t in times]
+    return float(self_clearances(MODEL, PAIRS, path.sample(k * T + times), np.array(shown)).min())
+
+
+@pytest.mark.parametrize("first", [0, 6])
+def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
+    motion, found, near = OwnMotion(MODEL, PAIRS), [0, 0], 0
+    for seed in range(first, first + 6):
+        path, keys, rates = swung(seed)
+        arms = motion.contacts(path, keys, rates, np.ones(path.horizon, np.bool_), FAR)
+        for k, arm in enumerate(arms):
+            gap = looked_at_closely(path, keys, rates, k)
+            assert (arm >= 0) == (gap < 2e-4) or abs(gap - 2e-4) < 2e-4
+            found[int(arm >= 0)] += 1
+            near += abs(gap) < 0.04
+    assert min(found) > 5
+    assert near > 5
+
+
+def test_what_was_looked_at_is_known_again_and_only_chosen_intervals_are_told() -> None:
+    path, keys, rates = swung(3)
+    motion, every = OwnMotion(MODEL, PAIRS), np.ones(path.horizon, np.bool_)
+    first = motion.contacts(path, keys, rates, every, FAR)
+    assert np.array_equal(motion.contacts(path, keys, rates, every, FAR), first)
+    assert np.all(motion.contacts(path, keys, rates, ~every, FAR) == -1)
+    later = RootPath(0.0, T, path.states[3:])
+    assert np.array_equal(motion.contacts(later, keys[3:], rates[3:], every[3:], FAR), first[3:])
