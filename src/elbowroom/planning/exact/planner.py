@@ -71,33 +71,34 @@ class ExactPlanner:
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
         """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
         alone = not len(root_planner.moving) and not query.hurry
-        whole = self._gone_on(root_planner, query) if alone else None
+        left = self._walk.left(query) if alone and self._walk is not None else None
+        whole = None if left is None else self._gone_on(left, root_planner, query)
         if whole is None:
-            whole = self._answered(root_planner, query, alone=alone)
+            whole = self._answered(left, root_planner, query, alone=alone)
             self._walk = Walk(query, whole) if alone and _is_commanded(whole, root_planner) else None
         self._last = whole
         return first_part(whole, query.horizon)
 
-    def _answered(self, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
+    def _answered(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
         """What is planned, or still known from when the avatar stood here; `alone`: nothing moves or is in a hurry."""
         stand = self._stand
         again = alone and stand is not None and stand.answers(query, self._body.versions)
         if again and stand is not None and stand.left == 0:
             return stand.at(query.time)
         before = self._body.versions
-        whole = self._whole(root_planner, query)
-        left = stand.left - 1 if again and stand is not None else self._turns.left
+        whole = self._whole(left, root_planner, query)
+        turns = stand.left - 1 if again and stand is not None else self._turns.left
         known = alone and self._body.versions == before and stands(whole, query)
-        self._stand = Stand(query, before, whole, left) if known else None
+        self._stand = Stand(query, before, whole, turns) if known else None
         return whole
 
     def _horizon(self, query: MotionQuery) -> int:
         return max(query.horizon, round(self.settings.look_ahead / query.interval))
 
-    def _gone_on(self, root_planner: RootPlanner, query: MotionQuery) -> Whole | None:
-        """The walk that goes on as planned, prolonged if it gets short; None if it does not, or has no new end."""
-        left, horizon = None if self._walk is None else self._walk.left(query), self._horizon(query)
-        if left is None or left.root.path.horizon >= horizon:
+    def _gone_on(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Whole | None:
+        """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end."""
+        horizon = self._horizon(query)
+        if left.root.path.horizon >= horizon:
             return left
         farther = horizon + round(self.settings.spare / query.interval)
         root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
@@ -105,7 +106,7 @@ class ExactPlanner:
             return None
         self._last = left
         near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
-        whole = self._prolonged(left, root, query, Effort.QUICK) or self._prolonged(left, near, query, Effort.REFINED)
+        whole = self._prolonged(left, root, query, Effort.QUICK) or self._prolonged(left, near, query, Effort.QUICK)
         self._walk = None if whole is None else Walk(query, whole)
         return whole
 
@@ -115,12 +116,11 @@ class ExactPlanner:
         if kept is None:
             return None
         path = rest_of(root.path, kept.at)
-        rest = self._dress_from(kept.begins, path, query, Effort.QUICK)
-        if rest.reached < path.horizon and effort is not Effort.QUICK and self._turns.is_new(_place(rest)):
-            rest = self._dress_from(kept.begins, path, query, effort)
+        rest = self._dress_from(kept.begins, path, query, effort)
         return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
-    def _whole(self, root_planner: RootPlanner, query: MotionQuery) -> Whole:
+    def _whole(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery) -> Whole:
+        """A motion from where the avatar is; `left` is what is left of a walk that has no new end at first sight."""
         horizon = self._horizon(query)
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
         tried: list[_Tried] = []
@@ -131,6 +131,10 @@ class ExactPlanner:
                 continue
             upper = self._dress(root.path, query, Effort.QUICK)
             if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
+                refined = None if left is None else self._prolonged(left, root, query, Effort.REFINED)
+                if refined is not None:
+                    self._turns.found()
+                    return refined
                 upper = self._dress(root.path, query, Effort.REFINED)
             if upper.reached == horizon:
                 if not tried:
