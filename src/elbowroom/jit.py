@@ -13,6 +13,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import codegen
+from numba.core.compiler import Compiler
+from numba.core.registry import CPUDispatcher
 
 from elbowroom.kernel_sources import digest_of
 
@@ -22,7 +24,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _FASTMATH = {"nsz", "contract", "arcp", "afn", "reassoc"}
 # No kernel is called from C: without the wrapper for that, all compile in a twelfth less time.
 _KEPT: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-_LEAF: dict[str, Any] = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_LEAF: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True}
 
 
 def _use_whole_vectors() -> None:
@@ -40,6 +42,40 @@ def _use_whole_vectors() -> None:
 _use_whole_vectors()
 
 
+class _InnerCompiler(Compiler):
+    """Makes no wrapper for Python.
+
+    That is said here and not among the options: Numba compiles what a kernel uses of NumPy anew for other options.
+    """
+
+    def define_pipelines(self) -> Any:
+        """Numba's own passes, after a word about the result."""
+        self.state.flags.no_cpython_wrapper = True
+        return cast(Any, super()).define_pipelines()
+
+
+class _LeafCompiler(_InnerCompiler):
+    """Has LLVM inline the result."""
+
+    def define_pipelines(self) -> Any:
+        """Numba's own passes, after a word about the result."""
+        self.state.flags.forceinline = True
+        return super().define_pipelines()
+
+
+class _InnerDispatcher(CPUDispatcher):
+    """A compiled function without a wrapper for Python, which by itself would end the process if Python called it."""
+
+    def add_overload(self, cres: Any) -> None:
+        """Keep what was compiled for kernels to call, and not where the interpreter looks."""
+        self.overloads[tuple(cres.signature.args)] = cres
+
+    def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
+        del args, kws
+        name = f"{self.__module__}.{self.py_func.__name__}"
+        raise TypeError(f"{name} is called by kernels only; for Python to call it, make it a kernel or exact_kernel")
+
+
 def kernel(function: Function) -> Function:
     """Compile `function` for the hot path: cached on disk, without the GIL, NumPy division rules."""
     return cast(Function, _kept(numba.njit(fastmath=_FASTMATH, **_KEPT)(function)))
@@ -48,6 +84,23 @@ def kernel(function: Function) -> Function:
 def exact_kernel(function: Function) -> Function:
     """Compile `function` with strict IEEE arithmetic: for searches and state that must repeat bit for bit."""
     return cast(Function, _kept(numba.njit(**_KEPT)(function)))
+
+
+def inner_kernel(function: Function) -> Function:
+    """Compile as `kernel` does what only kernels call, without the wrapper for Python."""
+    compiled = numba.njit(fastmath=_FASTMATH, pipeline_class=_InnerCompiler, **_KEPT)(function)
+    return cast(Function, _inner(_kept(compiled)))
+
+
+def exact_inner_kernel(function: Function) -> Function:
+    """Compile as `exact_kernel` does what only kernels call, without the wrapper for Python."""
+    return cast(Function, _inner(_kept(numba.njit(pipeline_class=_InnerCompiler, **_KEPT)(function))))
+
+
+def _inner(dispatcher: Any) -> Any:
+    """Have a call from Python refused with an error."""
+    dispatcher.__class__ = _InnerDispatcher
+    return dispatcher
 
 
 def _kept(dispatcher: Any) -> Any:
@@ -69,4 +122,5 @@ def leaf(function: Function) -> Function:
     It calls no kernel, and calculates as the first kernel that calls it does: kernels that share one are of one kind.
     It cannot be called from Python.
     """
-    return cast(Function, numba.njit(**_LEAF)(function))
+    compiled = numba.njit(pipeline_class=_LeafCompiler, **_LEAF)(function)
+    return cast(Function, _inner(compiled))

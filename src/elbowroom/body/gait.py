@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import kernel, leaf
+from elbowroom.jit import inner_kernel, kernel, leaf
 
 Floats = NDArray[np.float64]
 
@@ -152,7 +152,7 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> fl
     return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
 
 
-@kernel
+@inner_kernel
 def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     forward, lateral, turn = root[3], root[4], root[5]

@@ -13,7 +13,7 @@ from elbowroom.body import posing
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import BodyModel, arm_capsules, chest_frames, trunk_capsules
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.self_contact import allowed_distances
 
 Floats = NDArray[np.float64]
@@ -98,7 +98,7 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
     )  # fmt: skip
 
 
-@exact_kernel
+@exact_inner_kernel
 def carried_frames(limb: Limb, configurations: Floats) -> tuple[Floats, Floats]:
     """The frames (N, 3), (N, 4) that the waist's limb carries, the chest's, in the pelvis frame, for waists (N, d)."""
     _, places, turns = posing.pose_trunk(

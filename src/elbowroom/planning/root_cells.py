@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.root_room import Room
 
 Floats = NDArray[np.float64]
@@ -83,7 +83,7 @@ def cheapest(
     return way, least
 
 
-@exact_kernel
+@exact_inner_kernel
 def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats) -> None:
     """What it costs (turns,) to begin in another turn than `begin`, where there is room for it."""
     cost[begin] = 0.0
@@ -94,7 +94,7 @@ def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats)
             t += side
 
 
-@exact_kernel
+@exact_inner_kernel
 def _settle(
     clear: Floats32,
     standing: Floats,
@@ -125,7 +125,7 @@ def _settle(
     return reached
 
 
-@exact_kernel
+@exact_inner_kernel
 def _best_move(clear: Floats32, prices: Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
     """The cheapest way to a cell from the row before it, and by which of nine moves."""
     best, move = np.inf, 0

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -65,14 +65,14 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _ground_velocity(state: Floats) -> tuple[float, float]:
     """Velocity along world x and z."""
     sine, cosine = np.sin(state[2]), np.cos(state[2])
     return state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
 
 
-@exact_kernel
+@exact_inner_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, interval: float) -> tuple[float, float]:
     """Value and rate of change of the cubic from `a` to `b` with the given rates at its ends."""
     rest = 1.0 - u

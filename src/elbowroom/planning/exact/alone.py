@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.lattice import BACK, GOAL, HOLD, KEPT, OWN, squares_from
 
@@ -49,13 +49,13 @@ def alone_at(
     return own, needed, kept
 
 
-@exact_kernel
+@exact_inner_kernel
 def _distance(a: Floats, b: Floats) -> float:
     """How far two postures (d,) are apart, radians."""
     return float(np.sqrt(squared_distance(a, b)))
 
 
-@exact_kernel
+@exact_inner_kernel
 def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32) -> int:
     """The number of a posture (d,), or -1; `squares` (W,) is scratch."""
     squares_from(columns, posture, squares)
@@ -63,7 +63,7 @@ def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32)
     return int(at) if at < known.shape[0] and _near(posture, known[at]) else -1
 
 
-@exact_kernel
+@exact_inner_kernel
 def _near(a: Floats, b: Floats) -> bool:
     apart = 0.0
     for i in range(a.shape[0]):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inner_kernel
 from elbowroom.planning.exact.postures import BLOCK
 from elbowroom.world.capsule_tiles import BOX, PER_METRE, lower_squares, lower_to_squares
 from elbowroom.world.clearance import box_rows
@@ -21,7 +21,7 @@ _QUARTER = np.float32(0.25)
 _LAST = BLOCK - 1
 
 
-@exact_kernel
+@exact_inner_kernel
 def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> int:
     """Copy the boxes (B, 15) whose ball comes within `reach` of a place (3,) to `near`; their number."""
     count = 0
@@ -37,7 +37,7 @@ def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> in
     return count
 
 
-@exact_kernel
+@exact_inner_kernel
 def relative_to(origin: Floats, boxes: Floats, count: int, places: Floats, out: Floats) -> None:
     """Move the first `count` boxes (B, 15) by minus a place (3,), and write `places` (N, 3) so moved to `out`."""
     for i in range(3):
@@ -63,7 +63,7 @@ def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
         out[12 + i] = box[12 + i]
 
 
-@exact_kernel
+@exact_inner_kernel
 def _spread(balls: Floats) -> Floats32:
     """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
 
@@ -83,7 +83,7 @@ def _spread(balls: Floats) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> None:
     """How far (W,) balls as `_spread` are out of reach of box b; negative where they are within."""
     row = rows[b * BOX : (b + 1) * BOX]
@@ -123,7 +123,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     return checks
 
 
-@exact_kernel
+@exact_inner_kernel
 def place_capsules(segments: Floats32, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32) -> None:
     """Capsules (C, 6, N) in frames at `places` (N, 3), `turns` (N, 4), as lanes (C, 7, W) outside of them, W >= N.
 
@@ -145,7 +145,7 @@ def place_capsules(segments: Floats32, radii: Floats32, places: Floats, turns: F
             lanes[c, 6, n] = radii[c]
 
 
-@kernel
+@inner_kernel
 def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]

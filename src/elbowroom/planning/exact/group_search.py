@@ -8,7 +8,7 @@ So steps are swept only where the search is blocked, and every candidate is swep
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inlined
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
@@ -68,7 +68,7 @@ def _proven(
     return checks, harsh
 
 
-@exact_kernel
+@exact_inner_kernel
 def _stiffened(stiff: Bools, touches: Bools) -> bool:
     """Make the key times (n+1,) stiff at both ends of the intervals (n,) that touch; whether any does."""
     found = False
@@ -78,7 +78,7 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
     return found
 
 
-@exact_kernel
+@exact_inner_kernel
 def _closed(lattice: Lattice, masks: Masks, keys: Floats, way: Longs, touches: Bools) -> tuple[int, float]:
     """Close the steps of a way in the intervals where it touches, and those near to them.
 

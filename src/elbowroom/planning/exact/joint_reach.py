@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.exact.joint_bounds import Problem
 
 Bits = NDArray[np.uint64]
@@ -28,7 +28,7 @@ class Reach(NamedTuple):
     triples: Bools  # (W, L, R)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _packed(flags: Bools) -> Bits:
     """Rows of flags (N, R) as words (N, ceil(R / 64))."""
     out = np.zeros((flags.shape[0], (flags.shape[1] + _WORD - 1) // _WORD), np.uint64)
@@ -39,7 +39,7 @@ def _packed(flags: Bools) -> Bits:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _open(costs: Floats32) -> Bools:
     """Which prices or steps (N, R) are finite."""
     out = np.empty(costs.shape, np.bool_)
@@ -49,7 +49,7 @@ def _open(costs: Floats32) -> Bools:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _free(problem: Problem, depth: int) -> Bits:
     """The triples (W, L, words) that are free in a slice."""
     waist, left = problem.waist[depth], problem.left[depth]
@@ -65,7 +65,7 @@ def _free(problem: Problem, depth: int) -> Bits:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _keep(known: Bits, free: Bits) -> bool:
     """Keep those triples of `known` that are free; whether there are any."""
     kept = np.uint64(0)
@@ -77,7 +77,7 @@ def _keep(known: Bits, free: Bits) -> bool:
     return bool(kept != 0)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _same(first: Bits, second: Bits) -> bool:
     differing = np.uint64(0)
     for i in range(first.shape[0]):
@@ -85,7 +85,7 @@ def _same(first: Bits, second: Bits) -> bool:
     return bool(differing == 0)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _stepped(known: Bits, steps: Bits) -> Bits:
     """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
     out = np.zeros_like(known)
@@ -105,7 +105,7 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     """The steps of left arm and waist: unions of sets (W, L, words)."""
     half, out = np.zeros_like(known), np.zeros_like(known)
@@ -124,7 +124,7 @@ def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _unpacked(bits: Bits, size: int) -> Bools:
     out = np.zeros((bits.shape[0], bits.shape[1], size), np.bool_)
     for w in range(bits.shape[0]):
@@ -134,7 +134,7 @@ def _unpacked(bits: Bits, size: int) -> Bools:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _after(problem: Problem, depth: int, known: Bits) -> Bits:
     """The triples of the next slice to which a step leads from `known`, free or not."""
     stepped = _stepped(known, _packed(_open(problem.right_steps[depth])))

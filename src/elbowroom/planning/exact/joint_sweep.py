@@ -7,7 +7,7 @@ the right arm's, or the postures of both arms.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel
+from elbowroom.jit import inner_kernel, kernel
 from elbowroom.planning.exact.joint_bounds import Problem
 
 Floats32 = NDArray[np.float32]
@@ -17,7 +17,7 @@ Indices = NDArray[np.int64]
 _START = 0  # the first slice
 
 
-@kernel
+@inner_kernel
 def _compact(steps: Floats32, sources: Indices, targets: Indices) -> Floats32:
     out = np.empty((sources.shape[0], targets.shape[0]), np.float32)
     for i in range(sources.shape[0]):
@@ -27,14 +27,14 @@ def _compact(steps: Floats32, sources: Indices, targets: Indices) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _lower(out: Floats32, values: Floats32, cost: float) -> None:
     """out[i] = min(out[i], values[i] + cost)."""
     for i in range(np.uint64(out.shape[0])):
         out[i] = min(out[i], values[i] + cost)
 
 
-@kernel
+@inner_kernel
 def _over_right(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the right arm: (W, L, R) to (W, L, R')."""
     out = np.full((known.shape[0], known.shape[1], steps.shape[1]), np.float32(np.inf), np.float32)
@@ -47,7 +47,7 @@ def _over_right(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _over_left(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the left arm: (W, L, R) to (W, L', R)."""
     out = np.full((known.shape[0], steps.shape[1], known.shape[2]), np.float32(np.inf), np.float32)
@@ -59,7 +59,7 @@ def _over_left(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _over_waist(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the waist: (W, LR) to (W', LR)."""
     out = np.full((steps.shape[1], known.shape[1]), np.float32(np.inf), np.float32)
@@ -70,7 +70,7 @@ def _over_waist(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _add_prices(problem: Problem, depth: int, waist: Indices, left: Indices, right: Indices, costs: Floats32) -> bool:
     """Add what the triples of a slice cost to `costs` (W, L, R); whether any is left that is finite."""
     found = False
@@ -87,7 +87,7 @@ def _add_prices(problem: Problem, depth: int, waist: Indices, left: Indices, rig
     return found
 
 
-@kernel
+@inner_kernel
 def _before(
     known: Floats32, waist_steps: Floats32, left_steps: Floats32, right_steps: Floats32, target: Indices
 ) -> Indices:
@@ -109,7 +109,7 @@ def _before(
     return out
 
 
-@kernel
+@inner_kernel
 def _least(costs: Floats32) -> Indices:
     """The cheapest triple (3,)."""
     best, out = np.float32(np.inf), np.zeros(3, np.int64)

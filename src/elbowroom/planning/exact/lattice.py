@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -77,7 +77,7 @@ def posture_of(lattice: Lattice, depth: int, node: int) -> Floats:
     return posture
 
 
-@exact_kernel
+@exact_inner_kernel
 def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
     """The squared distances (W,) of the postures from one (d,)."""
     out[:] = 0.0
@@ -87,7 +87,7 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
             out[v] += (column[v] - place) * (column[v] - place)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _measure(lattice: Lattice, work: Work) -> None:
     """Distances of each key time's own postures from all others; too long a step is infinite."""
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
@@ -103,7 +103,7 @@ def _measure(lattice: Lattice, work: Work) -> None:
             row[size:] = _INFINITE
 
 
-@exact_kernel
+@exact_inner_kernel
 def _own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     """The squared length of the step between own postures of two successive depths; infinite if it is too long."""
     total = 0.0
@@ -112,7 +112,7 @@ def _own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_kernel
+@exact_inner_kernel
 def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
     """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
@@ -123,7 +123,7 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
         origins[b] = origin if better else origins[b]
 
 
-@exact_kernel
+@exact_inner_kernel
 def _relax_open(
     out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Floats32
 ) -> None:
@@ -136,7 +136,7 @@ def _relax_open(
         origins[b] = origin if better else origins[b]
 
 
-@exact_kernel
+@exact_inner_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     """2 w q.g into `out` (W+OWN,) for the nodes q of `row`; returns w |g|^2; g is the goal's way from `depth` on."""
     width, weight = lattice.moves.shape[1], lattice.weight
@@ -155,7 +155,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     return square
 
 
-@exact_kernel
+@exact_inner_kernel
 def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
     nodes have a way."""
@@ -188,7 +188,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     return count
 
 
-@exact_kernel
+@exact_inner_kernel
 def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of a step to an own posture of the next depth, and where it comes from."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
@@ -207,7 +207,7 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     return best, origin
 
 
-@exact_kernel
+@exact_inner_kernel
 def _own_way(lattice: Lattice) -> float:
     """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more."""
     width = lattice.moves.shape[1]
@@ -226,7 +226,7 @@ def _own_way(lattice: Lattice) -> float:
     return float(known.min())
 
 
-@exact_kernel
+@exact_inner_kernel
 def _kept_way(lattice: Lattice) -> float:
     """The cost of the last plan's way, infinite where it is not free."""
     total, before = 0.0, lattice.moves.shape[1] + HOLD
@@ -239,7 +239,7 @@ def _kept_way(lattice: Lattice) -> float:
     return total
 
 
-@exact_kernel
+@exact_inner_kernel
 def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
@@ -295,7 +295,7 @@ def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     return way
 
 
-@exact_kernel
+@exact_inner_kernel
 def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
     """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
     for t in range(way.shape[0]):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 
@@ -32,7 +32,7 @@ def new_masks(count: int, size: int, nodes: int) -> Masks:
     )
 
 
-@exact_kernel
+@exact_inner_kernel
 def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
     """The masks (n,) of intervals with these keys (n, K), -1 where there is none.
 
@@ -55,7 +55,7 @@ def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def new_mask(masks: Masks, key: Floats) -> int:
     """The mask of an interval under `key` (K,), with all steps open."""
     at = admit(masks.slots, key)
@@ -63,14 +63,14 @@ def new_mask(masks: Masks, key: Floats) -> int:
     return int(at)
 
 
-@exact_kernel
+@exact_inner_kernel
 def reopen(masks: Masks, at: int) -> None:
     """Open all steps of a mask, if it is one."""
     if at >= 0:
         masks.closed[at], masks.seen[at], masks.slack[at] = 0.0, False, 0.0
 
 
-@exact_kernel
+@exact_inner_kernel
 def mask_keys(ids: Longs, goals: Floats) -> Floats:
     """The keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
     horizon, size = goals.shape[0] - 1, goals.shape[1]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import BLOCK, Postures
@@ -42,7 +42,7 @@ class Parts(NamedTuple):
     allowed: Floats32  # (C, P) metres
 
 
-@exact_kernel
+@exact_inner_kernel
 def _axis_gap(axis: Floats32, x: float, y: float, z: float) -> float:
     """Distance of a point from a segment (6,)."""
     ux, uy, uz = axis[3] - axis[0], axis[4] - axis[1], axis[5] - axis[2]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inlined
+from elbowroom.jit import exact_inner_kernel, inlined
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.group import GroupTask, Weights
 from elbowroom.planning.exact.lattice import BACK, OWN, squares_from
@@ -31,7 +31,7 @@ class Carriers(NamedTuple):
     turns: Floats  # (n, SWEEP+1, 4)
 
 
-@exact_kernel
+@exact_inner_kernel
 def carriers_at(ids: Longs, places: Floats, turns: Floats, slots: Longs) -> Carriers:
     """The ways at `slots` (n,), one after the other."""
     count = slots.shape[0]
@@ -72,14 +72,14 @@ def _clearances(
     return clear, checks
 
 
-@exact_kernel
+@exact_inner_kernel
 def _lower(row: Floats32, other: Floats32) -> None:
     """Lower the beginning of a row to another."""
     for i in range(np.uint64(other.shape[0])):
         row[i] = min(row[i], other[i])
 
 
-@exact_kernel
+@exact_inner_kernel
 def _priced(
     columns: Floats32, goals: Floats, own: Floats, clear: Floats32, extras: Floats32, margins: Floats, most: float,
     weights: Weights, kept: Longs,
@@ -106,7 +106,7 @@ def _priced(
     return price
 
 
-@exact_kernel
+@exact_inner_kernel
 def _unfold(limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
     """Rule out ways back that lead through the trunk."""
     width = price.shape[1] - OWN
@@ -117,7 +117,7 @@ def _unfold(limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
                 price[t, width + BACK] = _INFINITE
 
 
-@exact_kernel
+@exact_inner_kernel
 def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
     """Lanes that only fill up the last block, and postures of a key time alone that are not needed, are no nodes."""
     width = price.shape[1] - OWN
@@ -130,7 +130,7 @@ def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
                 row[width + e] = _INFINITE
 
 
-@exact_kernel
+@exact_inner_kernel
 def node_prices(
     tables: Tables, postures: Postures, carriers: Carriers, task: GroupTask, weights: Weights, own: Floats,
     needed: Bools, kept: Longs,

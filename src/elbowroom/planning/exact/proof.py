@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.posing import place_pelvis
-from elbowroom.jit import exact_kernel, inlined
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.exact.clearances import (
     COMFORT,
     boxes_around,
@@ -57,7 +57,7 @@ class Carrier(NamedTuple):
     waist: Floats  # the waist's way's key; not used where the limb is the waist
 
 
-@exact_kernel
+@exact_inner_kernel
 def _looks(
     postures: Postures,
     configurations: Floats,
@@ -81,7 +81,7 @@ def _looks(
     return int(capsule_clearances(lanes, near, count, out))
 
 
-@exact_kernel
+@exact_inner_kernel
 def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, share: float, levers: Floats) -> float:
     """The bound on the clearance between two looks that found `before` (C,) and `after` (C,).
 
@@ -96,7 +96,7 @@ def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, shar
     return least
 
 
-@exact_kernel
+@exact_inner_kernel
 def _frames_between(
     hips: Floats, waist: Limb, is_waist: bool, states: Floats, heights: Floats, waists: Ends, shares: Floats
 ) -> tuple[Floats, Floats]:
@@ -196,7 +196,7 @@ def _refined(
     return 0.0, checks
 
 
-@exact_kernel
+@exact_inner_kernel
 def _key(number: int, ends: Ends) -> Floats:
     """Of a limb's way with the velocities and postures `ends` on the carrier's way `number`."""
     first, velocity, last, next_velocity = ends
@@ -209,7 +209,7 @@ def _key(number: int, ends: Ends) -> Floats:
     return key
 
 
-@exact_kernel
+@exact_inner_kernel
 def _ends_of(key: Floats) -> Ends:
     """Posture, velocity, posture, velocity of the way under a key."""
     size = (key.shape[0] - 1) // 4

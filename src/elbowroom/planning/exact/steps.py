@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inlined
+from elbowroom.jit import exact_inner_kernel, inlined
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances
 from elbowroom.planning.exact.lattice import OWN, Lattice, Work, posture_of, slopes_of, squares_from
@@ -21,7 +21,7 @@ MOST_STEPS = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
     width = lattice.moves.shape[1]
@@ -31,7 +31,7 @@ def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
         out[width + e] = squared_distance(lattice.own[depth, e], posture)
 
 
-@exact_kernel
+@exact_inner_kernel
 def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: float) -> None:
     """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
     nodes, most = lattice.price.shape[1], np.float32(radius * radius)
@@ -50,7 +50,7 @@ def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: flo
     closed[source, target] = _INFINITE
 
 
-@exact_kernel
+@exact_inner_kernel
 def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools) -> Longs:
     """The steps (K, 2) of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
@@ -117,7 +117,7 @@ def _posed_between(
                     lanes[c, i, k] = lanes[c, i, last]
 
 
-@exact_kernel
+@exact_inner_kernel
 def _take(lanes: Floats32, radii: Floats32, first: int, piece: Floats32) -> None:
     """Sixteen lanes and their radii into `piece` (C, 7, 16)."""
     for c in range(piece.shape[0]):
@@ -127,7 +127,7 @@ def _take(lanes: Floats32, radii: Floats32, first: int, piece: Floats32) -> None
             piece[c, 6, n] = radii[c]
 
 
-@exact_kernel
+@exact_inner_kernel
 def close_steps(
     postures: Postures,
     lattice: Lattice,

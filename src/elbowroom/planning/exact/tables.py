@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.exact.clearances import (
     box_in_frame,
     boxes_around,
@@ -51,7 +51,7 @@ def new_tables(count: int, size: int, width: int) -> Tables:
     )
 
 
-@exact_kernel
+@exact_inner_kernel
 def table_of(
     tables: Tables, postures: Postures, carrier: int, places: Floats, turns: Floats, goals: Floats, boxes: Floats
 ) -> tuple[int, int]:
@@ -77,7 +77,7 @@ def table_of(
     return int(at), checks + count + more
 
 
-@exact_kernel
+@exact_inner_kernel
 def _moments(
     lanes: Floats32, balls: Floats, reach: float, places: Floats, turns: Floats, boxes: Floats, early: Floats32,
     late: Floats32,
@@ -103,7 +103,7 @@ def _moments(
     return checks
 
 
-@exact_kernel
+@exact_inner_kernel
 def _lower(row: Floats32, blocks: Floats32) -> None:
     """Lower the beginning of a row to what is in blocks (B, 16)."""
     for b in range(blocks.shape[0]):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, quickness
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 from elbowroom.planning.frames import compose
 from elbowroom.planning.limb import Limb, carried_frames
@@ -147,7 +147,7 @@ def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
     return levers
 
 
-@exact_kernel
+@exact_inner_kernel
 def pelvis_at(chain: Chain, states: Floats) -> tuple[Floats, Floats]:
     """Pelvis frames (N, 3), (N, 4) in the world for root states (N, 7)."""
     _, drops = foot_poses(chain.legs, chain.scale, states)
@@ -156,7 +156,7 @@ def pelvis_at(chain: Chain, states: Floats) -> tuple[Floats, Floats]:
     return frames
 
 
-@exact_kernel
+@exact_inner_kernel
 def states_between(a: Floats, b: Floats, interval: float, first: float, last: float, count: int) -> Floats:
     """Root states (count+1, 7) at equal steps from the part `first` to the part `last` of a key interval."""
     out = np.empty((count + 1, 7))
@@ -167,7 +167,7 @@ def states_between(a: Floats, b: Floats, interval: float, first: float, last: fl
     return out
 
 
-@exact_kernel
+@exact_inner_kernel
 def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
     """The third derivative of the cubic with these values and slopes at its ends."""
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
@@ -195,7 +195,7 @@ def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float
     return int(at)
 
 
-@exact_kernel
+@exact_inner_kernel
 def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
@@ -261,7 +261,7 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
     return moved
 
 
-@exact_kernel
+@exact_inner_kernel
 def carry(
     chain: Chain, waists: Floats, moved: Floats, places: Floats, turns: Floats, sway: Floats, chest: Floats,
     chest_turns: Floats, chest_sway: Floats,
