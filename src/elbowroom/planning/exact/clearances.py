@@ -14,6 +14,7 @@ Longs = NDArray[np.int64]
 
 COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
 _ROUNDING = 1e-5  # metres: balls are held against boxes in single precision
+_NONE = 0
 _PAIRS = 512  # pairs of a tile and a box that are collected before they are checked
 _FAR = np.float32(np.inf)
 _ZERO = np.float32(0.0)
@@ -107,7 +108,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     total = lanes.shape[0] * parts
     rows, spread, tiles = box_rows(boxes, count), _spread(balls), lanes.reshape(lanes.size)
     squares, pairs = np.full(total * BLOCK, _FAR, np.float32), np.empty((_PAIRS + total, 2), np.int64)
-    found, checks, beyond = 0, 0, spread[4]
+    found, checks, beyond = int(_NONE), 0, spread[4]
     for b in range(count):
         _beyond_reach(spread, rows, b, beyond)
         for t in range(total):
@@ -115,7 +116,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
             found += beyond[t] < 0.0
         if found >= _PAIRS or b == count - 1:
             lower_squares(tiles, rows, pairs, found, squares)
-            checks, found = checks + found * BLOCK, 0
+            checks, found = checks + found * BLOCK, int(_NONE)
     for t in range(total):
         if squares[t * BLOCK] < _FAR:
             radius = lanes[t // parts, t % parts, 6, 0]
