@@ -101,9 +101,7 @@ class Dressing:
         )
 
     def _jolts(self, found: Ways, last: Kept) -> bool:
-        """Whether the waist has left the last plan's way soon, and some joint by more than a little."""
-        if self.problem.begins.ahead:
-            return False
+        """Whether the waist has left the last plan's way, and some joint by more than a little."""
         known = min(last.known, len(last.keys))
         away = [
             way.keys[:known] - last.keys[:known, columns_of(g)] for way, g in zip(found.ways, LOCAL_GROUPS, strict=True)
