@@ -112,7 +112,8 @@ def build_hanim(recipe: HanimRecipe) -> bytes:
     if recipe.encoding == "xml":
         text = xml_file(nodes)
     else:
-        header = "#VRML V2.0 utf8\n" if recipe.encoding == "vrml" else "#X3D V3.3 utf8\nPROFILE Immersive\n"
+        x3d = "#X3D V3.3 utf8\nPROFILE Immersive\nCOMPONENT HAnim:1\n"
+        header = "#VRML V2.0 utf8\n" if recipe.encoding == "vrml" else x3d
         protos = PROTOS_1 if recipe.encoding == "vrml" and recipe.version == "1.1" else ""
         text = header + protos + "\n".join(classic(node) for node in nodes) + "\n"
     return gzip.compress(text.encode()) if recipe.packed else text.encode()
@@ -228,7 +229,8 @@ def xml_file(nodes: list[Made]) -> str:
     head = (
         '<?xml version="1.0" encoding="UTF-8"?>\n<!DOCTYPE X3D PUBLIC "ISO//Web3D//DTD X3D 4.0//EN" '
         '"https://www.web3d.org/specifications/x3d-4.0.dtd">\n<X3D profile="Immersive" version="4.0">\n'
-        '<head><meta name="creator" content="a test"/><meta name="license" content="CC0"/></head>\n'
+        '<head><component name="HAnim" level="1"/><meta name="creator" content="a test"/>'
+        '<meta name="license" content="CC0"/></head>\n'
     )
     return f"{head}<Scene>\n{inside}</Scene>\n</X3D>\n"
 
