@@ -53,8 +53,3 @@ class SelfContacts:
             for known in self._known
             if known.side == side and abs(known.time - time) < _SAME and np.abs(known.around - around).max() < _SAME
         ]
-
-    @property
-    def times(self) -> set[tuple[int, float]]:
-        """The arms and key times of which anything is known."""
-        return {(known.side, known.time) for known in self._known}

@@ -1,0 +1,45 @@
+"""What an arm ran into is known again at the same key time, however that was reckoned, while the body is the same."""
+
+import numpy as np
+
+from elbowroom.planning.exact.self_contacts import SelfContacts
+
+WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
+
+
+def known_at(contacts: SelfContacts, side: int, time: float, waist: np.ndarray = WAIST) -> int:
+    return len(contacts.at(side, time, waist))
+
+
+def test_a_key_time_is_the_same_in_plans_that_begin_elsewhere() -> None:
+    contacts = SelfContacts()
+    contacts.add(0, 0.15 + 0.15 * 6, WAIST, ARM)
+    assert 0.15 + 0.15 * 6 != 0.3 + 0.15 * 5  # as floats
+    assert np.array_equal(contacts.at(0, 0.3 + 0.15 * 5, WAIST)[0], ARM)
+    assert known_at(contacts, 0, 1.2) == 0
+    assert known_at(contacts, 1, 1.05) == 0
+    assert known_at(contacts, 0, 1.05, WAIST + 0.01) == 0
+
+
+def test_what_is_past_is_forgotten() -> None:
+    contacts = SelfContacts()
+    contacts.add(0, 1.05, WAIST, ARM)
+    contacts.begin(0.9)
+    assert known_at(contacts, 0, 1.05) == 1
+    contacts.begin(1.2)
+    assert known_at(contacts, 0, 1.05) == 0
+    contacts.add(1, 1.5, WAIST, ARM)
+    contacts.forget()
+    assert known_at(contacts, 1, 1.5) == 0
+
+
+def test_the_alert_ends() -> None:
+    contacts = SelfContacts()
+    contacts.add(0, 9.0, WAIST, ARM)
+    alerts = []
+    for plan in range(20):
+        alerts.append(contacts.alert)
+        contacts.begin(0.15 * plan)
+    assert alerts == sorted(alerts, reverse=True)
+    assert alerts[0]
+    assert not alerts[-1]
