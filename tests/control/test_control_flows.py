@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
-from elbowroom.control import wayfinder as module
+from elbowroom.control import planners as module
 from elbowroom.control.canned import canned_walk
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase

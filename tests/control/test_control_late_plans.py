@@ -1,11 +1,15 @@
 """Plans that take their time: playback goes on, touches nothing, slows down where no plan comes, and walks on."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.control import steering
 from elbowroom.control.controller import Controller
-from elbowroom.control.foresight import Foresight
+from elbowroom.control.desk import Job
+from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.frame import Frame
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -132,3 +136,71 @@ def test_playback_never_plays_more_than_is_left() -> None:
             assert left > -1e-12
         assert left < 1e-6
         assert rates[-1] < 1e-3
+
+
+def test_what_is_urgent_is_given_time_enough_and_what_was_late_is_soon_asked_for_again() -> None:
+    foresight = Foresight(immediate=False)
+    usual = foresight.lead(Haste.HURRY)
+    for _ in range(20):
+        foresight.waited(0.001, Haste.HURRY)
+    assert foresight.lead(Haste.HURRY) == usual < 0.1
+    foresight.waited(0.08, Haste.HURRY)
+    assert foresight.lead(Haste.HURRY) > 0.08
+    assert foresight.lead(Haste.AGAIN) == usual
+    foresight.waited(0.001, Haste.HURRY)
+    assert usual < foresight.lead(Haste.HURRY) < 0.1
+    assert Foresight(immediate=True).lead(Haste.HURRY) == 0.0
+
+
+class HiccupDesk(LateDesk):
+    """A desk that takes longer over one plan in a hurry."""
+
+    def __init__(self, long: int) -> None:
+        super().__init__(1)
+        self.long = long
+
+    def submit(self, job: Job) -> None:
+        super().submit(job)
+        if self._answer is not None and steering.changed(WALK, self._answer_to(job)):
+            self._due, self.long = self._due + self.long, 0
+
+    def _answer_to(self, job: Job) -> Command:
+        assert isinstance(job, partial)
+        command: Command = job.args[0].query.command
+        return command
+
+
+def test_a_plan_in_a_hurry_that_comes_too_late_is_soon_made_up_for() -> None:
+    desk = HiccupDesk(5)
+    controller = Controller(HUMANOID, Scene.load("empty"), desk=desk)
+    turned, answered = Command(forward=1.0, strafe=1.0), 0
+    for turn in range(3 * SECOND):
+        desk.next_turn()
+        frame = controller.step(turned if turn >= 2 * SECOND else WALK, DT)
+        assert frame.clearance > 0.0
+        if not answered and frame.plan is not None and frame.plan.command == turned:
+            answered = turn
+    assert controller.late_plans == 1
+    assert 6 < answered - 2 * SECOND < 10
+
+
+def test_what_is_planned_after_a_reset_is_what_was_planned_at_first() -> None:
+    """Whether or not a plan was in the making; the planners, which take long to make, stay the same."""
+
+    def crossing(controller: Controller, desk: LateDesk, turns: int) -> list[bytes]:
+        shown = []
+        for _ in range(turns):
+            desk.next_turn()
+            shown.append(controller.step(WALK, DT).q.tobytes())
+        return shown
+
+    desk = LateDesk(3)
+    controller = Controller(HUMANOID, Scene.load("d"), desk=desk)
+    controller.prepare()
+    first = crossing(controller, desk, 4 * SECOND)
+    for asks in (True, False):
+        while desk.busy is not asks:
+            crossing(controller, desk, 1)
+        controller.reset()
+        assert not desk.busy
+        assert crossing(controller, desk, 4 * SECOND) == first

@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.rehearsal import rehearse_detour
 from elbowroom.planning.root_motion import RootMotionSettings
+from elbowroom.planning.root_plan import RootPlanKind
 from elbowroom.server.library import Library
 from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
 from elbowroom.server.pose_frame import parse
@@ -161,9 +163,15 @@ def test_walking_speed_becomes_a_share_of_the_planners_own(
 
 def test_warming_up_leaves_nothing_to_compile(library: Library) -> None:
     warm_up(library)
+    assert library.warm.is_set()
     compiled: list[str] = []
     warm_up(library, lambda name, number: compiled.append(f"{number} {name}"))
     assert compiled == []
+
+
+def test_the_rehearsal_meets_a_way_round(library: Library) -> None:
+    path = rehearse_detour(library.avatars.get("stock").humanoid)
+    assert path.kind is RootPlanKind.DETOUR
 
 
 @given(rate=st.floats(1, 100), burst=st.integers(1, 50), gaps=st.lists(st.floats(0, 0.2), min_size=1, max_size=200))

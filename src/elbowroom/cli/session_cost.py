@@ -99,6 +99,7 @@ def _url(server: "subprocess.Popen[str]") -> str:
 
 
 def _measured(url: str, seconds: float, sessions: int, ready: float) -> SessionCost:
+    _wait_until_warm(url)
     with ExitStack() as stack, ThreadPoolExecutor(sessions) as threads:
         clients = [stack.enter_context(_client(url)) for _ in range(sessions)]
         list(threads.map(partial(_walk, seconds=_SETTLE), clients))
@@ -152,6 +153,15 @@ def _walk(client: ClientConnection, seconds: float) -> _Tally:
             parsed = decode_server(message)
             tally.status = parsed if isinstance(parsed, Status) else tally.status
     return tally
+
+
+def _wait_until_warm(url: str) -> None:
+    """Until the server has loaded all its kernels: what that costs is measured with the start."""
+    end = time.monotonic() + _PATIENCE
+    while not _usage(url)["warm"]:
+        if time.monotonic() > end:
+            raise InputError(f"doctor: the server is not warm after {_PATIENCE:g} s; `elbowroom play` says why")
+        time.sleep(0.1)
 
 
 def _usage(url: str) -> dict[str, float]:

@@ -19,6 +19,7 @@ from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
+from elbowroom.control.planners import Planners
 from elbowroom.control.prediction import predicted, slimmer
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
@@ -37,7 +38,6 @@ Floats = NDArray[np.float64]
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
 _SAME = 1e-6  # radians
-_SAME_TIME = 1e-9  # seconds
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 _FAR_MOVING = 0.6  # the same where things move by themselves
@@ -85,17 +85,19 @@ class Controller:
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
         self._errands = Errands(desk or ImmediateDesk())
         self._worn = fitted(self.motions, humanoid)
-        self._wayfinder = Wayfinder(humanoid, scene, self.settings, self._check, self._worn)
+        self._planners = Planners(planner, humanoid, scene, self._worn)
+        self._wayfinder = Wayfinder(self.settings, self._check, self._worn, self._planners)
         self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
-        if self._errands.busy:  # a plan in the making keeps its planners
-            self._errands.forget()
-            self._wayfinder = Wayfinder(self.humanoid, self.scene, self.settings, self._check, self._worn)
-        else:
-            self._wayfinder.reset()
+        self._errands.forget()
+        self._wayfinder = self._wayfinder.afresh()
         self._begin()
+
+    def prepare(self) -> None:
+        """Make the planners now, in the caller's thread, so that the first plan need not wait for that."""
+        self._planners.make()
 
     def _begin(self) -> None:
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
@@ -242,11 +244,11 @@ class Controller:
             return
         if heard.question.assist is not self._assist or steering.overturned(heard.question.query.command, command):
             self._next = Phase.RESET
-        elif heard.start < self._queue.time - _SAME_TIME:
+        elif heard.late:
             self.late_plans += 1
             self._next = Phase.PLAN
         else:
-            self._go_on_with(*heard)
+            self._go_on_with(heard.answer, heard.question, heard.start)
 
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1

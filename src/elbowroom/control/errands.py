@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 from elbowroom.control import steering
 from elbowroom.control.desk import PlanningDesk
-from elbowroom.control.foresight import Foresight
+from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.planning.command import Command
+
+_SAME_TIME = 1e-9  # seconds
 
 
 class Heard(NamedTuple):
@@ -19,6 +21,7 @@ class Heard(NamedTuple):
     answer: Answer
     question: Question
     start: float  # seconds, when its motion starts in playback
+    late: bool  # that moment has been played
 
 
 class _Asked(NamedTuple):
@@ -28,6 +31,7 @@ class _Asked(NamedTuple):
     time: float  # seconds, when it was asked for
     delay: float  # of the queue then
     standing: bool  # it starts where the avatar stands, whenever that is
+    haste: Haste
     superseded: Event  # set when something else is wanted
 
 
@@ -41,6 +45,7 @@ class Errands:
     def begin(self) -> None:
         """Nothing is asked for, and nothing is known of how long plans take."""
         self._asked: _Asked | None = None
+        self._too_late = False  # the last plan in a hurry came so
         self.foresight = Foresight(self._desk.immediate)
 
     @property
@@ -64,15 +69,19 @@ class Errands:
         That is the next unplayed key frame (receding horizon), or between key frames, if the user wants something else
         `at_once`.
         """
-        coming, soonest = queue.unplayed().times, queue.time + self.foresight.lead(hurry=hurry)
+        coming, soonest = queue.unplayed().times, queue.time + self.foresight.lead(self._haste(hurry=hurry))
         time = soonest if at_once else next((time for time in coming if time >= soonest), coming[-1])
         return min(float(time), float(coming[-1]))
+
+    def _haste(self, *, hurry: bool) -> Haste:
+        return (Haste.AGAIN if self._too_late else Haste.HURRY) if hurry else Haste.NONE
 
     def ask(self, question: Question, answer: Callable[[Question], Answer | None], queue: KeyFrameQueue) -> None:
         """Submit a question to be answered by `answer`; the desk is not busy."""
         superseded = Event()
         asked = question._replace(query=question.query._replace(superseded=superseded.is_set))
-        self._asked = _Asked(asked, queue.time, queue.delay, queue.empty, superseded)
+        haste = self._haste(hurry=question.query.hurry)
+        self._asked = _Asked(asked, queue.time, queue.delay, queue.empty, haste, superseded)
         self._desk.submit(partial(answer, asked))
 
     def hear(self, queue: KeyFrameQueue) -> Heard | None:
@@ -82,9 +91,11 @@ class Errands:
             self._asked = asked if self._desk.busy else None
             return None
         self._asked = None
-        self.foresight.waited(queue.time - asked.time, hurry=asked.question.query.hurry)
+        self.foresight.waited(queue.time - asked.time, asked.haste)
         start = queue.time if asked.standing else answer.path.start_time + queue.delay - asked.delay
-        return Heard(answer, asked.question, start)
+        late = start < queue.time - _SAME_TIME
+        self._too_late = late and asked.haste is not Haste.NONE
+        return Heard(answer, asked.question, start, late)
 
     def supersede(self, command: Command) -> None:
         """Call off a plan in the making for what is not wanted any more; one that is in a hurry is soon there."""

@@ -1,11 +1,23 @@
 """How far ahead to plan where plans take their time, and how fast to play where they are late."""
 
 import math
+from enum import Enum
 
 _LIKELY = 0.03  # seconds that a plan takes until one has been waited for
 _SPARE = 0.02  # seconds
-_FORGET = 0.7  # of what is expected, with every plan that was quicker
 _BRAKING = 0.4  # seconds in which playback slows down to a stand, or comes back to its full speed
+
+
+class Haste(Enum):
+    """How soon a plan is wanted."""
+
+    NONE = "none"  # the motion goes on meanwhile as the user wants it
+    HURRY = "hurry"  # something else is wanted than what is played; coming too late costs more than being early
+    AGAIN = "again"  # the last one in a hurry came too late; what it found out is known
+
+
+_FORGET = {Haste.NONE: 0.7, Haste.HURRY: 0.85, Haste.AGAIN: 0.85}  # of what is expected, with every quicker plan
+_LEAST = {Haste.NONE: 0.0, Haste.HURRY: _LIKELY, Haste.AGAIN: _LIKELY}  # seconds that are always expected
 
 
 class Foresight:
@@ -17,16 +29,16 @@ class Foresight:
 
     def __init__(self, immediate: bool) -> None:
         self._immediate = immediate
-        self._expected = {False: _LIKELY, True: _LIKELY}  # by whether they are in a hurry
+        self._expected = dict.fromkeys(Haste, _LIKELY)
         self.rate = 1.0  # of playback
 
-    def lead(self, *, hurry: bool) -> float:
+    def lead(self, haste: Haste) -> float:
         """Seconds from now at which a plan that is asked for now should start."""
-        return 0.0 if self._immediate else self._expected[hurry] + _SPARE
+        return 0.0 if self._immediate else self._expected[haste] + _SPARE
 
-    def waited(self, seconds: float, *, hurry: bool) -> None:
+    def waited(self, seconds: float, haste: Haste) -> None:
         """A plan took so long."""
-        self._expected[hurry] = max(seconds, _FORGET * self._expected[hurry])
+        self._expected[haste] = max(seconds, _FORGET[haste] * self._expected[haste], _LEAST[haste])
 
     def next_rate(self, left: float, dt: float, *, halting: bool) -> float:
         """The rate for the next `dt` seconds, of `left` seconds of motion; 0 where too little is left to move."""

@@ -4,25 +4,21 @@ A question holds all that its answer depends on, besides what the planners remem
 another thread while playback goes on.
 """
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.canned import canned_walk
+from elbowroom.control.planners import Planners
 from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
 from elbowroom.control.settings import ControlSettings
 from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery, SupersededError
-from elbowroom.planning.planner import Planner, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
-from elbowroom.planning.root_planner import RootPlanner
-from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
@@ -47,53 +43,61 @@ class Answer(NamedTuple):
 
 
 class Wayfinder:
-    """The planners of one avatar in one scene, with what they remember; answers one question at a time."""
+    """Answers one question at a time, whichever thread asks, with planners that remember what they have planned."""
 
     def __init__(
-        self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, check: BodyCheck, motions: MotionSet
+        self,
+        settings: ControlSettings,
+        check: BodyCheck,
+        motions: MotionSet,
+        planners: Planners,
+        *,
+        forgets: bool = False,
     ) -> None:
-        """The planners are made with the first answer: that takes a while."""
-        self._humanoid, self._scene, self._settings, self._check = humanoid, scene, settings, check
-        self._motions = motions
+        """The planners are made with the first answer, if they are not made yet: that takes a while.
+
+        `forgets`: it begins by forgetting all that they have planned.
+        """
+        self._settings, self._check, self._motions = settings, check, motions
+        self._planners, self._forgets = planners, forgets
         self._rng = np.random.default_rng(settings.seed)
 
-    @cached_property
-    def _root_planner(self) -> RootPlanner:
-        return RootPlanner(self._humanoid, self._scene)
+    def afresh(self) -> "Wayfinder":
+        """Another with the same planners, as if newly made.
 
-    @cached_property
-    def _planner(self) -> Planner:
-        return make_planner(self._settings.planner, self._humanoid, self._scene, self._motions)
-
-    def reset(self) -> None:
-        """Forget all that was planned."""
-        self._rng = np.random.default_rng(self._settings.seed)
-        self._root_planner.reset()
-        self._planner.reset()
+        This one may be planning still, for nobody: the other's first answer waits until it has ended, its caller not.
+        """
+        return Wayfinder(self._settings, self._check, self._motions, self._planners, forgets=True)
 
     def answer(self, question: Question) -> Answer | None:
         """Plan; after a contact, find a way out of it. None if nobody waits for it any more."""
-        memory = self._root_planner.memory
-        try:
-            root, local = self._search(question)
-        except SupersededError:
-            self._root_planner.memory = memory
-            return None
-        found = local.status is PlanStatus.FOUND
-        answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities)
-        return self._way_out(answer, question) if question.held is not None else answer
+        with self._planners.lock:
+            memory = self._planners.root.memory
+            try:
+                question.query.go_on()
+                if self._forgets:
+                    self._forgets = False
+                    self._planners.forget()
+                    memory = self._planners.root.memory
+                root, local = self._search(question)
+            except SupersededError:
+                self._planners.root.memory = memory
+                return None
+            found = local.status is PlanStatus.FOUND
+            answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities)
+            return self._way_out(answer, question) if question.held is not None else answer
 
     def _search(self, question: Question) -> Motion:
         """A root path and its upper body; from the planner as one if it can do that."""
         query = question.query
-        self._root_planner.others = query.others
-        if question.assist and isinstance(self._planner, MotionPlanner):
+        self._planners.root.others = query.others
+        if question.assist and isinstance(self._planners.upper, MotionPlanner):
             far = query._replace(horizon=max(query.horizon, question.reserve))
-            return self._planner.plan_motion(self._root_planner, far)
-        root = self._root_planner.plan(query.root, query.command, query.horizon, query.interval, query.time)
+            return self._planners.upper.plan_motion(self._planners.root, far)
+        root = self._planners.root.plan(query.root, query.command, query.horizon, query.interval, query.time)
         if not question.assist:
             return Motion(root, canned_walk(root.path, query.upper, self._motions))
-        return Motion(root, self._planner.plan(root.path, query.upper, self._rng))
+        return Motion(root, self._planners.upper.plan(root.path, query.upper, self._rng))
 
     def _way_out(self, answer: Answer, question: Question) -> Answer:
         """What can follow a contact: a motion that does not touch again within the first key interval, if there is one.
@@ -112,7 +116,7 @@ class Wayfinder:
         if useful and rehearsal.is_playable(path, frozen):
             return answer._replace(uppers=frozen, velocities=None)
         standing = standing_path(path, question.held.root)
-        freed = self._planner.plan(standing, upper, self._rng).configurations
+        freed = self._planners.upper.plan(standing, upper, self._rng).configurations
         parts = partial_motions(freed, upper) if len(freed) else []
         part = next((part for part in parts if rehearsal.is_playable(standing, part)), None)
         return answer._replace(path=standing, uppers=part, velocities=None)

@@ -77,6 +77,7 @@ class _Handlers:
             {
                 "status": "ok",
                 "version": __version__,
+                "warm": self._library.warm.is_set(),
                 "sessions": self._sessions,
                 "wallSeconds": usage.wall_seconds,
                 "cpuSeconds": usage.cpu_seconds,

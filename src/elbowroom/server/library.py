@@ -4,6 +4,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from threading import Event
 
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
@@ -37,6 +38,7 @@ class Library:
     clip: str = ""  # that a session begins with; "": it walks
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
+    warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
     @classmethod
     def open(

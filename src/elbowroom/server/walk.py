@@ -59,7 +59,8 @@ class Walk:
     ) -> None:
         """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`.
 
-        Plans are made at `desk`, by default at once, with the motions that the avatar has learnt.
+        Plans are made at `desk`, by default at once, with the motions that the avatar has learnt. The planners are made
+        here, so that the first command need not wait for them.
         """
         self.avatar = avatar
         self.scene = scene
@@ -67,6 +68,7 @@ class Walk:
         self._desk = desk
         self._motions = motions
         self._controller = self._made(place)
+        self._controller.prepare()
         self.crossed = 0
         self.stuck_times = 0
         self._begin()

@@ -58,12 +58,13 @@ def warm_up(library: Library, report: Report | None = None) -> None:
     """Walk, turn and stand a moment in the library's first scene with its first avatar: every planner, the canned walk.
 
     `report(kernel, number)` hears of each kernel that must be compiled; with all of them cached it hears nothing.
-    Raises `InputError` if the avatar cannot stand in that scene.
+    Sets `library.warm`. Raises `InputError` if the avatar cannot stand in that scene.
     """
     with listening(report):
         for planner in PLANNERS:
             walk_and_stand(library, planner)
         rehearse(library.avatars.get(library.avatar).humanoid)
+    library.warm.set()
 
 
 def first_steps(library: Library, report: Report | None = None) -> None:

@@ -11,7 +11,8 @@ import numpy as np
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.planning.command import Command
 from elbowroom.planning.exact.joint import joint_way
 from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
@@ -24,12 +25,15 @@ from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_w
 from elbowroom.planning.goal import goal_configurations
 from elbowroom.planning.limb import limb_of
 from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_plan import RootPlan
+from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
 _BESIDE = ((0.45, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
 _WALL = ((0.0, 1.5, 1.0), (3.0, 0.6, 0.1))  # legs pass, nobody else does
+_LOW = ((0.1, 0.3, 1.2), (0.2, 0.3, 0.2))  # in the way of the legs
 
 
 @lru_cache(maxsize=4)
@@ -39,14 +43,24 @@ def rehearse(humanoid: Humanoid) -> None:
     times = _INTERVAL * np.arange(_HORIZON + 1.0)
     states[:, 1], states[:, 3], states[:, 6] = _SPEED * times, _SPEED, 0.9 * times
     path = RootPath(0.0, _INTERVAL, states)
-    for center, half in (_BESIDE, _WALL):
-        boxes = Boxes(np.array([center]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([half]))
-        scene = replace(Scene.load("empty"), boxes=boxes, box_names=("box",))
-        body = UpperBody(humanoid, scene, ExactSettings())
+    for box in (_BESIDE, _WALL):
+        body = UpperBody(humanoid, _scene_with(*box), ExactSettings())
         start = goal_configurations(body.goals, path)[0]
         dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
         dressing.together(1)
         dressing.blockade()
+    rehearse_detour(humanoid)
+
+
+def rehearse_detour(humanoid: Humanoid) -> RootPlan:
+    """Plan a root path round a low box."""
+    planner = RootPlanner(humanoid, _scene_with(*_LOW))
+    return planner.plan(RootState(0.0, 0.0, 0.0), Command(forward=1.0), 2 * _HORIZON, _INTERVAL)
+
+
+def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
+    boxes = Boxes(np.array([center]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([half]))
+    return replace(Scene.load("empty"), boxes=boxes, box_names=("box",))
 
 
 def rehearse_product() -> None:
