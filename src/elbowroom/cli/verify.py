@@ -154,7 +154,20 @@ def _print_smoothness(verdict: "Verdict") -> None:
     for name, figures in verdict.smoothness.items():
         extents = zip((figures.speed, figures.acceleration, figures.jerk), _UNITS.get(name, _ANGULAR), strict=True)
         rows[name] = "  ".join(f"{_short(extent.max)} ({_short(extent.p99)}) {unit}" for extent, unit in extents)
-    print_row("Speed, acceleration, jerk: largest (99 %)", rows)
+    print_row("Speed, acceleration, jerk: largest (99 %)", rows | {"limits of exact": _limits()})
+
+
+def _limits() -> str:
+    """What our own planner keeps to."""
+    from elbowroom.body.dof import DofGroup
+    from elbowroom.planning.exact.settings import ExactSettings
+
+    settings = ExactSettings()
+    names = {"waist": DofGroup.WAIST, "arms": DofGroup.LEFT_ARM}
+    return ", ".join(
+        f"{name} {settings.speed_of(group):g} rad/s {settings.acceleration_of(group):g} rad/s²"
+        for name, group in names.items()
+    )
 
 
 def _short(value: float) -> str:

@@ -82,9 +82,8 @@ def crossing_problem(humanoid: Humanoid, scene: Scene) -> CrossingProblem:
     settings = ExactSettings()
     speeds = []
     for group in LOCAL_GROUPS:
-        speed = settings.waist_speed if group is DofGroup.WAIST else settings.arm_speed
         at = slice(group.value.start - DofGroup.ROOT.size, group.value.stop - DofGroup.ROOT.size)
-        speeds.append((at, speed))
+        speeds.append((at, settings.mean_speed_of(group)))
     low, high = np.concatenate([limits(group) for group in LOCAL_GROUPS]).T
     end = path.interval * path.horizon
     return CrossingProblem(

@@ -1,6 +1,5 @@
 """How smoothly a shown motion moves: speed, acceleration and jerk by finite differences between its frames."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +21,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class Smoothness:
-    """Derivatives of a group's motion: of its fastest joint, or of the root's place; in units per s, s^2, s^3."""
+    """Derivatives of a group's motion, over its joints together, or of the root's place; in units per s, s^2, s^3."""
 
     speed: Extent
     acceleration: Extent
@@ -41,14 +40,9 @@ def smoothness(motion: ShownMotion) -> dict[str, Smoothness]:
         "leftArm": motion.q[:, LOCAL_GROUPS[1].value],
         "rightArm": motion.q[:, LOCAL_GROUPS[2].value],
         "heading": motion.roots[:, 2:3],
+        "root": motion.roots[:, :2],
     }
-    figures = {name: _figures(motion, values, _fastest) for name, values in tracks.items()}
-    return figures | {"root": _figures(motion, motion.roots[:, :2], _length)}
-
-
-def _fastest(rates: Floats) -> Floats:
-    largest: Floats = np.abs(rates).max(axis=1)
-    return largest
+    return {name: _figures(motion, values) for name, values in tracks.items()}
 
 
 def _length(rates: Floats) -> Floats:
@@ -56,7 +50,7 @@ def _length(rates: Floats) -> Floats:
     return length
 
 
-def _figures(motion: ShownMotion, values: Floats, size: Callable[[Floats], Floats]) -> Smoothness:
+def _figures(motion: ShownMotion, values: Floats) -> Smoothness:
     orders: list[list[Floats]] = [[], [], []]
     for run in motion.runs():
         times, track = _moving(motion.times[run], values[run])
@@ -66,7 +60,7 @@ def _figures(motion: ShownMotion, values: Floats, size: Callable[[Floats], Float
             steps = np.diff(times)
             track = np.diff(track, axis=0) / steps[:, None]
             times = times[:-1] + 0.5 * steps
-            order.append(size(track))
+            order.append(_length(track))
     return Smoothness(*(_extent(np.concatenate([np.empty(0), *order])) for order in orders))
 
 

@@ -23,7 +23,8 @@ class Group(NamedTuple):
     postures: Postures
     levers: Floats  # (C, 3) as `levers_of`
     limits: Floats  # (d, 2) of the joints
-    acceleration: float  # the greatest over all components together, rad/s^2
+    speed: float  # the greatest over all components together, rad/s, and
+    acceleration: float  # rad/s^2
     tables: Tables
     ways: LimbWays
     masks: Masks
@@ -53,6 +54,7 @@ class GroupTask(NamedTuple):
     carriers: Longs  # (n,) slots of the waist's ways, for an arm
     boxes: Floats  # (n, B, 15) in the world, in each key interval
     interval: float
+    harsh: bool  # whether it may begin as hard as it takes, if there is no other way
     settled: bool  # whether it goes on from a way that is proven: then the start lowers no clearance
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
-from elbowroom.planning.exact.curve import peak_acceleration, smooth_tangents
+from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
 from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, set_keys, settle_backward, traced
 from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
@@ -50,10 +50,10 @@ def _proven(
 ) -> tuple[int, bool]:  # fmt: skip
     """Prove the curve through `keys` (n+1, d) free: `touches` (n,) where it is not; the capsules checked.
 
-    An interval fails too if its curve asks for too much, the first only if it has to be `gentle`: it begins with a
-    velocity that is given. Also whether it asks for too much. The ways through the intervals are put into `slots` (n,).
+    An interval fails too if its curve is faster than the group or asks for too much acceleration, the first only if it
+    has to be `gentle`. Also whether that does. The ways through the intervals are put into `slots` (n,).
     """
-    ways, postures, levers, most, checks = group.ways, group.postures, group.levers, group.acceleration, 0
+    ways, postures, levers, checks = group.ways, group.postures, group.levers, 0
     is_waist, harsh = postures.limb.is_waist, False
     begin_round(ways.slots)
     for k in range(slots.shape[0]):
@@ -62,9 +62,10 @@ def _proven(
         at, count = limb_way(ways, postures, levers, chain, carrier, ends, task.boxes[k], skins[k])
         slots[k] = at
         checks += count
-        asked = peak_acceleration(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval)
-        harsh = harsh or (k == 0 and asked > most)
-        touches[k] = ways.least[at] < skins[k] or ways.proven[at] < ENOUGH or ((k > 0 or gentle) and asked > most)
+        much = peak_acceleration(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval) > group.acceleration
+        much = much or peak_speed(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval) > group.speed
+        harsh = harsh or (k == 0 and much)
+        touches[k] = ways.least[at] < skins[k] or ways.proven[at] < ENOUGH or ((k > 0 or gentle) and much)
     return checks, harsh
 
 
@@ -102,7 +103,7 @@ def search_group(
 ) -> GroupWay:
     """The cheapest way whose motion is free as shown, at every moment.
 
-    It begins gently if there is such a way; who would run into something else may brake as hard as it takes.
+    It begins gently; if there is no such way, only who is told so begins as hard as it takes.
     """
     postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
     configurations, columns = postures.configurations, postures.columns
@@ -130,7 +131,7 @@ def search_group(
         nodes += count
         way = traced(lattice, work, reached)
         set_keys(lattice, way, keys)
-        if reached < horizon and gentle and harsh:
+        if reached < horizon and gentle and harsh and task.harsh:
             gentle, first = False, int(_BEGIN)
             reopen(masks, lattice.masks[0])
             continue

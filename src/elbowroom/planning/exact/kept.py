@@ -40,6 +40,7 @@ class Start(NamedTuple):
     upper: Floats  # (11,)
     velocity: Floats  # (11,)
     ahead: int = 0
+    harsh: bool = False  # whether it may exceed the limits of speed and acceleration at first, if need be
 
 
 class Kept(NamedTuple):

@@ -70,7 +70,7 @@ class PathProblem:
         return GroupTask(
             np.ascontiguousarray(self.goals[:, at]), np.ascontiguousarray(kept), begins.upper[at], begins.velocity[at],
             self.asked_margins[number], self.asked_skins[number], prices, self.roots, carriers,
-            self.near.intervals, self.path.interval, begins.ahead > 0,
+            self.near.intervals, self.path.interval, begins.harsh, begins.ahead > 0,
         )  # fmt: skip
 
 

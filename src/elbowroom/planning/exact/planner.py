@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.kept import Kept, Start
+from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.prolonging import Walk, prolonged, rest_of, settled
+from elbowroom.planning.exact.recent import Recent
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, first_part, kept_of, later, stands
+from elbowroom.planning.exact.whole import Stand, Whole, first_part, stands
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -56,7 +57,7 @@ class ExactPlanner:
 
     def reset(self) -> None:
         """Forget the last plan, what was thought through, and the postures that were added."""
-        self._last: Whole | None = None
+        self._recent = Recent()
         self._stand: Stand | None = None
         self._walk: Walk | None = None
         self._blockade: Blockade | None = None
@@ -76,7 +77,7 @@ class ExactPlanner:
         if whole is None:
             whole = self._answered(left, root_planner, query, alone=alone)
             self._walk = Walk(query, whole) if alone and _is_commanded(whole, root_planner) else None
-        self._last = whole
+        self._recent.take(whole)
         return first_part(whole, query.horizon)
 
     def _answered(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
@@ -104,7 +105,6 @@ class ExactPlanner:
         root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
-        self._last = left
         near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
         whole = self._prolonged(left, root, query, Effort.QUICK) or self._prolonged(left, near, query, Effort.QUICK)
         self._walk = None if whole is None else Walk(query, whole)
@@ -168,34 +168,34 @@ class ExactPlanner:
         return None
 
     def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole:
-        """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind."""
+        """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind.
+
+        Only if that is of no use either may the upper body begin as hard as it takes.
+        """
         root, upper = max(tried, key=lambda one: one.upper.reached) if len(root_planner.moving) else tried[0]
         root_planner.follow(root)
         why = None if query.hurry else self._why(upper, query)
-        brakings = [(moving, Effort.QUICK) for moving in _moving(upper.reached)]
+        whole, last = self._braked(root, upper.reached, root_planner, query), self._recent.continued(query)
+        if whole is None and (last is None or len(root_planner.moving)):
+            whole = self._braked(root, upper.reached, root_planner, query, harsh=True)
+        whole = whole or last or Whole(root, upper.plan)
+        return whole._replace(local=replace(whole.local, blockade=why))
+
+    def _braked(
+        self, root: RootPlan, reached: int, root_planner: RootPlanner, query: MotionQuery, *, harsh: bool = False
+    ) -> Whole | None:
+        """The path of a root, braked as late as there is a way; the upper body came as far as `reached` on it."""
+        brakings = [(moving, Effort.QUICK) for moving in _moving(reached)]
         brakings += [] if query.hurry else [(0, Effort.JOINT)]
         for moving, effort in brakings:
             states = root.path.states.copy()
             brake(states, moving, query.interval, root_planner.bounds)
             path = replace(root.path, states=states)
-            stopping = self._dress(path, query, effort)
+            stopping = self._dress(path, query, effort, harsh=harsh)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                plan = replace(stopping.plan, blockade=why)
-                return Whole(replace(root, path=path, kind=kind), plan, stopping.asked)
-        whole = self._continued(query) or Whole(root, upper.plan)
-        return whole._replace(local=replace(whole.local, blockade=why))
-
-    def _continued(self, query: MotionQuery) -> Whole | None:
-        """What is left of the last plan, if it led to where this one starts."""
-        if self._last is None or not len(self._last.local.configurations):
-            return None
-        path = self._last.root.path
-        at = round((query.time - path.start_time) / query.interval)
-        if not 0 <= at < len(path.states) - 1 or not np.allclose(path.states[at], query.root, atol=1e-9):
-            return None
-        left = later(self._last, at)
-        return left._replace(root=replace(left.root, kind=RootPlanKind.SHORTENED))
+                return Whole(replace(root, path=path, kind=kind), stopping.plan, stopping.asked)
+        return None
 
     def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:
         """Why there is no way; None as long as that is far off: most of it is solved when it has come nearer.
@@ -218,16 +218,12 @@ class ExactPlanner:
         self._blockade = why
         return why
 
-    def _dress(self, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
-        return self._dress_from(Start(query.upper, query.velocity), path, query, effort)
+    def _dress(self, path: RootPath, query: MotionQuery, effort: Effort, *, harsh: bool = False) -> UpperPlan:
+        return self._dress_from(Start(query.upper, query.velocity, harsh=harsh), path, query, effort)
 
     def _dress_from(self, begins: Start, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
         query.go_on()
-        return self._body.plan(path, begins, self._kept(path), query.others, effort, query.go_on)
-
-    def _kept(self, path: RootPath) -> Kept | None:
-        """What the last plan had at the key times of `path`, if it has any of them."""
-        return None if self._last is None else kept_of(self._last, path)
+        return self._body.plan(path, begins, self._recent.kept(path), query.others, effort, query.go_on)
 
 
 def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:

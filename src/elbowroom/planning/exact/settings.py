@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+from elbowroom.body.dof import DofGroup
+
+_LONE = 1.26  # a step from rest to rest peaks at 1.25 times its mean speed, and a little is lost in bounding it
+
 
 @dataclass(frozen=True)
 class ExactSettings:
@@ -11,10 +15,11 @@ class ExactSettings:
     interval: float = 0.15  # seconds between key frames, for which posture sets are made in advance
     waist_samples: int = 6  # postures taken from each clip
     arm_samples: int = 10
-    waist_speed: float = 2.7  # rad/s, over its components together: a quick bend, turn or crouch
-    arm_speed: float = 5.0  # rad/s, over the four components together: a reach at ease is half as fast
-    # What the shown curve may ask for, over all components together. People move their joints nearly with minimum jerk
+    # What is shown, over all components of a group together. People move their joints nearly with minimum jerk
     # (T. Flash & N. Hogan, J. Neuroscience 5, 1985), where a way D in the time T peaks at 1.9 D/T and 5.8 D/T^2.
+    waist_speed: float = 3.4  # rad/s: a bend, turn or crouch by half a radian in 0.28 s
+    # A serve turns the upper arm at 10.8 rad/s (M. Reid, B. Elliott & J. Alderson, Br. J. Sports Med. 41, 2007).
+    arm_speed: float = 6.3  # rad/s: a reach of a radian in 0.3 s
     waist_acceleration: float = 60.0  # rad/s^2: half a radian in 0.22 s
     arm_acceleration: float = 150.0  # rad/s^2: a radian in 0.2 s, as in a reach as fast as can be
     margin: float = 0.008  # clearance of a posture around its key time
@@ -32,3 +37,15 @@ class ExactSettings:
     near_weight: float = 20.0  # of lacking comfort, for each square metre
     keeping: float = 0.02  # squared radians that another way must be better than the one being followed
     paces: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
+
+    def speed_of(self, group: DofGroup) -> float:
+        """The greatest speed of a local group's shown motion, rad/s."""
+        return self.waist_speed if group is DofGroup.WAIST else self.arm_speed
+
+    def acceleration_of(self, group: DofGroup) -> float:
+        """The greatest acceleration of a local group's shown motion, rad/s^2."""
+        return self.waist_acceleration if group is DofGroup.WAIST else self.arm_acceleration
+
+    def mean_speed_of(self, group: DofGroup) -> float:
+        """The greatest speed of a local group from key frame to key frame, rad/s: what a step of its own may have."""
+        return self.speed_of(group) / _LONE

@@ -206,9 +206,9 @@ class UpperBody:
         width, size = postures.moves.shape[1], group.size
         tables, ways = new_tables(count, size, width), new_limb_ways(count, size, carries=group is DofGroup.WAIST)
         masks = new_masks(_MASKS * (horizon + 1), size, width + OWN)
-        settings = self.settings
-        most = settings.waist_acceleration if group is DofGroup.WAIST else settings.arm_acceleration
-        made = Group(postures, levers_of(self._model, postures.limb), limits(group), most, tables, ways, masks)
+        speed, acceleration = self.settings.speed_of(group), self.settings.acceleration_of(group)
+        levers = levers_of(self._model, postures.limb)
+        made = Group(postures, levers, limits(group), speed, acceleration, tables, ways, masks)
         return made, new_work(horizon + 1, width + OWN)
 
     def _margins(self, path: RootPath, ahead: int) -> tuple[Floats, Floats]:
@@ -234,7 +234,7 @@ class UpperBody:
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""
         if (group, interval) not in self._postures:
-            speed = self.settings.waist_speed if group is DofGroup.WAIST else self.settings.arm_speed
+            speed = self.settings.mean_speed_of(group)
             points = np.concatenate([self._points[group], self._pools[group].postures])
             postures = postures_of(self._limbs[group], points, speed * interval)
             self._postures[group, interval] = postures._replace(reach=self._reaches[group])
