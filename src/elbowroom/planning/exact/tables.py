@@ -1,8 +1,8 @@
 """The clearance of all postures of a group in one key interval, while the frame that carries them moves.
 
 A posture belongs to a key time, and stays there for half a key interval to either side: so each interval gives the
-postures of the key time before it an `early` row and those of the key time after it a `late` one. The goal's own
-posture at these two key times rides along.
+postures of the key time before it an `early` row and those of the key time after it a `late` one, which looks at the
+key time itself too. The goal's own posture at these two key times rides along.
 """
 
 from typing import NamedTuple
@@ -27,10 +27,10 @@ from elbowroom.planning.limb import pose
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_MOMENTS = 4  # moments of an interval at which postures are looked at
+_MOMENTS = 4  # parts of an interval, at whose ends postures are looked at
 _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
-_EARLY, _LATE = 3, 2  # of these moments, the first three belong to the key time before, the last two to that after
+_EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
 
 
@@ -87,8 +87,8 @@ def _moments(
     checks = 0
     near, moved = np.empty_like(boxes), np.empty_like(boxes)
     rows = np.empty((lanes.shape[0], BLOCK), np.float32)
-    for i in range(_MOMENTS):
-        place, turn = places[i * _STRIDE], turns[i * _STRIDE]
+    for moment in range(1, _MOMENTS + 1):
+        place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
         count = boxes_around(boxes, place, reach, near)
         if count == 0:
             continue
@@ -96,9 +96,9 @@ def _moments(
             box_in_frame(near[b], place, turn, moved[b])
         rows[:] = _FAR
         checks += lower_blocks(lanes, balls, moved, count, rows)
-        if i < _EARLY:
+        if moment <= _EARLY:
             _lower(early, rows)
-        if i >= _LATE:
+        if moment >= _LATE:
             _lower(late, rows)
     return checks
 
@@ -117,7 +117,8 @@ def held_clearance(
     postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
 ) -> tuple[float, int]:
     """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
-    begin, end = (0, 1) if part == HELD_AT_START else (0, _EARLY) if part == HELD_EARLY else (_LATE, _MOMENTS)
+    late = (_LATE, _MOMENTS + 1)
+    begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
     limb, reach = postures.limb, postures.reach
     origin, near = places[0], np.empty_like(boxes)
     count = boxes_around(boxes, origin, reach + 0.5, near)
