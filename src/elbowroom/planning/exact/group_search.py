@@ -17,7 +17,7 @@ from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_ma
 from elbowroom.planning.exact.prices import carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way
 from elbowroom.planning.exact.slots import begin_round
-from elbowroom.planning.exact.steps import ban_near, close_steps, promising
+from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
 
 Floats = NDArray[np.float64]
@@ -25,7 +25,7 @@ Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _BAN_RADIUS = 0.1  # radians: steps so near to one that touches are banned with it
-_FIRST_SLACK = 0.1  # squared radians: how much dearer ways are looked at where one touches; doubled each time
+_FIRST_SLACK = 0.1  # squared radians: how much dearer ways are looked at where one touches; doubled when those were
 _BEGIN = 0  # the depth at which the search begins
 
 
@@ -155,6 +155,8 @@ def search_group(
             at = lattice.masks[k]
             if at >= 0:
                 steps = promising(lattice, work, k, best + masks.slack[at], masks.seen[at])
+                if len(steps) == MOST_STEPS:
+                    masks.slack[at] *= 0.5  # there are more of them
                 if len(steps):
                     checks += close_steps(
                         postures, lattice, k, steps, carriers.places[k], carriers.turns[k], boxes[k], skins[k]

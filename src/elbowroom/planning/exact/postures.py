@@ -19,7 +19,9 @@ Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
 BLOCK = 16  # lanes of the widest vector register
-BETWEEN = 3  # postures between two, at equal parts of the way
+BETWEEN = 5  # postures between two, at equal parts of a key interval
+_TIMES = np.arange(1, BETWEEN + 1) / (BETWEEN + 1.0)
+ON_WAY = _TIMES**2 * (3.0 - 2.0 * _TIMES)  # how far they are on the way: it begins and ends at rest
 _SPARE = 0.15  # metres: a posture between the known ones may reach so much farther
 
 
@@ -48,8 +50,7 @@ def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
     reach = float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE
     lanes, balls = blocks_of(segments, limb.radii)
     low, high = _near_pairs(points, step * step)
-    parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1.0)
-    ways = [pose(limb, points[low] + part * (points[high] - points[low])) for part in parts]
+    ways = [pose(limb, points[low] + share * (points[high] - points[low])) for share in ON_WAY]
     clear = np.all([clear_of_trunk(way, limb.trunk, limb.allowed) for way in ways], axis=0)
     between = np.ascontiguousarray(np.stack(ways)[..., clear].transpose(3, 0, 1, 2))
     low, high = low[clear], high[clear]

@@ -7,7 +7,7 @@ from elbowroom.jit import exact_inner_kernel, inlined
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances
 from elbowroom.planning.exact.lattice import OWN, Lattice, Work, posture_of, slopes_of, squares_from
-from elbowroom.planning.exact.postures import BETWEEN, BLOCK, Postures
+from elbowroom.planning.exact.postures import BETWEEN, BLOCK, ON_WAY, Postures
 from elbowroom.planning.exact.ways import SWEEP
 from elbowroom.planning.limb import Limb, pose
 
@@ -91,9 +91,9 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
 def _posed_between(
     limb: Limb, pairs: Ints, between: Floats32, lattice: Lattice, depth: int, steps: Longs, part: int, lanes: Floats32
 ) -> None:
-    """The capsules (C, 6, K) of every step's posture at `part` of its way."""
+    """The capsules (C, 6, K) of every step's posture on its way, at one of the looks between."""
     size = lattice.postures.shape[0]
-    share = (part + 1.0) / (BETWEEN + 1.0)
+    share = ON_WAY[part]
     configuration, last = np.empty((1, lattice.goals.shape[1])), steps.shape[0] - 1
     for k in range(lanes.shape[2]):
         a, b = steps[min(k, last), 0], steps[min(k, last), 1]
@@ -138,7 +138,7 @@ def close_steps(
     boxes: Floats,
     skin: float,
 ) -> int:
-    """Close those of `steps` (K, 2) that touch half-way or at a quarter of the way; returns the capsules checked.
+    """Close those of `steps` (K, 2) that touch on the way; returns the capsules checked.
 
     `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
     """

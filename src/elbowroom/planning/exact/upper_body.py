@@ -122,8 +122,10 @@ class UpperBody:
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
+        quick = effort in (Effort.QUICK, Effort.GLANCE)
+        weights = self._weights._replace(rounds=self.settings.quick_rounds) if quick else self._weights
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, begins, kept, near, legs, go_on)
+            dressing = self._dressing(path, begins, kept, near, legs, weights, go_on)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
             found = dressing.motion(0 if between else rounds)
             if found is not None:
@@ -152,7 +154,14 @@ class UpperBody:
             self._own_body.resting(side, self.postures(group, interval))
 
     def _dressing(
-        self, path: RootPath, begins: Start, kept: Kept | None, near: NearBoxes, legs: LoweredLegs, go_on: GoOn
+        self,
+        path: RootPath,
+        begins: Start,
+        kept: Kept | None,
+        near: NearBoxes,
+        legs: LoweredLegs,
+        weights: Weights,
+        go_on: GoOn,
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
@@ -162,7 +171,7 @@ class UpperBody:
         problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
         return Dressing(
             shelves,
-            self._weights,
+            weights,
             self.settings,
             self._own_body,
             self._own_motion,
