@@ -152,17 +152,35 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> fl
     return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
 
 
-@inner_kernel
-def _foot_pose(legs: Floats, scale: float, root: Floats, side: int, u: float, out: Floats) -> None:
-    """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
-    forward, lateral, turn = root[3], root[4], root[5]
+class _Stride(NamedTuple):
+    """What a root's velocities make of the cycle."""
+
+    forward: float
+    lateral: float
+    turn: float
+    speed: float
+    period: float  # seconds
+    duty: float  # stance part of the cycle
+    ahead: float  # how long the stride is, 1.2 at most; negative: backward
+    effort: float  # 0 at rest, 1 for long strides
+    scale: float
+
+
+@leaf
+def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Stride:
     period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
     duty = _stance_part(speed * period, scale)
-    stride = forward * period / (1.1 * scale)
+    ahead = min(max(forward * period / (1.1 * scale), -1.2), 1.2)
     travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
-    ahead = min(max(stride, -1.2), 1.2)
     effort = travel * travel / (0.5 + travel * travel)
+    return _Stride(forward, lateral, turn, speed, period, duty, ahead, effort, scale)
+
+
+@inner_kernel
+def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) -> None:
+    """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
+    forward, lateral, turn, _, period, duty, ahead, effort, scale = stride
     outward = 1.0 if side == 0 else -1.0
     aside = lateral * period / (4.0 * scale)
     x0 = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0)) + outward * scale * (
@@ -212,6 +230,18 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
+@inner_kernel
+def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
+    """How far the pelvis must come down for both feet to reach the ground all through the stance; `foot` is scratch."""
+    stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
+    low = 0.0
+    for side in range(2):
+        for u in (0.0, stride.duty * (1.0 - 1e-9)):
+            _foot_pose(legs, stride, side, u, foot)
+            low = max(low, _needed_drop(legs, side, foot, stretch))
+    return low
+
+
 @kernel
 def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Floats]:
     """Feet and pelvis of the walking cycle for root states (N, 7).
@@ -219,25 +249,19 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     Returns the feet (N, 2, 6) in the root frame: ankle x, y, z, yaw, pitch (positive toes down), bend of the toes; and
     how far the hips are below their height in T-pose (N,).
     """
-    feet = np.empty((len(roots), 2, 6))
-    drops = np.empty(len(roots))
-    extreme = np.empty(6)
+    feet, drops, scratch = np.empty((len(roots), 2, 6)), np.empty(len(roots)), np.empty(6)
+    stride, low = _stride(scale, 0.0, 0.0, 0.0), -1.0
     for n in range(len(roots)):
-        root = roots[n]
-        speed = np.sqrt(root[3] * root[3] + root[4] * root[4])
-        duty = _stance_part(speed / (_quickness(scale) * _cadence(root[3], root[4], root[5])), scale)
-        stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(speed / scale)
-        low = 0.0
+        forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
+        if low < 0.0 or forward != stride.forward or lateral != stride.lateral or turn != stride.turn:
+            stride = _stride(scale, forward, lateral, turn)
+            low = _longest_drop(legs, stride, scratch)
         for side in range(2):
-            cycle = root[6] + 0.5 * side
-            _foot_pose(legs, scale, root, side, cycle - np.floor(cycle), feet[n, side])
-            _foot_pose(legs, scale, root, side, 0.0, extreme)
-            low = max(low, _needed_drop(legs, side, extreme, stretch))
-            _foot_pose(legs, scale, root, side, duty * (1.0 - 1e-9), extreme)
-            low = max(low, _needed_drop(legs, side, extreme, stretch))
-        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (duty - 0.5))
+            cycle = phase + 0.5 * side
+            _foot_pose(legs, stride, side, cycle - np.floor(cycle), feet[n, side])
+        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (stride.duty - 0.5))
         peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
-        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (root[6] - 0.5 * (duty - 0.5)))
+        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - 0.5 * (stride.duty - 0.5)))
         drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
     return feet, drops
 

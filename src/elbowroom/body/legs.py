@@ -78,7 +78,11 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
     go back in a crouch. A target out of reach is approached straight.
     """
     out = np.empty((len(feet), 2, LEG_ROTATIONS, 4))
-    at_rest, posed = np.empty((3, 3)), np.empty((3, 3))
+    at_rest, posed = np.empty((2, 2, 3, 3)), np.empty((3, 3))
+    for side in range(2):
+        for bone in range(2):
+            x, y, z = rest[side, 3 + 3 * bone], rest[side, 4 + 3 * bone], rest[side, 5 + 3 * bone]
+            _bone_basis(x, y, z, 1.0, 0.0, 0.0, at_rest[side, bone])
     thigh, shin, foot = np.empty(4), np.empty(4), np.empty(4)
     for n in range(len(feet)):
         for side in range(2):
@@ -99,12 +103,10 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
             nx, ny, nz = posed[0, 1], posed[1, 1], posed[2, 1]
             # direction x knee axis points forward for a hanging leg: (0,-1,0) x (1,0,0) = (0,0,1)
             kx, ky, kz = cosine * dx + sine * ax, cosine * dy + sine * ay, cosine * dz + sine * az
-            _bone_basis(r[3], r[4], r[5], 1.0, 0.0, 0.0, at_rest)
             _bone_basis(kx, ky, kz, nx, ny, nz, posed)
-            _turn_between(at_rest, posed, thigh)
-            _bone_basis(r[6], r[7], r[8], 1.0, 0.0, 0.0, at_rest)
+            _turn_between(at_rest[side, 0], posed, thigh)
             _bone_basis(reach * dx - upper * kx, reach * dy - upper * ky, reach * dz - upper * kz, nx, ny, nz, posed)
-            _turn_between(at_rest, posed, shin)
+            _turn_between(at_rest[side, 1], posed, shin)
             cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
             foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
             for i in range(4):
