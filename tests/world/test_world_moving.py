@@ -56,6 +56,57 @@ def test_a_sweep_holds_every_corner_at_every_time_and_little_else(repeat: Repeat
         np.testing.assert_allclose(np.abs(own).max(axis=0), row[12:], atol=0.03)
 
 
+def swept_slowly(moving: MovingBoxes, first: float, last: float) -> np.ndarray:
+    """The twin of a sweep: NumPy, one box after the other, looked at evenly and at the key poses."""
+    rows = []
+    for one in moving.tracks:
+        span, laps = one.duration, np.arange(-3, 60)
+        points = one.times
+        if one.repeat is Repeat.LOOP:
+            points = (span * laps[:, None] + one.times).ravel()
+        elif one.repeat is Repeat.PINGPONG:
+            there_and_back = np.concatenate([one.times, 2.0 * span - one.times])
+            points = (2.0 * span * laps[:, None] + there_and_back).ravel()
+        between = points[(points > first) & (points < last)]
+        times = np.sort(np.concatenate([np.linspace(first, last, 5), between]))
+        centers, yaws = one.poses(times)
+        yaw, half = one.poses([0.5 * (first + last)])[1][0], 0.5 * one.size
+        to_box = np.array([[np.cos(yaw), 0.0, -np.sin(yaw)], [0.0, 1.0, 0.0], [np.sin(yaw), 0.0, np.cos(yaw)]])
+        turned = yaws - yaw
+        wide = half[0] * np.abs(np.cos(turned)) + half[2] * np.abs(np.sin(turned))
+        deep = half[0] * np.abs(np.sin(turned)) + half[2] * np.abs(np.cos(turned))
+        reach = np.stack([wide, np.full_like(wide, half[1]), deep], axis=1)
+        own = centers @ to_box.T
+        low, high = (own - reach).min(axis=0), (own + reach).max(axis=0)
+        bulge = 0.125 * np.hypot(half[0], half[2]) * np.abs(np.diff(yaws)).max() ** 2
+        size = 0.5 * (high - low) + np.array([bulge, 0.0, bulge])
+        rows.append(np.concatenate([0.5 * (low + high) @ to_box, to_box.ravel(), size]))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("still", [False, True])
+def test_sweeps_are_those_of_a_slow_twin(still: bool) -> None:
+    rng = np.random.default_rng(9)
+    for _ in range(40):
+        tracks = []
+        for repeat in Repeat:
+            count = 1 if still else int(rng.integers(2, 6))
+            times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.05, 1.5, count - 1))])
+            poses = rng.normal(0.0, 1.0, (count, 3)), rng.uniform(-3.0, 3.0, count)
+            tracks.append(Track("box", rng.uniform(0.1, 1.0, 3), times, *poses, repeat))
+        moving = MovingBoxes(tuple(tracks))
+        first = rng.uniform(0.0, 9.0, 5)
+        last = first + rng.uniform(0.01, 1.2, 5)
+        found = moving.swept_between(first, last)
+        for rows, begin, end in zip(found, first, last, strict=True):
+            np.testing.assert_allclose(rows, swept_slowly(moving, float(begin), float(end)), atol=1e-12)
+
+
+def test_no_boxes_sweep_nothing() -> None:
+    assert MovingBoxes().swept([0.0, 1.0, 2.0]).shape == (2, 0, 15)
+    assert MovingBoxes((track(Repeat.LOOP),)).swept([0.0]).shape == (0, 1, 15)
+
+
 def document(**changes: Any) -> dict[str, Any]:
     box = {
         "type": "box",

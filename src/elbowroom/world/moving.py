@@ -4,7 +4,6 @@ A track has key poses; between them place and heading change evenly. Whoever pla
 motion is known, not guessed. Another avatar is told about in the same way, by what its own plan says.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -14,12 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import BOX_ROW, Boxes
+from elbowroom.world.boxes import Boxes
+from elbowroom.world.sweeps import LOOP, ONCE, PINGPONG, Tracks, swept_rows
 
 Floats = NDArray[np.float64]
 
 FASTEST = 20.0  # m/s and rad/s
-_PARTS = 4  # of a span of time in which a sweep is looked at
 
 
 class Repeat(Enum):
@@ -28,6 +27,9 @@ class Repeat(Enum):
     ONCE = "once"  # it stays there
     LOOP = "loop"  # it goes on to the first key pose
     PINGPONG = "pingpong"  # the same way back
+
+
+_CODES = {Repeat.ONCE: ONCE, Repeat.LOOP: LOOP, Repeat.PINGPONG: PINGPONG}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,19 +62,6 @@ class Track:
         at = self.within(times)
         centers = np.stack([np.interp(at, self.times, self.centers[:, i]) for i in range(3)], axis=-1)
         return centers, np.interp(at, self.times, self.yaws)
-
-    def turning_points(self, first: float, last: float) -> Floats:
-        """The times from `first` to `last` at which the track is at a key pose."""
-        if self.repeat is Repeat.ONCE or self.duration == 0.0:
-            points = self.times
-        else:
-            back = 2.0 * self.duration - self.times[-2:0:-1]
-            cycle = self.times[:-1] if self.repeat is Repeat.LOOP else np.concatenate([self.times, back])
-            period = self.duration * (1.0 if self.repeat is Repeat.LOOP else 2.0)
-            rounds = np.arange(math.floor(first / period), math.floor(last / period) + 1)
-            points = (period * rounds[:, None] + cycle).ravel()
-        found: Floats = points[(points > first) & (points < last)]
-        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,36 +112,24 @@ class MovingBoxes:
 
     def swept_between(self, first: Floats, last: Floats) -> Floats:
         """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
-        out = np.empty((len(first), len(self), BOX_ROW))
-        if len(first):
-            for b, track in enumerate(self.tracks):
-                out[:, b] = _sweeps(track, first, last)
-        return out
+        return swept_rows(self._packed, np.ascontiguousarray(first), np.ascontiguousarray(last))
+
+    @cached_property
+    def _packed(self) -> Tracks:
+        return _packed(self.tracks)
 
 
-def _sweeps(track: Track, first: Floats, last: Floats) -> Floats:
-    """The rows (n, 15) of boxes, turned as the track is in the middle of a span, round its corners at all its times."""
-    turning = track.turning_points(float(first.min()), float(last.max()))
-    within = (turning > first[:, None]) & (turning < last[:, None])
-    looks = np.concatenate(
-        [np.linspace(first, last, _PARTS + 1, axis=1), np.where(within, turning, first[:, None])], axis=1
+def _packed(tracks: tuple[Track, ...]) -> Tracks:
+    """The tracks for the kernel."""
+    starts = np.cumsum([0, *(len(track.times) for track in tracks)])
+    poses = [np.concatenate([track.centers, track.yaws[:, None]], axis=1) for track in tracks]
+    return Tracks(
+        starts.astype(np.int64),
+        np.concatenate([np.empty(0), *(track.times for track in tracks)]),
+        np.concatenate([np.empty((0, 4)), *poses]),
+        0.5 * np.array([track.size for track in tracks]).reshape(-1, 3),
+        np.array([_CODES[track.repeat] for track in tracks], np.int64),
     )
-    centers, yaws = track.poses(np.sort(looks, axis=1).ravel())
-    centers, yaws = centers.reshape(*looks.shape, 3), yaws.reshape(looks.shape)
-    yaw, half = track.poses(0.5 * (first + last))[1], 0.5 * track.size
-    turned, reach = yaws - yaw[:, None], math.hypot(half[0], half[2])
-    bulge = 0.125 * reach * np.abs(np.diff(yaws, axis=1)).max(axis=1)[:, None] ** 2  # of an arc beyond its chord
-    sine, cosine = np.sin(yaw), np.cos(yaw)
-    across = centers[..., 0] * cosine[:, None] - centers[..., 2] * sine[:, None]
-    along = centers[..., 0] * sine[:, None] + centers[..., 2] * cosine[:, None]
-    cosines, sines = np.abs(np.cos(turned)), np.abs(np.sin(turned))
-    wide, deep = half[0] * cosines + half[2] * sines + bulge, half[0] * sines + half[2] * cosines + bulge
-    heights = centers[..., 1]
-    low = np.stack([(across - wide).min(1), heights.min(1) - half[1], (along - deep).min(1)], axis=1)
-    high = np.stack([(across + wide).max(1), heights.max(1) + half[1], (along + deep).max(1)], axis=1)
-    middle, size = 0.5 * (low + high), 0.5 * (high - low)
-    x, z = middle[:, 0] * cosine + middle[:, 2] * sine, middle[:, 2] * cosine - middle[:, 0] * sine
-    return _rows(np.stack([x, middle[:, 1], z], axis=1), yaw, size)
 
 
 def _rows(centers: Floats, yaws: Floats, half_sizes: Floats) -> Floats:

@@ -14,7 +14,8 @@ from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
 from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, set_keys, settle_backward, traced
 from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
-from elbowroom.planning.exact.prices import carriers_at, node_prices
+from elbowroom.planning.exact.postures import Postures
+from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
@@ -97,6 +98,27 @@ def _closed(lattice: Lattice, masks: Masks, keys: Floats, way: Longs, touches: B
     return first, farthest
 
 
+@exact_inner_kernel
+def _close_promising(
+    postures: Postures, carriers: Carriers, boxes: Floats, skins: Floats, lattice: Lattice, work: Work, masks: Masks,
+    first: int, best: float,
+) -> int:  # fmt: skip
+    """Look at the steps of key intervals with a mask, from `first` on, through which ways lead that cost little more
+    than the `best`; close those that touch. Returns the capsules checked."""
+    checks = 0
+    for k in range(first, skins.shape[0]):
+        at = lattice.masks[k]
+        if at >= 0:
+            steps = promising(lattice, work, k, best + masks.slack[at], masks.seen[at])
+            if len(steps) == MOST_STEPS:
+                masks.slack[at] *= 0.5  # there are more of them: the same once again
+            if len(steps):
+                checks += close_steps(
+                    postures, lattice, k, steps, carriers.places[k], carriers.turns[k], boxes[k], skins[k]
+                )
+    return checks
+
+
 @exact_kernel
 def search_group(
     group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, work: Work
@@ -151,15 +173,6 @@ def search_group(
         deepest = max(deepest, first)
         best = work.costs[horizon].min()
         settle_backward(lattice, work, first, best + farthest)
-        for k in range(first, horizon):
-            at = lattice.masks[k]
-            if at >= 0:
-                steps = promising(lattice, work, k, best + masks.slack[at], masks.seen[at])
-                if len(steps) == MOST_STEPS:
-                    masks.slack[at] *= 0.5  # there are more of them
-                if len(steps):
-                    checks += close_steps(
-                        postures, lattice, k, steps, carriers.places[k], carriers.turns[k], boxes[k], skins[k]
-                    )
+        checks += _close_promising(postures, carriers, boxes, skins, lattice, work, masks, first, best)
     until = deepest + 1
     return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, weights.rounds)

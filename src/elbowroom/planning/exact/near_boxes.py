@@ -34,12 +34,13 @@ def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float)
     near = np.flatnonzero(_near(sweeps.reshape(-1, BOX_ROW), low, high).reshape(sweeps.shape[:2]).any(axis=0))
     if not len(near):
         return NearBoxes(intervals, slices, np.zeros(count), rows)
-    coming = MovingBoxes(tuple(moving.tracks[i] for i in near))
-    doubled = [coming.swept(path.times[[max(t - 1, 0), min(t + 1, count)]]) for t in range(count + 1)]
+    around = np.arange(count + 1)
+    first, last = path.times[np.maximum(around - 1, 0)], path.times[np.minimum(around + 1, count)]
+    doubled = moving.swept_between(first, last)[:, near]
     weights = np.sqrt(np.arange(2.0, 2.0 + len(near) * BOX_ROW))
     return NearBoxes(
         np.ascontiguousarray(np.concatenate([intervals, sweeps[:, near]], axis=1)),
-        np.ascontiguousarray(np.concatenate([slices, np.concatenate(doubled)], axis=1)),
+        np.ascontiguousarray(np.concatenate([slices, doubled], axis=1)),
         sweeps[:, near].reshape(count, -1) @ weights,
         np.concatenate([rows, len(table) + near]),
     )

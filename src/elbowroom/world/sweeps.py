@@ -1,0 +1,117 @@
+"""What boxes on tracks sweep in spans of time: one compiled call for all boxes and all spans."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.world.boxes import BOX_ROW
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+
+ONCE, LOOP, PINGPONG = range(3)  # what follows the last key pose
+_PARTS = 4  # of a span of time in which a sweep is looked at
+
+
+class Tracks(NamedTuple):
+    """B tracks, one after the other."""
+
+    starts: Longs  # (B+1,) where the key poses of each begin and end
+    times: Floats  # (K,) seconds
+    poses: Floats  # (K, 4) centre and yaw
+    halves: Floats  # (B, 3) half lengths, metres
+    repeats: Longs  # (B,)
+
+
+@exact_inner_kernel
+def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats) -> None:
+    """The pose (4,) of one track, key poses (K, 4) at times (K,), at a time."""
+    span, at = times[-1], time
+    if span == 0.0 or repeat == ONCE:
+        at = min(max(time, times[0]), span)
+    elif repeat == LOOP:
+        at = time % span
+    else:
+        at = span - abs(time % (2.0 * span) - span)
+    k = min(max(np.searchsorted(times, at, "right") - 1, 0), max(times.shape[0] - 2, 0))
+    last = min(k + 1, times.shape[0] - 1)
+    length = times[last] - times[k]
+    share = min(max((at - times[k]) / length, 0.0), 1.0) if length > 0.0 else 1.0
+    for i in range(4):
+        out[i] = poses[k, i] + share * (poses[last, i] - poses[k, i])
+
+
+@exact_inner_kernel
+def _turning_points(times: Floats, repeat: int, first: float, last: float, out: Floats) -> int:
+    """How often a track is at a key pose between two times; into `out` (N,) when, as far as there is room."""
+    span, count = times[-1], 0
+    still = span == 0.0 or repeat == ONCE
+    period = np.inf if still else span if repeat == LOOP else 2.0 * span
+    begin, end = (0, 1) if still else (math.floor(first / period), math.floor(last / period) + 1)
+    for lap in range(begin, end):
+        base = 0.0 if still else period * lap
+        for back in range(2 if repeat == PINGPONG and not still else 1):
+            for k in range(times.shape[0]):
+                at = base + (period - times[k] if back else times[k])
+                if first < at < last:
+                    if count < out.shape[0]:
+                        out[count] = at
+                    count += 1
+    return count
+
+
+@exact_inner_kernel
+def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
+    """The times at which a track is looked at in a span, in order: evenly, and at its key poses."""
+    turning = np.empty(_turning_points(times, repeat, first, last, np.empty(0)))
+    _turning_points(times, repeat, first, last, turning)
+    looks = np.empty(_PARTS + 1 + turning.shape[0])
+    for i in range(_PARTS + 1):
+        looks[i] = first + i / _PARTS * (last - first)
+    looks[_PARTS + 1 :] = turning
+    looks.sort()
+    return looks
+
+
+@exact_inner_kernel
+def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
+    """The row (15,) of a box, turned as the track is in the middle of a span, round its corners at all its times."""
+    looks, pose = _looks(times, repeat, first, last), np.empty(4)
+    _pose_at(times, poses, repeat, 0.5 * (first + last), pose)
+    yaw, reach = pose[3], math.hypot(half[0], half[2])
+    sine, cosine, farthest, before = np.sin(yaw), np.cos(yaw), 0.0, 0.0
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for i in range(looks.shape[0]):
+        _pose_at(times, poses, repeat, looks[i], pose)
+        turned = pose[3] - yaw
+        farthest = max(farthest, abs(turned - before)) if i > 0 else 0.0
+        before = turned
+        c, s = abs(np.cos(turned)), abs(np.sin(turned))
+        wide, deep = half[0] * c + half[2] * s, half[0] * s + half[2] * c
+        across, along = pose[0] * cosine - pose[2] * sine, pose[0] * sine + pose[2] * cosine
+        low[0], high[0] = min(low[0], across - wide), max(high[0], across + wide)
+        low[1], high[1] = min(low[1], pose[1] - half[1]), max(high[1], pose[1] + half[1])
+        low[2], high[2] = min(low[2], along - deep), max(high[2], along + deep)
+    bulge = 0.125 * reach * farthest * farthest  # of an arc beyond its chord
+    across, along = 0.5 * (low[0] + high[0]), 0.5 * (low[2] + high[2])
+    out[0], out[1], out[2] = across * cosine + along * sine, 0.5 * (low[1] + high[1]), along * cosine - across * sine
+    out[3], out[4], out[5] = cosine, 0.0, -sine
+    out[6], out[7], out[8] = 0.0, 1.0, 0.0
+    out[9], out[10], out[11] = sine, 0.0, cosine
+    for i in range(3):
+        out[12 + i] = 0.5 * (high[i] - low[i]) + (0.0 if i == 1 else bulge)
+
+
+@exact_kernel
+def swept_rows(tracks: Tracks, first: Floats, last: Floats) -> Floats:
+    """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
+    out = np.empty((first.shape[0], tracks.halves.shape[0], BOX_ROW))
+    for b in range(tracks.halves.shape[0]):
+        begin, end = tracks.starts[b], tracks.starts[b + 1]
+        times, poses, half = tracks.times[begin:end], tracks.poses[begin:end], tracks.halves[b]
+        for n in range(first.shape[0]):
+            _sweep(times, poses, half, tracks.repeats[b], first[n], last[n], out[n, b])
+    return out
