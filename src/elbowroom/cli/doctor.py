@@ -134,7 +134,7 @@ def _faults(facts: dict[str, Any]) -> list[str]:
     if cost and cost["cpu_percent"] > cost["cpu_budget_percent"]:
         faults.append("a live session needs more processor time than its budget")
     if cost and cost["resident_megabytes"] > cost["resident_budget_megabytes"]:
-        faults.append("a live session needs more memory than its budget")
+        faults.append("the server of these sessions needs more memory than its budget")
     start = facts.get("startup")
     if start and start["program_seconds"] > start["warm_budget_seconds"]:
         faults.append("the first plan of a program comes later than its budget")
@@ -166,11 +166,11 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
     memory = f"{cost['resident_megabytes']:.0f} MB (budget {cost['resident_budget_megabytes']:g})"
     rate = f"{cost['frames_per_second']:.1f} frames/s, computing one takes {cost['frame_ms_p50']:.2f} ms"
     frames = f"99 % of the frames within {cost['late_ms_p99']:.1f} ms of their time"
-    answers = f"commands answered within {cost['answer_ms_p50']:.0f} ms (half), {cost['answer_ms_max']:.0f} ms (all)"
+    answers = f"commands answered within {cost['answer_ms_p50']:.0f} ms (half), {cost['answer_ms_max']:.0f} ms (all"
     return [
         ("session", f"{cost['sessions']} at once: {cpu} each, {memory}"),
         ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),
-        ("", f"{frames}; {answers}; {cost['late_plans']} plans too late"),
+        ("", f"{frames}; {answers}; aim {cost['answer_aim_ms']:g}); {cost['late_plans']} plans too late"),
     ]
 
 

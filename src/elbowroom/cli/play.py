@@ -63,8 +63,10 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
     """Serve the page with a library until Ctrl-C; raises `InputError` where there is no such library or port."""
     from rich.console import Console
 
+    from elbowroom.server.heap import share_one_heap
     from elbowroom.server.serving import listen, serve, url_of
 
+    share_one_heap()
     console = Console(stderr=True, highlight=False)
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     with (
@@ -118,9 +120,14 @@ def _tell_openness(console: "Console", opened: "socket.socket") -> None:
 
 
 def _ready(library: "Library", url: str, open_page: bool) -> None:
+    from elbowroom.server.heap import give_back
     from elbowroom.server.warmup import warm_up
 
-    threading.Thread(target=warm_up, args=(library,), daemon=True).start()  # loads the rest while the page opens
+    def load_the_rest() -> None:  # while the page opens
+        warm_up(library)
+        give_back()
+
+    threading.Thread(target=load_the_rest, daemon=True).start()
     print(f"Elbowroom is at {url}  (Ctrl-C ends it)", flush=True)
     if open_page and _has_display():
         threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

@@ -22,7 +22,8 @@ from elbowroom.server.schema.commands import Input, Reset
 from elbowroom.server.schema.progress import Status
 
 CPU_BUDGET = 25.0  # percent of one core
-RESIDENT_BUDGET = 400.0  # MB
+RESIDENT_BASE, RESIDENT_EACH = 300.0, 25.0  # MB of the process, compiled kernels most of all, and of each session
+ANSWER_AIM = 100.0  # ms
 
 _PATIENCE = 300.0  # seconds until the server answers, the first time with compiling
 _SETTLE = 2.0  # seconds of walking before the measurement
@@ -40,13 +41,14 @@ class SessionCost:
     cpu_percent: float  # of one core, all threads, for each session
     cpu_budget_percent: float
     resident_megabytes: float
-    resident_budget_megabytes: float
+    resident_budget_megabytes: float  # of a process with so many sessions
     frames_per_second: float  # of each session
     frame_ms_p50: float
     frame_ms_p95: float
     late_ms_p99: float  # how long after it was due a frame was ready; of the latest session
     answer_ms_p50: float  # from a changed command until the motion is planned for it
     answer_ms_max: float
+    answer_aim_ms: float
     late_plans: int
     ready_seconds: float  # from the start of the process until it serves
 
@@ -57,6 +59,11 @@ class _Tally:
 
     frames: int = 0
     status: Status | None = None
+
+
+def memory_budget(sessions: int) -> float:
+    """What a server may hold, MB: sessions share the process, its compiled kernels and the avatar's model."""
+    return RESIDENT_BASE + RESIDENT_EACH * sessions
 
 
 def measure_session(seconds: float, scene: str, sessions: int = 1) -> SessionCost:
@@ -115,13 +122,14 @@ def _measured(url: str, seconds: float, sessions: int, ready: float) -> SessionC
         cpu_percent=100.0 * (after["cpuSeconds"] - before["cpuSeconds"]) / wall / sessions,
         cpu_budget_percent=CPU_BUDGET,
         resident_megabytes=after["residentBytes"] / 1e6,
-        resident_budget_megabytes=RESIDENT_BUDGET,
+        resident_budget_megabytes=memory_budget(sessions),
         frames_per_second=sum(tally.frames for tally in tallies) / wall / sessions,
         frame_ms_p50=median(status.frame_ms_p50 for status in told),
         frame_ms_p95=max(status.frame_ms_p95 for status in told),
         late_ms_p99=max(status.late_ms_p99 for status in told),
         answer_ms_p50=median(half for half, _ in answers) if answers else 0.0,
         answer_ms_max=max((longest for _, longest in answers), default=0.0),
+        answer_aim_ms=ANSWER_AIM,
         late_plans=sum(status.late_plans for status in told),
         ready_seconds=ready,
     )

@@ -1,16 +1,22 @@
-"""The last word before a pose is shown: how far the whole body is from every obstacle."""
+"""The last word before a pose is shown: how far the whole body is from every obstacle, and from every other avatar."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.control.neighbour import Neighbour
 from elbowroom.world.clearance import clearance, clearance_of
+from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _BETWEEN = np.array([0.25, 0.5, 0.75])  # at 60 frames a second: 240 poses
+_UNTIL = np.append(_BETWEEN, 1.0)
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
@@ -25,31 +31,55 @@ class BodyCheck:
         self.model = body_model(humanoid)
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._table = scene.boxes.table
-        self.moving = scene.moving
+        self._moving = scene.moving
+        self.others: Sequence[Neighbour] = ()
+
+    @property
+    def restless(self) -> bool:
+        """Whether anything moves by itself."""
+        return bool(len(self._moving) or self.others)
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (11,).
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
-        segments = posture_capsules(self.model, configuration(root, upper)[None], self._near(root, root)[None])
-        return clearance_of(segments[:, :, 0], self._radii, self._around(root, time))
+        return self._least(self._posed(root, upper), root, time)
+
+    def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
+        """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
+        return self._least(self._posed(root, upper), root, time, others_at=-np.inf)
+
+    def clearance_from(self, moving: MovingBoxes, root: Floats, upper: Floats, time: float) -> float:
+        """The same from some moving boxes alone."""
+        segments = self._posed(root, upper)
+        return clearance_of(segments[:, :, 0], self._radii, _seen_from(root, moving.tables([time])[0]))
 
     def clearance_between(
         self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats], times: tuple[float, float]
     ) -> float:
-        """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants."""
-        root = roots[0] + _BETWEEN[:, None] * (roots[1] - roots[0])
-        upper = uppers[0] + _BETWEEN[:, None] * (uppers[1] - uppers[0])
+        """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants.
+
+        Where others move as they mean to, until the second frame.
+        """
+        looks = _UNTIL if self.others else _BETWEEN
+        root = roots[0] + looks[:, None] * (roots[1] - roots[0])
+        upper = uppers[0] + looks[:, None] * (uppers[1] - uppers[0])
         segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
-        if not len(self.moving):
+        if not self.restless:
             return float(clearance(segments, self._radii, self._around(roots[0], times[0])).min())
-        looks = times[0] + _BETWEEN * (times[1] - times[0])
-        found = [
-            clearance_of(segments[:, :, i], self._radii, self._around(roots[0], float(time)))
-            for i, time in enumerate(looks)
-        ]
-        return min(found)
+        moments = times[0] + looks * (times[1] - times[0])
+        return min(self._least(segments[:, :, i : i + 1], roots[0], float(time)) for i, time in enumerate(moments))
+
+    def _posed(self, root: Floats, upper: Floats) -> Floats32:
+        """The capsules' axes (C, 6, 1) as seen from the root."""
+        return posture_capsules(self.model, configuration(root, upper)[None], self._near(root, root)[None])
+
+    def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
+        """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""
+        found = clearance_of(segments[:, :, 0], self._radii, self._around(origin, time))
+        axes, when = np.ascontiguousarray(segments), time if others_at is None else others_at
+        return min([found, *(other.clearance(axes, self._radii, origin, when) for other in self.others)])
 
     def _near(self, roots: Floats, origin: Floats) -> Floats:
         near = roots.copy()
@@ -57,9 +87,14 @@ class BodyCheck:
         return near
 
     def _around(self, origin: Floats, time: float) -> Floats:
-        table = self._table.copy()
-        if len(self.moving):
-            table = np.concatenate([table, self.moving.tables([time])[0]])
-        table[:, 0] -= origin[0]
-        table[:, 2] -= origin[1]
-        return table
+        table = self._table
+        if len(self._moving):
+            table = np.concatenate([table, self._moving.tables([time])[0]])
+        return _seen_from(origin, table)
+
+
+def _seen_from(origin: Floats, table: Floats) -> Floats:
+    moved = table.copy()
+    moved[:, 0] -= origin[0]
+    moved[:, 2] -= origin[1]
+    return moved

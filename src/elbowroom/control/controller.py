@@ -18,9 +18,10 @@ from elbowroom.control.desk import ImmediateDesk, PlanningDesk
 from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
-from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
+from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.neighbour import Neighbour, boxes_of
 from elbowroom.control.planners import Planners
-from elbowroom.control.prediction import predicted, slimmer
+from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
@@ -81,7 +82,6 @@ class Controller:
         self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
         self.start = scene.start if start is None else start
         self._check = BodyCheck(humanoid, scene)
-        self._others = MovingBoxes()
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
         self._errands = Errands(desk or ImmediateDesk())
         self._worn = fitted(self.motions, humanoid)
@@ -127,24 +127,18 @@ class Controller:
         return RootState(*self._shown.root.tolist())
 
     @property
-    def others(self) -> MovingBoxes:
-        """What moves besides the scene's own things, as it is predicted: other avatars; may change with every step."""
-        return self._others
+    def others(self) -> Sequence[Neighbour]:
+        """Other avatars, as they say that they will move (`prediction`); may change with every step."""
+        return self._check.others
 
     @others.setter
-    def others(self, moving: MovingBoxes) -> None:
-        self._others = moving
-        self._check.moving = self.scene.moving + moving
+    def others(self, neighbours: Sequence[Neighbour]) -> None:
+        self._check.others = tuple(neighbours)
 
-    def prediction(self) -> MovingBoxes:
+    def prediction(self) -> Neighbour:
         """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
-        now, coming = self._shown, self._queue.unplayed()
-        keys = KeyFrames(
-            np.append(self._queue.time, coming.times),
-            np.vstack([now.root, coming.roots]),
-            np.vstack([now.upper, coming.uppers]),
-        )
-        return predicted(self.humanoid, self._check.model, keys, onward=self._command.forward > 0.0)
+        onward = self._command.forward > 0.0
+        return neighbour(self.humanoid, self._check.model, self._shown, self._queue, onward=onward)
 
     @property
     def phase(self) -> Phase:
@@ -216,9 +210,7 @@ class Controller:
         hurry = not self._errands.immediate and not self._queue.empty and steering.changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState(*start.root.tolist()), self.settings
-        others = self._others
-        if self._clearance < 0.0 and len(others):
-            others = slimmer(others, _LEAVING - self._clearance)
+        others = self._others_beside(start, time)
         query = MotionQuery(
             time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
             hurry,
@@ -229,6 +221,14 @@ class Controller:
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
         self._errands.ask(Question(query, self._assist, held, reserve), self._wayfinder.answer, self._queue)
         self._take_plan(command)
+
+    def _others_beside(self, start: Playback, time: float) -> MovingBoxes:
+        """The others' boxes; slimmer, where a motion starts within one: it is larger than the body that it holds."""
+        others = boxes_of(self.others)
+        if not len(others):
+            return others
+        clearance = self._check.clearance_from(others, start.root, start.upper, time)
+        return slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others
 
     def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
         """When and from where to plan; where nothing is left to play, it is what is shown now."""
@@ -262,7 +262,7 @@ class Controller:
         if answer.uppers is not None:
             path = replace(answer.path, start_time=start)
             self._queue.splice(path, answer.uppers, question.query.velocity, answer.velocities)
-            still = command.idle and not len(self._check.moving)
+            still = command.idle and not self._check.restless
             self._resting = still and self._stands_still(path.states, answer.uppers)
 
     def _stands_still(self, states: Floats, uppers: Floats) -> bool:
@@ -303,16 +303,16 @@ class Controller:
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
-        if len(self._check.moving) and self._clearance < 0.0 and clearance >= self._clearance:
+        if self._check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
-        if clearance < 0.0 or min(clearance, self._clearance) > (_FAR_MOVING if len(self._check.moving) else _FAR):
+        if clearance < 0.0 or min(clearance, self._clearance) > (_FAR_MOVING if self._check.restless else _FAR):
             return clearance >= 0.0
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
         return self._check.clearance_between(roots, uppers, (self._shown_at, self._queue.time)) >= 0.0
 
     def _clearance_of(self, posed: Playback) -> float:
         """Of a pose, now."""
-        return self._check.clearance(posed.root, posed.upper, self._queue.time)
+        return self._check.shown_clearance(posed.root, posed.upper, self._queue.time)
 
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""
@@ -322,7 +322,7 @@ class Controller:
         clearance = self._clearance_of(still)
         if self._assist and not self._is_free(still, clearance):
             still = still._replace(root=self._shown.root)
-            clearance = self._clearance_of(still) if len(self._check.moving) else self._clearance
+            clearance = self._clearance_of(still) if self._check.restless else self._clearance
         self._show(still, clearance)
 
     # --- flow C ------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What others are told about an avatar's way: boxes round its legs, its trunk and its arms, moving as it is planned.
+"""What others are told about an avatar's way: boxes round its legs, its trunk and its arms, and its body for a moment.
 
 As far as key frames are known the boxes go with them, and then straight on for a while. Steps aside are not taken to go
 on: who walks ahead and makes way to the side will soon be beside.
@@ -13,7 +13,8 @@ from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.control.body_check import configuration
-from elbowroom.control.key_frame_queue import KeyFrames
+from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
+from elbowroom.control.neighbour import Neighbour
 from elbowroom.world.moving import MovingBoxes, Repeat, Track
 
 Floats = NDArray[np.float64]
@@ -21,12 +22,30 @@ Floats = NDArray[np.float64]
 _BEYOND = 2.0  # seconds after the last key frame
 _SPARE = 0.02  # metres: between key frames limbs may reach a little farther
 _THIN = 0.02  # metres: no box becomes thinner
+_MOMENTS = np.arange(10) / 60  # seconds from now: a key interval
 _PARTS = {
     "legs": DofGroup.ROOT,
     "trunk": DofGroup.WAIST,
     "left arm": DofGroup.LEFT_ARM,
     "right arm": DofGroup.RIGHT_ARM,
 }
+
+
+def neighbour(
+    humanoid: Humanoid, model: BodyModel, shown: Playback, queue: KeyFrameQueue, *, onward: bool
+) -> Neighbour:
+    """What others are told about an avatar that is shown now, and will show what is in the queue; as `predicted`."""
+    coming = queue.unplayed()
+    keys = KeyFrames(
+        np.append(queue.time, coming.times),
+        np.vstack([shown.root, coming.roots]),
+        np.vstack([shown.upper, coming.uppers]),
+    )
+    times = queue.time + (_MOMENTS if len(coming.times) else _MOMENTS[:1])
+    played = [shown, *(queue.at(min(float(time), float(coming.times[-1]))) for time in times[1:])]
+    soon = KeyFrames(times, np.array([one.root for one in played]), np.array([one.upper for one in played]))
+    axes = posture_capsules(model, _postures(soon), soon.roots).transpose(2, 0, 1).astype(np.float64)
+    return Neighbour(predicted(humanoid, model, keys, onward=onward), times, axes, humanoid.capsules.radii)
 
 
 def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: bool) -> MovingBoxes:
