@@ -17,6 +17,7 @@ from elbowroom.planning.exact.joint import joint_way
 from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
 from elbowroom.planning.exact.kept import Start
+from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import postures_of
 from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
@@ -31,7 +32,7 @@ from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
-_BESIDE = ((0.45, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
+_BESIDE = ((0.35, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
 _WALL = ((0.0, 1.5, 1.0), (3.0, 0.6, 0.1))  # legs pass, nobody else does
 _LOW = ((0.1, 0.3, 1.2), (0.2, 0.3, 0.2))  # in the way of the legs
 
@@ -49,7 +50,16 @@ def rehearse(humanoid: Humanoid) -> None:
         dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
         dressing.together(1)
         dressing.blockade()
+    _fold(body, path)
     rehearse_detour(humanoid)
+
+
+def _fold(body: UpperBody, path: RootPath) -> None:
+    """Look whether an arm of the standing body runs into the rest of it, the waist being bent."""
+    postures, waists = body.postures(DofGroup.LEFT_ARM, _INTERVAL), np.full((_HORIZON + 1, DofGroup.WAIST.size), 0.1)
+    own = np.zeros((_HORIZON + 1, OWN, DofGroup.LEFT_ARM.size))
+    bent, needed = np.zeros(_HORIZON + 1, np.bool_), np.ones(own.shape[:2], np.bool_)
+    body.own_body.folded_nodes(0, postures, own, needed, bent, waists, path.states, None)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:

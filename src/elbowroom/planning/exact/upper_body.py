@@ -90,8 +90,8 @@ class UpperBody:
         )
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
         self._shelves: dict[float, Shelves] = {}
-        self._own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
-        self._own_motion = OwnMotion(self._model, self._own_body.pairs)
+        self.own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
+        self._own_motion = OwnMotion(self._model, self.own_body.pairs)
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
@@ -151,7 +151,7 @@ class UpperBody:
         horizon = round(self.settings.look_ahead / interval)
         self._shelves[interval] = self._new_shelves(interval, horizon)
         for side, group in enumerate(LOCAL_GROUPS[1:]):
-            self._own_body.resting(side, self.postures(group, interval))
+            self.own_body.resting(side, self.postures(group, interval))
 
     def _dressing(
         self,
@@ -173,7 +173,7 @@ class UpperBody:
             shelves,
             weights,
             self.settings,
-            self._own_body,
+            self.own_body,
             self._own_motion,
             self._contacts,
             legs,
@@ -201,7 +201,7 @@ class UpperBody:
                     yield group, waists_for(limb, self._reaches[group], known, here, self._refinement)
                 else:
                     reach = self._reaches[group]
-                    yield group, arms_for(self._own_body, number - 1, limb, reach, known, here, self._refinement)
+                    yield group, arms_for(self.own_body, number - 1, limb, reach, known, here, self._refinement)
 
     def _take_in(self, group: DofGroup) -> None:
         """Link a group's postures anew; what was computed for its old set is forgotten."""
