@@ -76,7 +76,8 @@ class ExactPlanner:
         whole = None if left is None else self._gone_on(left, root_planner, query)
         if whole is None:
             whole = self._answered(left, root_planner, query, alone=alone)
-            self._walk = Walk(query, whole) if alone and _is_commanded(whole, root_planner) else None
+            lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
+            self._walk = Walk(query, whole) if alone and lasts else None
         self._recent.take(whole)
         return first_part(whole, query.horizon)
 
@@ -97,11 +98,17 @@ class ExactPlanner:
         return max(query.horizon, round(self.settings.look_ahead / query.interval))
 
     def _gone_on(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Whole | None:
-        """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end."""
-        horizon = self._horizon(query)
-        if left.root.path.horizon >= horizon:
+        """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
+
+        One that evades something is kept for a while, and then planned anew.
+        """
+        horizon, spare = self._horizon(query), round(self.settings.spare / query.interval)
+        evading = not _is_commanded(left, root_planner)
+        if left.root.path.horizon >= (horizon - spare if evading else horizon):
             return left
-        farther = horizon + round(self.settings.spare / query.interval)
+        if evading:
+            return None
+        farther = horizon + spare
         root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
@@ -229,6 +236,11 @@ class ExactPlanner:
 def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:
     """Whether a motion follows the path as commanded, and the upper body has a way along it."""
     return whole.asked is not None and whole.root.lost < root_planner.settings.untroubled
+
+
+def _is_evasion(whole: Whole) -> bool:
+    """Whether a motion leads aside of the path as commanded, or with the body turned, on a way that was found."""
+    return whole.asked is not None and whole.root.kind is RootPlanKind.EVASION
 
 
 def _place(upper: UpperPlan) -> tuple[float, float]:
