@@ -26,7 +26,7 @@ class ExactSettings:
     skin: float = 0.005  # clearance of the motion that is shown
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
     soon_share: float = 0.5  # of margin and skin, at this moment
-    spare: float = 0.45  # seconds that a walk as commanded is planned beyond the look-ahead, and one aside is kept within
+    spare: float = 0.45  # seconds beyond the look-ahead, or within it on a way aside, in which a plan is kept
     revisited: float = 1.2  # seconds at the end of a plan that are searched anew with that; the rest is kept
     comfort: float = 0.05  # postures with less clearance cost more
     quick_rounds: int = 6  # motions that may turn out to touch before a group gives up at first sight
