@@ -21,6 +21,7 @@ from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery, SupersededError
+from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.boxes import Boxes
@@ -231,6 +232,21 @@ def test_a_lone_step_is_within_the_limits_however_it_goes_on() -> None:
         mean, rest = 0.5 * step / T, np.zeros(1)
         assert peak_speed(rest, mean, step, mean, T) <= chosen.speed_of(group)
         assert peak_acceleration(rest, mean, step, mean, T) <= chosen.acceleration_of(group)
+
+
+def test_a_plan_in_a_hurry_takes_what_the_groups_find_one_after_the_other(humanoid: Humanoid) -> None:
+    """Where a plan that has the time finds that all of them together can go straight on."""
+    scene = Scene.load("d")
+    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    found = {}
+    for hurry in (False, True):
+        planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
+        start = scene.start._replace(z=scene.start.z + 1.75)
+        query = MotionQuery(0.0, start, upper, np.zeros(LOCAL), Command(forward=1.0), 5, T, hurry=hurry)
+        found[hurry] = planner.plan_motion(roots, query)
+    assert all(motion.local.status is PlanStatus.FOUND for motion in found.values())
+    assert found[True].local.joint is None
+    assert found[True].root.lost > found[False].root.lost
 
 
 def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_trace(humanoid: Humanoid) -> None:

@@ -207,7 +207,7 @@ class Controller:
 
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
-        hurry = not self._errands.immediate and not self._queue.empty and steering.changed(self._command, command)
+        hurry = not self._errands.immediate and steering.changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState(*start.root.tolist()), self.settings
         others = self._others_beside(start, time)

@@ -16,7 +16,7 @@ class Haste(Enum):
     AGAIN = "again"  # the last one in a hurry came too late; what it found out is known
 
 
-_FORGET = {Haste.NONE: 0.7, Haste.HURRY: 0.85, Haste.AGAIN: 0.85}  # of what is expected, with every quicker plan
+_FORGET = {Haste.NONE: 0.7, Haste.HURRY: 0.92, Haste.AGAIN: 0.92}  # of what is expected, with every quicker plan
 _LEAST = {Haste.NONE: 0.0, Haste.HURRY: _LIKELY, Haste.AGAIN: _LIKELY}  # seconds that are always expected
 
 
@@ -37,8 +37,9 @@ class Foresight:
         return 0.0 if self._immediate else self._expected[haste] + _SPARE
 
     def waited(self, seconds: float, haste: Haste) -> None:
-        """A plan took so long."""
+        """A plan took so long; one without haste takes no less."""
         self._expected[haste] = max(seconds, _FORGET[haste] * self._expected[haste], _LEAST[haste])
+        self._expected[Haste.NONE] = max(seconds, self._expected[Haste.NONE])
 
     def next_rate(self, left: float, dt: float, *, halting: bool) -> float:
         """The rate for the next `dt` seconds, of `left` seconds of motion; 0 where too little is left to move."""

@@ -146,7 +146,8 @@ class ExactPlanner:
             if upper.reached == horizon:
                 if not tried:
                     self._turns.found()
-                return self._cheaper(root_planner, query, tried, root) or Whole(root, upper.plan, upper.asked)
+                cheaper = None if query.hurry else self._cheaper(root_planner, query, tried, root)
+                return cheaper or Whole(root, upper.plan, upper.asked)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         found = None if query.hurry else self._thought_through(root_planner, query, tried)
