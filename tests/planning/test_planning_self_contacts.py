@@ -8,14 +8,17 @@ WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
 
 def known_at(contacts: SelfContacts, side: int, time: float, waist: np.ndarray = WAIST) -> int:
-    return len(contacts.at(side, time, waist))
+    return sum(contact.happens(waist) for _, contact in contacts.of(side, np.array([time])))
 
 
 def test_a_key_time_is_the_same_in_plans_that_begin_elsewhere() -> None:
     contacts = SelfContacts()
     contacts.add(0, 0.15 + 0.15 * 6, WAIST, ARM)
     assert 0.15 + 0.15 * 6 != 0.3 + 0.15 * 5  # as floats
-    assert np.array_equal(contacts.at(0, 0.3 + 0.15 * 5, WAIST)[0], ARM)
+    (found,) = contacts.of(0, 0.3 + 0.15 * np.arange(9.0))
+    assert found[0] == 5
+    assert np.array_equal(found[1].posture, ARM)
+    assert known_at(contacts, 0, 0.3 + 0.15 * 5) == 1
     assert known_at(contacts, 0, 1.2) == 0
     assert known_at(contacts, 1, 1.05) == 0
     assert known_at(contacts, 0, 1.05, WAIST + 0.01) == 0

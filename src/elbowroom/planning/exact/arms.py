@@ -97,11 +97,12 @@ class Arms:
 
     def _rule_out(self, side: int, keys: list[Floats], own: Floats, prices: Floats32) -> None:
         """Rule out the nodes at key times near to postures that ran into the body there, the body being as it is."""
-        times, postures = self._problem.path.times, self._shelves.groups[_ARMS[side]].postures
+        postures = self._shelves.groups[_ARMS[side]].postures
         size, width = len(postures.configurations), postures.moves.shape[1]
-        for t in range(1, len(times)):
-            for posture in self._contacts.at(side, times[t], np.concatenate([key[t] for key in keys])):
-                near = np.linalg.norm(np.concatenate([postures.configurations, own[t]]) - posture, axis=1) < _ALIKE
+        for t, contact in self._contacts.of(side, self._problem.path.times):
+            if t > 0 and contact.happens(np.concatenate([key[t] for key in keys])):
+                known = np.concatenate([postures.configurations, own[t]])
+                near = np.linalg.norm(known - contact.posture, axis=1) < _ALIKE
                 prices[t, np.flatnonzero(near[:size])] = np.inf
                 prices[t, width + np.flatnonzero(near[size:])] = np.inf
 

@@ -41,21 +41,21 @@ class OwnMotion:
         is `ahead` key intervals from now. An interval that was looked at for an earlier plan is known by its content.
         Farther ahead it leaves room for what no look sees.
         """
-        ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1)
-        content = np.round(np.concatenate([ends[:-1], ends[1:]], axis=1), 6) + 0.0
-        found, names = np.full(path.horizon, -1), [row.tobytes() for row in content]
-        missing = [int(k) for k in np.flatnonzero(chosen) if names[k] not in self._known]
+        at = np.flatnonzero(chosen)
+        ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1).round(6) + 0.0
+        names = [row.tobytes() for row in np.concatenate([ends[at], ends[at + 1]], axis=1)]
         if len(self._known) > _REMEMBERED:
             self._known.clear()
-            missing = [int(k) for k in np.flatnonzero(chosen)]
+        missing = [n for n, name in enumerate(names) if name not in self._known]
         if missing:
-            gaps = self._gaps(path, keys, rates, np.array(missing))
-            for k, gap in zip(missing, gaps.T, strict=True):
-                self._known[names[k]] = min(int(np.argmin(gap)), 1), float(gap.min())
-        for at in np.flatnonzero(chosen):
-            arm, least = self._known[names[at]]
-            if least < (0.0 if ahead + at < _SOON else _UNSEEN):
-                found[at] = arm
+            gaps = self._gaps(path, keys, rates, at[missing])
+            arms, least = np.minimum(gaps.argmin(axis=0), 1).tolist(), gaps.min(axis=0).tolist()
+            self._known.update(zip([names[n] for n in missing], zip(arms, least, strict=True), strict=True))
+        found = np.full(path.horizon, -1)
+        for k, name in zip(at.tolist(), names, strict=True):
+            arm, gap = self._known[name]
+            if gap < (0.0 if ahead + k < _SOON else _UNSEEN):
+                found[k] = arm
         return found
 
     def _gaps(self, path: RootPath, keys: Floats, rates: Floats, chosen: Indices) -> Floats32:

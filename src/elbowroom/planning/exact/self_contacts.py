@@ -12,18 +12,24 @@ _SAME = 1e-6  # radians
 _MOST = 64
 
 
-class _Contact(NamedTuple):
+class Contact(NamedTuple):
+    """An arm ran into the body."""
+
     side: int  # of the arm
     time: float  # seconds, the key time
     around: Floats  # the waist, for the right arm the left one too
     posture: Floats  # (d,) of the arm
+
+    def happens(self, around: Floats) -> bool:
+        """Whether the groups before the arm are as they were then."""
+        return bool(np.abs(self.around - around).max() < _SAME)
 
 
 class SelfContacts:
     """Postures of the arms at key times at which they ran into the body."""
 
     def __init__(self) -> None:
-        self._known: list[_Contact] = []
+        self._known: list[Contact] = []
         self._alert = 0
 
     @property
@@ -44,12 +50,9 @@ class SelfContacts:
     def add(self, side: int, time: float, around: Floats, posture: Floats) -> None:
         """An arm ran into the body at a key time, near `posture` (d,) while the groups before it were `around`."""
         self._alert = _ALERT
-        self._known.append(_Contact(side, time, around, posture))
+        self._known.append(Contact(side, time, around, posture))
 
-    def at(self, side: int, time: float, around: Floats) -> list[Floats]:
-        """The postures (d,) near which an arm ran into the body at a key time, the groups before it being as now."""
-        return [
-            known.posture
-            for known in self._known
-            if known.side == side and abs(known.time - time) < _SAME and np.abs(known.around - around).max() < _SAME
-        ]
+    def of(self, side: int, times: Floats) -> list[tuple[int, Contact]]:
+        """What is known of an arm at some of the key times (n,), each with the number of its key time."""
+        found = [(int(np.argmin(np.abs(times - one.time))), one) for one in self._known if one.side == side]
+        return [(t, one) for t, one in found if abs(times[t] - one.time) < _SAME]
