@@ -53,9 +53,13 @@ def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
     for seed in range(first, first + 6):
         path, keys, rates = swung(seed)
         arms = motion.contacts(path, keys, rates, np.ones(path.horizon, np.bool_), FAR)
+        soon = motion.contacts(path, keys, rates, np.ones(path.horizon, np.bool_), -path.horizon)
         for k, arm in enumerate(arms):
             gap = looked_at_closely(path, keys, rates, k)
-            assert (arm >= 0) == (gap < 2e-4) or abs(gap - 2e-4) < 2e-4
+            assert (arm >= 0) == (gap < 4e-4) or abs(gap - 4e-4) < 2e-4
+            assert arm >= 0 or gap >= 0.0
+            assert soon[k] < 0 or gap < 4e-4
+            assert soon[k] >= 0 or gap >= 0.0
             found[int(arm >= 0)] += 1
             near += abs(gap) < 0.04
     assert min(found) > 5

@@ -23,7 +23,8 @@ Indices = NDArray[np.int64]
 # a = 340 m/s^2, what waist and arm may do to a hand, and turning, 26 mm, 3 mm and 0.2 mm.
 _LOOKS = ((6, 0.04), (18, 0.003), (72, 0.0))
 _UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
-_SOON = 4  # key intervals ahead in which they may: what was free from afar stays free when it is near
+_AFAR = 2.0  # times as much room is left from so many key intervals ahead: what was free from afar stays so when near
+_SOON = 4
 _REMEMBERED = 4096  # intervals
 
 
@@ -39,7 +40,7 @@ class OwnMotion:
 
         `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times, the first of which
         is `ahead` key intervals from now. An interval that was looked at for an earlier plan is known by its content.
-        Farther ahead it leaves room for what no look sees.
+        It leaves room for what no look sees, and farther ahead as much again.
         """
         at = np.flatnonzero(chosen)
         ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1).round(6) + 0.0
@@ -54,7 +55,7 @@ class OwnMotion:
         found = np.full(path.horizon, -1)
         for k, name in zip(at.tolist(), names, strict=True):
             arm, gap = self._known[name]
-            if gap < (0.0 if ahead + k < _SOON else _UNSEEN):
+            if gap < _UNSEEN * (1.0 if ahead + k < _SOON else _AFAR):
                 found[k] = arm
         return found
 
