@@ -112,10 +112,10 @@ class MovingBoxes:
 
     def swept_between(self, first: Floats, last: Floats) -> Floats:
         """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
-        return swept_rows(self._packed, np.ascontiguousarray(first), np.ascontiguousarray(last))
+        return swept_rows(self._kernel_tracks, np.ascontiguousarray(first), np.ascontiguousarray(last))
 
     @cached_property
-    def _packed(self) -> Tracks:
+    def _kernel_tracks(self) -> Tracks:
         return _packed(self.tracks)
 
 

@@ -23,8 +23,8 @@ Indices = NDArray[np.int64]
 # a = 340 m/s^2, what waist and arm may do to a hand, and turning, 26 mm, 3 mm and 0.2 mm.
 _LOOKS = ((6, 0.04), (18, 0.003), (72, 0.0))
 _UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
-_AFAR = 2.0  # times as much room is left from so many key intervals ahead: what was free from afar stays so when near
-_SOON = 4
+_AFAR = 2.0  # times as much room is left far ahead: what was free from afar stays free when it is near
+_SOON = 4  # key intervals ahead until which a motion is near
 _REMEMBERED = 4096  # intervals
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from elbowroom.body.dof import DofGroup
 
-_LONE = 1.26  # a step from rest to rest peaks at 1.25 times its mean speed, and a little is lost in bounding it
+_LONE = 1.26  # a step between two pauses peaks at 1.25 times its mean speed (`curve`); bounding it takes a little more
 
 
 @dataclass(frozen=True)
