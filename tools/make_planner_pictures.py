@@ -17,6 +17,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.joint_step import JointStep
+from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody
 from elbowroom.planning.goal import goal_configurations
@@ -80,7 +81,7 @@ def slice_table(humanoid: Humanoid) -> str:
     """Left arm in scene D: key times across, postures down, the nearest to hanging on top."""
     body, path = UpperBody(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
-    ways = dressing.apart().ways
+    ways = finished(dressing.apart()).ways
     way, points_of = ways[1], dressing.shelves.groups[DofGroup.LEFT_ARM].postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
@@ -121,11 +122,11 @@ def failed_alone(humanoid: Humanoid) -> tuple[Dressing, JointStep, NDArray[np.in
     path = walk(12, 0.0)
     for seed in range(TRIES):
         dressing = dressing_of(UpperBody(humanoid, random_scene(seed), ExactSettings()), path)
-        alone = dressing.apart()
+        alone = finished(dressing.apart())
         if alone.failed is None or not alone.ways:
             continue
         step = dressing.joint_step(alone.ways[0])
-        answer = step.search()
+        answer = finished(step.search())
         if len(answer.nodes):
             return dressing, step, answer.nodes
     raise SystemExit(f"no scene of {TRIES} needs the joint step")

@@ -12,6 +12,7 @@ from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem
+from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.together import Guide
@@ -49,7 +50,7 @@ class Arms:
         self._shelves, self._problem, self._contacts, self._rounds = shelves, problem, contacts, rounds
         self._own_body, self._own_motion = own_body, own_motion
 
-    def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Ways:
+    def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Pausing[Ways]:
         """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
         horizon = self._problem.path.horizon
         if waist.reached < horizon:
@@ -58,7 +59,9 @@ class Arms:
         for _ in range(self._rounds):
             del ways[1 + first :]
             for side in range(first, len(_ARMS)):
-                way = self._way(side, ways, None if guides is None else guides[1 + side], ledger, whole=whole)
+                way = yield from self._way(
+                    side, ways, None if guides is None else guides[1 + side], ledger, whole=whole
+                )
                 if way.reached < horizon:
                     return Ways(tuple(ways), way, way.reached)
                 ways.append(way)
@@ -69,11 +72,13 @@ class Arms:
             self._remember(ways, *contact)
         return Ways(tuple(ways[:-1]), ways[-1], touching)
 
-    def _way(self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool) -> GroupWay:
+    def _way(
+        self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool
+    ) -> Pausing[GroupWay]:
         """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
         group = _ARMS[side]
         own = self._folded(side, ways, follow) if whole else self._resting(side)
-        return ledger.search(group, self._problem.task(group, ways[0].slots, own, follow))
+        return (yield from ledger.search(group, self._problem.task(group, ways[0].slots, own, follow)))
 
     def _resting(self, side: int) -> Floats32:
         """Infinite where a node touches the naturally walking body."""

@@ -18,10 +18,11 @@ from elbowroom.planning.exact.group import GroupTask, GroupWay, Weights, own_pos
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep, Surroundings
 from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.exact.lattice import KEPT, OWN
-from elbowroom.planning.exact.ledger import GoOn, Ledger
+from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem, no_prices
+from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.reaching import Blocked
 from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.settings import ExactSettings
@@ -55,14 +56,13 @@ class Dressing:
     contacts: SelfContacts
     legs: LoweredLegs
     problem: PathProblem
-    go_on: GoOn
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
         self._arms = Arms(
             self.shelves, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
         )
-        self.ledger = Ledger(self.shelves, self.weights, self.go_on)
+        self.ledger = Ledger(self.shelves, self.weights)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self._waist: GroupWay | None = None
@@ -79,18 +79,18 @@ class Dressing:
         """The goals (n+1, 11)."""
         return self.problem.goals
 
-    def motion(self, rounds: int) -> LocalPlan | None:
+    def motion(self, rounds: int) -> Pausing[LocalPlan | None]:
         """The motion, if there is one: group after group, then in so many rounds of the joint step.
 
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
-        found = self.apart()
+        found = yield from self.apart()
         if self.problem.last is not None and (found.failed is not None or self._jolts(found, self.problem.last)):
-            kept = self.with_kept_waist()
+            kept = yield from self.with_kept_waist()
             if found.failed is not None or (kept.failed is None and self._cost(kept) <= self._cost(found) + _JOLT):
                 found = kept
         if found.failed is not None and rounds > 0:
-            found = self.together(rounds)
+            found = yield from self.together(rounds)
         if found.failed is not None:
             return None
         self.asked = found.asked
@@ -113,29 +113,30 @@ class Dressing:
         away = np.concatenate([way.keys for way in found.ways], axis=1) - self.goals
         return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
-    def apart(self) -> Ways:
+    def apart(self) -> Pausing[Ways]:
         """Each group by itself."""
-        self._waist = self._waist_way(self._crouching)
-        found = self._under(self._waist)
+        self._waist = yield from self._waist_way(self._crouching)
+        found = yield from self._under(self._waist)
         self.blocked = len(found.ways), min(found.reached + 1, self.path.horizon)
         return found
 
-    def _under(self, waist: GroupWay, guides: list[Guide] | None = None) -> Ways:
+    def _under(self, waist: GroupWay, guides: list[Guide] | None = None) -> Pausing[Ways]:
         """The arms under a way of the waist."""
-        found = self._arms.under(waist, guides, self.ledger)
+        found = yield from self._arms.under(waist, guides, self.ledger)
         if found.failed is not None:
             self.deepest = max(self.deepest, found.reached)
         return found
 
-    def with_kept_waist(self) -> Ways:
+    def with_kept_waist(self) -> Pausing[Ways]:
         """The waist held to the last plan's way while there is one."""
         prices = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
         _, _, kept = own_postures(self.shelves.groups[DofGroup.WAIST], task)
         prices[np.arange(len(prices)), kept] = 0.0
-        return self._under(self._waist_way(prices + self._crouching))
+        waist = yield from self._waist_way(prices + self._crouching)
+        return (yield from self._under(waist))
 
-    def together(self, rounds: int) -> Ways:
+    def together(self, rounds: int) -> Pausing[Ways]:
         """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
         waist = self._waist
         assert waist is not None
@@ -145,12 +146,13 @@ class Dressing:
         ways = Ways((), waist, 0)
         for _ in range(rounds):
             began = perf_counter_ns()
-            answer = step.search(self.go_on)
+            answer = yield from step.search()
             self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)
             if answer.status is not PlanStatus.FOUND:
                 break
             guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
-            ways = self._under(self._waist_way(self._crouching, guides[0]), guides)
+            way = yield from self._waist_way(self._crouching, guides[0])
+            ways = yield from self._under(way, guides)
             if len(ways.ways) == len(LOCAL_GROUPS):
                 break
             failed, at = len(ways.ways), min(ways.reached, self.path.horizon - 1)
@@ -203,7 +205,7 @@ class Dressing:
         problem = self.problem
         return surroundings(self.path.states, self.shelves.roots, problem.roots, problem.near.slices)
 
-    def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> GroupWay:
+    def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> Pausing[GroupWay]:
         """The waist's way on which the legs have room to crouch as it does."""
         at, postures = columns_of(DofGroup.WAIST), self.shelves.groups[DofGroup.WAIST].postures
         kept, closed = self.problem.kept[:, at], prices.copy()
@@ -218,7 +220,7 @@ class Dressing:
 
         crouch = Crouch(self.legs, self.path, lowerings)
         for _ in range(ROUNDS):
-            way = self._search(closed, follow)
+            way = yield from self._search(closed, follow)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
                 if follow is None:
                     self._crouching[np.isinf(closed)] = np.inf
@@ -238,6 +240,7 @@ class Dressing:
         clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
-    def _search(self, extra: Floats32, follow: Guide | None) -> GroupWay:
+    def _search(self, extra: Floats32, follow: Guide | None) -> Pausing[GroupWay]:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
-        return self.ledger.search(DofGroup.WAIST, self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow))
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
+        return (yield from self.ledger.search(DofGroup.WAIST, task))

@@ -6,7 +6,6 @@ through which a way could be cheaper, were nothing near its arms, is filled in t
 the answer is that of all waists, though most were never looked at; and there is none only when all of them were.
 """
 
-from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -20,6 +19,7 @@ from elbowroom.planning.exact.joint import JointWay, joint_way
 from elbowroom.planning.exact.joint_bounds import Problem, way_costs
 from elbowroom.planning.exact.joint_tables import Lanes, clearances_under
 from elbowroom.planning.exact.own_body import SPARE, OwnBody, folded
+from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.postures import BLOCK, Postures, blocks_of
 from elbowroom.planning.frames import compose
 from elbowroom.planning.limb import pose
@@ -34,10 +34,6 @@ _FIRST = 8  # waists of each slice that are filled in at first
 _GROWTH = 3
 _ALIKE = 0.1  # radians, of both ends together: steps so near to one that touches are ruled out with it
 _INFINITE = np.float32(np.inf)
-
-
-def _nothing() -> None:
-    """Nobody calls the search off."""
 
 
 class JointSettings(NamedTuple):
@@ -91,11 +87,8 @@ class JointStep:
         self._lanes: dict[tuple[int, int], Lanes] = {}
         self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
 
-    def search(self, go_on: Callable[[], None] = _nothing) -> JointWay:
-        """The cheapest way for all three groups; nodes count as in `GroupNodes`.
-
-        `go_on` is called now and then, and raises an exception if the search is of no use any more.
-        """
+    def search(self) -> Pausing[JointWay]:
+        """The cheapest way for all three groups; nodes count as in `GroupNodes`."""
         for g in range(len(self.nodes)):
             if g not in self._alone:
                 self._alone[g] = way_costs(self.nodes[g].base, self.steps[g])
@@ -106,8 +99,8 @@ class JointStep:
             wanted = np.isfinite(alone)
             if not whole:
                 wanted &= alone <= np.partition(alone, count - 1, axis=1)[:, count - 1 : count]
-            go_on()
             way = self._among(wanted)
+            yield None
             if way.status is PlanStatus.FOUND:
                 break
             if whole or way.status is PlanStatus.OUT_OF_BUDGET or self._spent:
@@ -116,7 +109,6 @@ class JointStep:
         needed = np.isfinite(alone) & (alone <= way.cost)
         if (self.filled >= needed).all():
             return way
-        go_on()
         better = self._among(self.filled | needed)
         return way if better.status is PlanStatus.OUT_OF_BUDGET else better
 

@@ -1,31 +1,28 @@
 """What the searches of one plan cost, group by group."""
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from time import perf_counter_ns
 
 from elbowroom.body.dof import DofGroup
 from elbowroom.planning.exact.group import GroupTask, GroupWay, Weights
 from elbowroom.planning.exact.group_search import search_group
 from elbowroom.planning.exact.joint_step import JointStep
+from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.ways import LimbWays
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
-
-GoOn = Callable[[], None]
 
 
 class Ledger:
     """Searches one group after the other and keeps what each group's searches cost together."""
 
-    def __init__(self, shelves: Shelves, weights: Weights, go_on: GoOn) -> None:
-        """`go_on` is called before each search, and raises an exception if it is of no use any more."""
-        self._shelves, self._weights, self._go_on = shelves, weights, go_on
-        self._rows: dict[DofGroup, GroupEvidence] = {}
+    def __init__(self, shelves: Shelves, weights: Weights) -> None:
+        self._shelves, self._weights = shelves, weights
+        self._rows: list[GroupEvidence] = []
         self.joint: JointEvidence | None = None
 
-    def search(self, group: DofGroup, task: GroupTask) -> GroupWay:
+    def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupWay]:
         """`search_group`, entered under `group`."""
-        self._go_on()
         began = perf_counter_ns()
         shelves = self._shelves
         waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
@@ -34,9 +31,9 @@ class Ledger:
         )
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
-        old = self._rows.get(group, GroupEvidence(group, status, 0, 0, 0, 0))
-        checks, nodes, nanoseconds = old.checks + way.checks, old.nodes + way.nodes, old.nanoseconds + spent
-        self._rows[group] = GroupEvidence(group, status, checks, nodes, 0, nanoseconds)
+        row = GroupEvidence(group, status, way.checks, way.nodes, 0, spent)
+        self._rows.append(row)
+        yield row
         return way
 
     def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
@@ -46,4 +43,18 @@ class Ledger:
 
     def evidence(self) -> tuple[GroupEvidence, ...]:
         """A row for each group that was searched, in order."""
-        return tuple(self._rows.values())
+        return by_group(self._rows)
+
+
+def by_group(rows: Iterable[GroupEvidence]) -> tuple[GroupEvidence, ...]:
+    """What searches cost, those of one group together, which ended as the last of them."""
+    found: dict[DofGroup, GroupEvidence] = {}
+    for row in rows:
+        old = found.get(row.group)
+        found[row.group] = row if old is None else _both(old, row)
+    return tuple(found.values())
+
+
+def _both(one: GroupEvidence, then: GroupEvidence) -> GroupEvidence:
+    checks, nodes, enhanced = one.checks + then.checks, one.nodes + then.nodes, one.enhanced + then.enhanced
+    return GroupEvidence(then.group, then.status, checks, nodes, enhanced, one.nanoseconds + then.nanoseconds)

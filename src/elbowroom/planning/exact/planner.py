@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.planning.exact.farther import Farther
 from elbowroom.planning.exact.kept import Start
+from elbowroom.planning.exact.pauses import Pausing, finished
 from elbowroom.planning.exact.prolonging import Walk, prolonged, rest_of, settled
 from elbowroom.planning.exact.recent import Recent
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.turns import Turns, same_place
 from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, first_part, stands
+from elbowroom.planning.exact.whole import Stand, Whole, costing, first_part, stands
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
 from elbowroom.planning.root_motion import brake
@@ -60,6 +62,7 @@ class ExactPlanner:
         self._recent = Recent()
         self._stand: Stand | None = None
         self._walk: Walk | None = None
+        self._farther: Farther | None = None
         self._blockade: Blockade | None = None
         self._turns = Turns()
         self._body.reset()
@@ -75,6 +78,7 @@ class ExactPlanner:
         left = self._walk.left(query) if alone and self._walk is not None else None
         whole = None if left is None else self._gone_on(left, root_planner, query)
         if whole is None:
+            self._farther = None
             whole = self._answered(left, root_planner, query, alone=alone)
             lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
             self._walk = Walk(query, whole) if alone and lasts else None
@@ -102,28 +106,44 @@ class ExactPlanner:
 
         One that evades something is kept for a while, and then planned anew.
         """
-        horizon, spare = self._horizon(query), round(self.settings.spare / query.interval)
-        evading = not _is_commanded(left, root_planner)
-        if left.root.path.horizon >= (horizon - spare if evading else horizon):
-            return left
-        if evading:
-            return None
-        farther = horizon + spare
-        root = root_planner.plan(query.root, query.command, farther, query.interval, query.time)
+        horizon, known = self._horizon(query), left.root.path.horizon
+        if not _is_commanded(left, root_planner):
+            return left if known >= horizon - self._spare(query) else None
+        if known >= horizon:
+            self._farther = self._farther or Farther(query, self._prolonging(left, root_planner, query))
+            self._farther.do_part(query.go_on)
+            return costing(left, self._farther.costs())
+        begun, self._farther = self._farther, None
+        anew = Farther(query, self._prolonging(left, root_planner, query))
+        return self._taken_on(begun, query) or self._taken_on(anew, query)
+
+    def _taken_on(self, farther: Farther | None, query: MotionQuery) -> Whole | None:
+        """What was found farther on becomes the walk; None if there is nothing."""
+        self._walk = None if farther is None else farther.walk(query.go_on)
+        left = None if self._walk is None else self._walk.left(query)
+        return None if farther is None or left is None else costing(left, farther.costs())
+
+    def _prolonging(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Pausing[Whole | None]:
+        """What is left of a walk, prolonged to where it has to lead when it has become too short."""
+        near = max(left.root.path.horizon + 1, self._horizon(query))
+        far = near + self._spare(query)
+        root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
-        near = replace(root, path=replace(root.path, states=root.path.states[: horizon + 1]))
-        whole = self._prolonged(left, root, query, Effort.QUICK) or self._prolonged(left, near, query, Effort.QUICK)
-        self._walk = None if whole is None else Walk(query, whole)
-        return whole
+        shorter = replace(root, path=replace(root.path, states=root.path.states[: near + 1]))
+        whole = yield from self._prolonged(left, root, query, Effort.QUICK)
+        return whole or (yield from self._prolonged(left, shorter, query, Effort.QUICK))
 
-    def _prolonged(self, left: Whole, root: RootPlan, query: MotionQuery, effort: Effort) -> Whole | None:
+    def _spare(self, query: MotionQuery) -> int:
+        return round(self.settings.spare / query.interval)
+
+    def _prolonged(self, left: Whole, root: RootPlan, query: MotionQuery, effort: Effort) -> Pausing[Whole | None]:
         """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
         kept = settled(left, root.path, round(self.settings.revisited / root.path.interval))
         if kept is None:
             return None
         path = rest_of(root.path, kept.at)
-        rest = self._dress_from(kept.begins, path, query, effort)
+        rest = yield from self._body.planning(path, kept.begins, self._recent.kept(path), query.others, effort)
         return prolonged(kept, rest, root) if rest.reached == path.horizon else None
 
     def _whole(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery) -> Whole:
@@ -138,7 +158,9 @@ class ExactPlanner:
                 continue
             upper = self._dress(root.path, query, Effort.QUICK)
             if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
-                refined = None if left is None else self._prolonged(left, root, query, Effort.REFINED)
+                refined = None
+                if left is not None:
+                    refined = finished(self._prolonged(left, root, query, Effort.REFINED), query.go_on)
                 if refined is not None:
                     self._turns.found()
                     return refined
@@ -227,11 +249,10 @@ class ExactPlanner:
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort, *, harsh: bool = False) -> UpperPlan:
-        return self._dress_from(Start(query.upper, query.velocity, harsh=harsh), path, query, effort)
-
-    def _dress_from(self, begins: Start, path: RootPath, query: MotionQuery, effort: Effort) -> UpperPlan:
         query.go_on()
-        return self._body.plan(path, begins, self._recent.kept(path), query.others, effort, query.go_on)
+        begins = Start(query.upper, query.velocity, harsh=harsh)
+        work = self._body.planning(path, begins, self._recent.kept(path), query.others, effort)
+        return finished(work, query.go_on)
 
 
 def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:

@@ -18,6 +18,7 @@ from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
 from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.lattice import OWN
+from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.postures import postures_of
 from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
@@ -48,7 +49,7 @@ def rehearse(humanoid: Humanoid) -> None:
         body = UpperBody(humanoid, _scene_with(*box), ExactSettings())
         start = goal_configurations(body.goals, path)[0]
         dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
-        dressing.together(1)
+        finished(dressing.together(1))
         dressing.blockade()
     _fold(body, path)
     rehearse_detour(humanoid)

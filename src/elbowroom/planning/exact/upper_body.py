@@ -21,12 +21,12 @@ from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.group import Group, Weights
 from elbowroom.planning.exact.kept import Asked, Kept, Start
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
-from elbowroom.planning.exact.ledger import GoOn
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem
+from elbowroom.planning.exact.pauses import Pausing, finished
 from elbowroom.planning.exact.postures import Postures, postures_of
 from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
@@ -111,13 +111,14 @@ class UpperBody:
         kept: Kept | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
-        go_on: GoOn = lambda: None,
     ) -> UpperPlan:
-        """Motion along `path` from where it `begins`; near `kept`, the last plan.
+        """Motion along `path` from where it `begins`; near `kept`, the last plan. `others` move besides the scene's."""
+        return finished(self.planning(path, begins, kept, others, effort))
 
-        `others` move besides the scene's own. `go_on` is called now and then, and raises an exception if the plan is of
-        no use any more.
-        """
+    def planning(
+        self, path: RootPath, begins: Start, kept: Kept | None, others: MovingBoxes | None, effort: Effort
+    ) -> Pausing[UpperPlan]:
+        """`plan`, with pauses, in which nothing else may be planned: who does calls the rest off."""
         moving = self._moving if others is None else self._moving + others
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
         legs = self._legs.among(moving, path)
@@ -125,9 +126,9 @@ class UpperBody:
         quick = effort in (Effort.QUICK, Effort.GLANCE)
         weights = self._weights._replace(rounds=self.settings.quick_rounds) if quick else self._weights
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, begins, kept, near, legs, weights, go_on)
+            dressing = self._dressing(path, begins, kept, near, legs, weights)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
-            found = dressing.motion(0 if between else rounds)
+            found = yield from dressing.motion(0 if between else rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, dressing, dressing.asked)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
@@ -161,7 +162,6 @@ class UpperBody:
         near: NearBoxes,
         legs: LoweredLegs,
         weights: Weights,
-        go_on: GoOn,
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
@@ -178,7 +178,6 @@ class UpperBody:
             self._contacts,
             legs,
             problem,
-            go_on,
         )
 
     def _refine(self, dressing: Dressing) -> bool:

@@ -66,6 +66,11 @@ def later(whole: Whole, at: int) -> Whole:
     return Whole(replace(root, path=path, checks=0, nanoseconds=0), rest, asked)
 
 
+def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
+    """A motion for which so much was searched."""
+    return whole._replace(local=replace(whole.local, evidence=rows)) if rows else whole
+
+
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
     return tuple(replace(row, checks=0, nodes=0, enhanced=0, nanoseconds=0) for row in local.evidence)
 

@@ -1,0 +1,61 @@
+"""A plan is made longer a part at a time, in the plans before the one that needs it.
+
+While somebody walks on as planned, most plans have nothing to search, and now and then one has to be made longer. What
+is found there does not depend on when it is looked for, so it is begun early and done in parts, by what searches cost
+and not by the clock: a recording replays alike on a slower machine.
+"""
+
+from collections.abc import Callable
+
+from elbowroom.planning.exact.ledger import by_group
+from elbowroom.planning.exact.pauses import Pausing
+from elbowroom.planning.exact.prolonging import Walk
+from elbowroom.planning.exact.whole import Whole
+from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.result import GroupEvidence
+
+# What a part costs at least, before it ends, in nodes that are settled; so much do other things cost.
+_PART, _BEGINNING, _SEARCH, _CHECK = 1500.0, 1000.0, 400.0, 0.04
+
+
+class Farther:
+    """What goes on from a walk, in the making."""
+
+    def __init__(self, query: MotionQuery, work: Pausing[Whole | None]) -> None:
+        """It was begun at a `query`, from where `work` goes on."""
+        self._query, self._work = query, work
+        self._rows: list[GroupEvidence] = []
+        self._spent = _BEGINNING
+        self._done = False
+        self._found: Whole | None = None
+
+    def do_part(self, go_on: Callable[[], None]) -> None:
+        """Go on until that has cost enough; `go_on` is called now and then, and raises an exception to call it off."""
+        while not self._done and self._spent < _PART:
+            go_on()
+            self._step()
+        self._spent = 0.0
+
+    def walk(self, go_on: Callable[[], None]) -> Walk | None:
+        """What was found, when all is done; None if there is nothing."""
+        while not self._done:
+            go_on()
+            self._step()
+        return None if self._found is None else Walk(self._query, self._found)
+
+    def costs(self) -> tuple[GroupEvidence, ...]:
+        """What was searched since they were last asked for."""
+        rows, self._rows = self._rows, []
+        return by_group(rows)
+
+    def _step(self) -> None:
+        """Go on until the next pause."""
+        try:
+            row = next(self._work)
+        except StopIteration as end:
+            self._found, self._done = end.value, True
+            return
+        self._spent += _SEARCH
+        if row is not None:
+            self._spent += row.nodes + _CHECK * row.checks
+            self._rows.append(row)
