@@ -6,63 +6,50 @@ import subprocess
 import sys
 import weakref
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.held import Held, hold
 from elbowroom.jit import exact_kernel
 
-Floats = NDArray[np.float64]
-
-
-class Inner(NamedTuple):
-    row: Floats
-    weight: float
-
-
-class Outer(NamedTuple):
-    table: Floats
-    inner: Inner
-
 
 @exact_kernel
-def raised(held: Held[Outer], by: float) -> float:
-    """Raise the row in place; its weighted sum and what stands in the table."""
-    outer = held.value
-    for i in range(outer.inner.row.shape[0]):
-        outer.inner.row[i] += by
-    return float(outer.inner.weight * outer.inner.row.sum() + outer.table[0, 1])
+def raised(held: Held[BodyModel], by: float) -> float:
+    """Raise the offsets in place; their sum in units of half a leg."""
+    model = held.value
+    model.offsets[:] += by
+    return float(model.offsets.sum() / model.gait.half_leg)
 
 
-def an_outer() -> Outer:
-    rng = np.random.default_rng(0)
-    return Outer(rng.standard_normal((2, 3)), Inner(rng.standard_normal(5), 0.5))
+def a_model() -> BodyModel:
+    model = body_model(Humanoid.default())
+    return model._replace(offsets=model.offsets.copy())
 
 
 def test_a_kernel_reads_and_writes_the_arrays_themselves() -> None:
-    outer = an_outer()
-    held, before = hold(outer), outer.inner.row.copy()
+    model = a_model()
+    held, before = hold(model), model.offsets.copy()
     found = raised(held, 2.0)
-    np.testing.assert_array_equal(outer.inner.row, before + 2.0)
-    assert found == 0.5 * outer.inner.row.sum() + outer.table[0, 1]
-    outer.table[0, 1] = 7.0
-    assert raised(held, 0.0) == 0.5 * outer.inner.row.sum() + 7.0
-    assert held.value is outer
+    np.testing.assert_array_equal(model.offsets, before + 2.0)
+    assert np.isclose(found, model.offsets.sum() / model.gait.half_leg, rtol=1e-12)
+    model.offsets[:] = 1.0
+    assert raised(held, 0.0) == model.offsets.size / model.gait.half_leg
+    assert held.value is model
 
 
 def test_arrays_live_as_long_as_what_holds_them() -> None:
-    outer = an_outer()
-    row = weakref.ref(outer.inner.row)
-    held = hold(outer)
-    del outer
+    model = a_model()
+    offsets = weakref.ref(model.offsets)
+    held = hold(model)
+    del model
     gc.collect()
-    assert row() is not None
+    assert offsets() is not None
     raised(held, 1.0)
     del held
     gc.collect()
-    assert row() is None
+    assert offsets() is None
 
 
 def test_another_process_compiles_nothing(tmp_path: Path) -> None:

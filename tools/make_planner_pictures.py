@@ -82,7 +82,7 @@ def slice_table(humanoid: Humanoid) -> str:
     body, path = UpperBody(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
     ways = finished(dressing.apart()).ways
-    way, points_of = ways[1], dressing.shelves.groups[DofGroup.LEFT_ARM].postures.configurations
+    way, points_of = ways[1], dressing.shelves.group(DofGroup.LEFT_ARM).postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
     free = np.isfinite(way.price[:, order]).T

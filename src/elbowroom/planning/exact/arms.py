@@ -82,11 +82,11 @@ class Arms:
 
     def _resting(self, side: int) -> Floats32:
         """Infinite where a node touches the naturally walking body."""
-        return self._own_body.resting_prices(side, self._shelves.groups[_ARMS[side]].postures, len(self._problem.goals))
+        return self._own_body.resting_prices(side, self._shelves.group(_ARMS[side]).postures, len(self._problem.goals))
 
     def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None) -> Floats32:
         """Infinite where a node touches the body on its ways, or is near to one that did."""
-        problem, made = self._problem, self._shelves.groups[_ARMS[side]]
+        problem, made = self._problem, self._shelves.group(_ARMS[side])
         own, needed, _ = own_postures(made, problem.task(_ARMS[side], ways[0].slots, None, follow))
         keys = [way.keys for way in ways[: 1 + side]]
         natural = np.ones(len(problem.goals), np.bool_)
@@ -102,7 +102,7 @@ class Arms:
 
     def _rule_out(self, side: int, keys: list[Floats], own: Floats, prices: Floats32) -> None:
         """Rule out the nodes at key times near to postures that ran into the body there, the body being as it is."""
-        postures = self._shelves.groups[_ARMS[side]].postures
+        postures = self._shelves.group(_ARMS[side]).postures
         size, width = len(postures.configurations), postures.moves.shape[1]
         for t, contact in self._contacts.of(side, self._problem.path.times):
             if t > 0 and contact.happens(np.concatenate([key[t] for key in keys])):

@@ -131,7 +131,7 @@ class Dressing:
         """The waist held to the last plan's way while there is one."""
         prices = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
-        _, _, kept = own_postures(self.shelves.groups[DofGroup.WAIST], task)
+        _, _, kept = own_postures(self.shelves.group(DofGroup.WAIST), task)
         prices[np.arange(len(prices)), kept] = 0.0
         waist = yield from self._waist_way(prices + self._crouching)
         return (yield from self._under(waist))
@@ -169,7 +169,7 @@ class Dressing:
         number, depth = self.blocked
         waist = self._waist
         assert waist is not None
-        at, known = columns_of(LOCAL_GROUPS[number]), self.shelves.groups[DofGroup.WAIST].postures.configurations
+        at, known = columns_of(LOCAL_GROUPS[number]), self.shelves.group(DofGroup.WAIST).postures.configurations
         prices = waist.price[depth, : len(known)]
         order = np.argsort(prices, kind="stable")
         waists = known[order[np.isfinite(prices[order])]]
@@ -186,16 +186,16 @@ class Dressing:
 
     def joint_step(self, waist: GroupWay) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
-        groups, task = self.shelves.groups, self.problem.task(DofGroup.WAIST, self.problem.roots)
+        shelves, task = self.shelves, self.problem.task(DofGroup.WAIST, self.problem.roots)
         arms = []
         for group in LOCAL_GROUPS[1:]:
             arm_task, most = self.problem.task(group, waist.slots), np.inf
             if waist.reached == self.path.horizon:
                 most = self._room_at_start(group, arm_task, waist)
-            arms.append(arm_nodes(groups[group], arm_task, self.weights.keeping, most))
+            arms.append(arm_nodes(shelves.group(group), arm_task, self.weights.keeping, most))
         return JointStep(
             self.own_body,
-            waist_nodes(groups[DofGroup.WAIST], task, waist, self.weights.keeping),
+            waist_nodes(shelves.group(DofGroup.WAIST), task, waist, self.weights.keeping),
             (arms[0], arms[1]),
             self._surroundings(),
             JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
@@ -207,7 +207,7 @@ class Dressing:
 
     def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> Pausing[GroupWay]:
         """The waist's way on which the legs have room to crouch as it does."""
-        at, postures = columns_of(DofGroup.WAIST), self.shelves.groups[DofGroup.WAIST].postures
+        at, postures = columns_of(DofGroup.WAIST), self.shelves.group(DofGroup.WAIST).postures
         kept, closed = self.problem.kept[:, at], prices.copy()
         if follow is not None:
             kept = follow.keys
@@ -234,9 +234,9 @@ class Dressing:
         shelves, root = self.shelves, self.problem.roots[0]
         places, turns = shelves.roots.places[root], shelves.roots.turns[root]
         if group is not DofGroup.WAIST:
-            carriers = shelves.groups[DofGroup.WAIST].ways
+            carriers = shelves.group(DofGroup.WAIST).ways
             places, turns = carriers.places[waist.slots[0]], carriers.turns[waist.slots[0]]
-        postures, boxes = shelves.groups[group].postures, self.problem.near.intervals[0]
+        postures, boxes = shelves.group(group).postures, self.problem.near.intervals[0]
         clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 

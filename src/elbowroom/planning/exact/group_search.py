@@ -8,6 +8,7 @@ So steps are swept only where the search is blocked, and every candidate is swep
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.held import Held
 from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
@@ -17,6 +18,7 @@ from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_ma
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way
+from elbowroom.planning.exact.shelves import Shelf
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
@@ -120,13 +122,12 @@ def _close_promising(
 
 
 @exact_kernel
-def search_group(
-    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, weights: Weights, work: Work
-) -> GroupWay:
+def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> GroupWay:
     """The cheapest way whose motion is free as shown, at every moment.
 
     It begins gently; if there is no such way, only who is told so begins as hard as it takes.
     """
+    group, roots, waists, chain, work = shelf.value
     postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1

@@ -9,7 +9,6 @@ from elbowroom.planning.exact.group_search import search_group
 from elbowroom.planning.exact.joint_step import JointStep
 from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.shelves import Shelves
-from elbowroom.planning.exact.ways import LimbWays
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
 
 
@@ -24,11 +23,7 @@ class Ledger:
     def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupWay]:
         """`search_group`, entered under `group`."""
         began = perf_counter_ns()
-        shelves = self._shelves
-        waists: LimbWays = shelves.groups[DofGroup.WAIST].ways
-        way: GroupWay = search_group(
-            shelves.groups[group], shelves.roots, waists, shelves.chain, task, self._weights, shelves.works[group]
-        )
+        way: GroupWay = search_group(self._shelves.held[group], task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
         row = GroupEvidence(group, status, way.checks, way.nodes, 0, spent)

@@ -76,4 +76,4 @@ class PathProblem:
 
 def no_prices(shelves: Shelves, group: DofGroup, horizon: int) -> Floats32:
     """Nothing (n+1, W+OWN) to be added to the prices of a group's nodes."""
-    return np.zeros((horizon + 1, shelves.groups[group].postures.moves.shape[1] + OWN), np.float32)
+    return np.zeros((horizon + 1, shelves.group(group).postures.moves.shape[1] + OWN), np.float32)

@@ -3,22 +3,73 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.body.dof import DofGroup
+from elbowroom.held import Held, hold
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group import Group
 from elbowroom.planning.exact.lattice import Work
-from elbowroom.planning.exact.ways import Chain, RootWays
+from elbowroom.planning.exact.slots import begin_round
+from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays, root_way
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+
+
+class Shelf(NamedTuple):
+    """What the searches of one group look at and write down, whatever they are asked for."""
+
+    group: Group
+    roots: RootWays
+    waists: LimbWays
+    chain: Chain
+    work: Work
 
 
 class Shelves(NamedTuple):
     """All that depends on the interval, with room for so many of them."""
 
-    groups: Mapping[DofGroup, Group]
-    works: Mapping[DofGroup, Work]
-    roots: RootWays
-    chain: Chain
+    held: Mapping[DofGroup, Held[Shelf]]
     horizon: int  # the greatest number of key intervals that there is room for
+
+    @staticmethod
+    def of(
+        groups: Mapping[DofGroup, Group], works: Mapping[DofGroup, Work], roots: RootWays, chain: Chain, horizon: int
+    ) -> "Shelves":
+        """The shelves of these groups, one of which is the waist."""
+        waists = groups[DofGroup.WAIST].ways
+        made = {group: hold(Shelf(groups[group], roots, waists, chain, works[group])) for group in groups}
+        return Shelves(made, horizon)
+
+    @property
+    def roots(self) -> RootWays:
+        """The ways of the root."""
+        return self.held[DofGroup.WAIST].value.roots
+
+    @property
+    def span(self) -> float:
+        """No point of the upper body gets farther from the root's axis, metres."""
+        return self.held[DofGroup.WAIST].value.chain.span
+
+    def group(self, group: DofGroup) -> Group:
+        """What is known of a group."""
+        return self.held[group].value.group
 
     def with_group(self, group: DofGroup, made: Group, room: Work) -> "Shelves":
         """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
-        kept = made._replace(ways=self.groups[group].ways)
-        return self._replace(groups={**self.groups, group: kept}, works={**self.works, group: room})
+        old = self.held[group].value
+        shelf = old._replace(group=made._replace(ways=old.group.ways), work=room)
+        return self._replace(held={**self.held, group: hold(shelf)})
+
+
+@exact_kernel
+def root_ways(shelf: Held[Shelf], states: Floats, interval: float, stamps: Floats) -> Longs:
+    """The slots (n,) of the root ways between the key states (n+1, 7), each with its stamp (n,)."""
+    ways, chain = shelf.value.roots, shelf.value.chain
+    begin_round(ways.slots)
+    out = np.empty(states.shape[0] - 1, np.int64)
+    for k in range(out.shape[0]):
+        out[k] = root_way(ways, chain, states[k], states[k + 1], interval, stamps[k])
+    return out

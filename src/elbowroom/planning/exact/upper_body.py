@@ -32,9 +32,9 @@ from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.shelves import Shelves
+from elbowroom.planning.exact.shelves import Shelves, root_ways
 from elbowroom.planning.exact.tables import new_tables
-from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways, root_ways
+from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
 from elbowroom.planning.lowered_legs import LoweredLegs
@@ -120,7 +120,7 @@ class UpperBody:
     ) -> Pausing[UpperPlan]:
         """`plan`, with pauses, in which nothing else may be planned: who does calls the rest off."""
         moving = self._moving if others is None else self._moving + others
-        near = near_boxes(path, self._boxes, moving, self._shelves_for(path).chain.span + _NEARLY)
+        near = near_boxes(path, self._boxes, moving, self._shelves_for(path).span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         quick = effort in (Effort.QUICK, Effort.GLANCE)
@@ -165,7 +165,7 @@ class UpperBody:
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
-        roots = root_ways(shelves.roots, shelves.chain, path.states, path.interval, near.stamps)
+        roots = root_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
         margins, skins = self._margins(path, begins.ahead)
         self._contacts.begin(path.start_time)
         problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
@@ -237,7 +237,7 @@ class UpperBody:
         works = {group: room for group, (_, room) in made.items()}
         reach = max(groups[arm].postures.reach for arm in LOCAL_GROUPS[1:])
         chain = chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
-        return Shelves(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain, horizon)
+        return Shelves.of(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain, horizon)
 
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""

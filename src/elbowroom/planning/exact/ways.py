@@ -17,7 +17,7 @@ from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, quickness
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis
 from elbowroom.jit import exact_inner_kernel, exact_kernel
-from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
+from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
 from elbowroom.planning.frames import compose
 from elbowroom.planning.limb import Limb, carried_frames
 from elbowroom.planning.root_path import interpolate_root
@@ -280,13 +280,3 @@ def carry(
             chest_turns[n, i] = out_turns[n, i]
     for i in range(sway.shape[0]):
         chest_sway[i] = sway[i] + lever * moved[i, 0] + lift * moved[i, 1]
-
-
-@exact_kernel
-def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The slots (n,) of the root ways between the key states (n+1, 7), each with its stamp (n,)."""
-    begin_round(ways.slots)
-    out = np.empty(states.shape[0] - 1, np.int64)
-    for k in range(out.shape[0]):
-        out[k] = root_way(ways, chain, states[k], states[k + 1], interval, stamps[k])
-    return out
