@@ -53,6 +53,8 @@ def rehearse(humanoid: Humanoid) -> None:
         dressing.blockade()
     _fold(body, path)
     rehearse_detour(humanoid)
+    rehearse_product()
+    path.sample(path.times)
 
 
 def _fold(body: UpperBody, path: RootPath) -> None:
@@ -64,9 +66,12 @@ def _fold(body: UpperBody, path: RootPath) -> None:
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
-    """Plan a root path round a low box."""
+    """Plan root paths round a low box, aside of it and turning on the spot."""
     planner = RootPlanner(humanoid, _scene_with(*_LOW))
-    return planner.plan(RootState(0.0, 0.0, 0.0), Command(forward=1.0), 2 * _HORIZON, _INTERVAL)
+    start, horizon = RootState(0.0, 0.0, 0.0), 2 * _HORIZON
+    planner.plan(start, Command(turn=1.0), horizon, _INTERVAL)
+    list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
+    return planner.plan(start, Command(forward=1.0), horizon, _INTERVAL)
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
