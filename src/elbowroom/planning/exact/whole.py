@@ -67,8 +67,12 @@ def later(whole: Whole, at: int) -> Whole:
 
 
 def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
-    """A motion for which so much was searched."""
-    return whole._replace(local=replace(whole.local, evidence=rows)) if rows else whole
+    """A motion that is as it was found, for whose groups so much was searched meanwhile, a row for each of them."""
+    spent = {row.group: row for row in rows}
+    evidence = tuple(
+        row if row.group not in spent else replace(spent[row.group], status=row.status) for row in whole.local.evidence
+    )
+    return whole._replace(local=replace(whole.local, evidence=evidence)) if rows else whole
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
