@@ -70,12 +70,12 @@ def arm_swing_goal(group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Flo
     """
     if group not in _ARMS:
         raise ValueError(f"{group.name} is not an arm")
-    phase, speed = np.broadcast_arrays(np.asarray(phases, np.float64), np.asarray(speeds, np.float64))
+    phase, speed = np.asarray(phases, np.float64), np.asarray(speeds, np.float64)
+    if phase.shape != speed.shape:
+        phase, speed = np.broadcast_arrays(phase, speed)
     starts, cubics = arm_swing(DofGroup.LEFT_ARM).cubics
     ahead = 0.0 if group is DofGroup.LEFT_ARM else 0.5
-    goal = _swings(
-        starts, cubics, _HANGING, np.ascontiguousarray(phase.ravel()) + ahead, np.ascontiguousarray(speed.ravel())
-    )
+    goal = _swings(starts, cubics, _HANGING, phase.ravel() + ahead, speed.ravel())
     return goal.reshape(*phase.shape, len(_HANGING))
 
 

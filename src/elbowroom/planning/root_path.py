@@ -32,6 +32,10 @@ class RootPath:
         times: Floats = self.start_time + self.interval * np.arange(len(self.states), dtype=np.float64)
         return times
 
+    def time_of(self, number: int) -> float:
+        """The time of one key frame, as in `times`."""
+        return self.start_time + self.interval * number
+
     def at(self, time: float) -> RootState:
         """The state at a time, which is moved into the path's own duration if need be."""
         return RootState(*self.sample(np.array([time]))[0].tolist())

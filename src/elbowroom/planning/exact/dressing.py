@@ -103,10 +103,10 @@ class Dressing:
     def _jolts(self, found: Ways, last: Kept) -> bool:
         """Whether the waist has left the last plan's way, and some joint by more than a little."""
         known = min(last.known, len(last.keys))
-        away = [
-            way.keys[:known] - last.keys[:known, columns_of(g)] for way, g in zip(found.ways, LOCAL_GROUPS, strict=True)
-        ]
-        return bool(np.any(away[0])) and max(float(np.abs(one).max()) for one in away) > _LITTLE
+        if np.array_equal(found.ways[0].keys[:known], last.keys[:known, columns_of(DofGroup.WAIST)]):
+            return False
+        away = np.concatenate([way.keys[:known] for way in found.ways], axis=1) - last.keys[:known]
+        return bool(np.abs(away).max() > _LITTLE)
 
     def _cost(self, found: Ways) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""

@@ -21,6 +21,9 @@ class Asked(NamedTuple):
 
     def since(self, first: int, horizon: int) -> "Asked":
         """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
+        until = first + horizon
+        if until < self.margins.shape[1]:
+            return Asked(self.margins[:, first : until + 1], self.skins[:, first:until])
         margins, skins = np.full((3, horizon + 1), np.inf), np.full((3, horizon), np.inf)
         known = self.margins[:, first:][:, : horizon + 1]
         margins[:, : known.shape[1]] = known

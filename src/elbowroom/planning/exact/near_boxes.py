@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.boxes import BOX_ROW
 from elbowroom.world.moving import MovingBoxes
@@ -24,14 +25,13 @@ class NearBoxes(NamedTuple):
 
 def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float) -> NearBoxes:
     """What of `table` (B, 15) and of what moves comes within `reach` metres of a path."""
-    low, high = path.states[:, :2].min(axis=0) - reach, path.states[:, :2].max(axis=0) + reach
-    rows = np.flatnonzero(_near(table, low, high))
-    still, count = table[rows][None], path.horizon
-    intervals, slices = np.repeat(still, count, axis=0), np.repeat(still, count + 1, axis=0)
+    rows = _near(table, path.states, reach)
+    slices, count = _repeated(table, rows, len(path.states)), path.horizon
+    intervals = slices[:-1]
     if not len(moving):
         return NearBoxes(intervals, slices, np.zeros(count), rows)
     sweeps = moving.swept(path.times)
-    near = np.flatnonzero(_near(sweeps.reshape(-1, BOX_ROW), low, high).reshape(sweeps.shape[:2]).any(axis=0))
+    near = np.unique(_near(sweeps.reshape(-1, BOX_ROW), path.states, reach) % sweeps.shape[1])
     if not len(near):
         return NearBoxes(intervals, slices, np.zeros(count), rows)
     around = np.arange(count + 1)
@@ -46,9 +46,27 @@ def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float)
     )
 
 
-def _near(rows: Floats, low: Floats, high: Floats) -> NDArray[np.bool_]:
-    """Which boxes (B, 15) may come into a rectangle on the ground."""
-    places = rows[:, [0, 2]]
-    gaps = np.linalg.norm(places - np.clip(places, low, high), axis=1)
-    found: NDArray[np.bool_] = gaps < np.linalg.norm(rows[:, 12:], axis=1)
-    return found
+@exact_kernel
+def _near(rows: Floats, states: Floats, reach: float) -> Longs:
+    """The numbers of the boxes (B, 15) that may come within `reach` of root states (N, 7): those near to a rectangle on
+    the ground that holds them."""
+    low_x, high_x = states[:, 0].min() - reach, states[:, 0].max() + reach
+    low_z, high_z = states[:, 1].min() - reach, states[:, 1].max() + reach
+    found, count = np.empty(rows.shape[0], np.int64), 0
+    for b in range(rows.shape[0]):
+        x, z, half = rows[b, 0], rows[b, 2], rows[b, 12:]
+        aside, ahead = x - min(max(x, low_x), high_x), z - min(max(z, low_z), high_z)
+        if np.sqrt(aside * aside + ahead * ahead) < np.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]):
+            found[count] = b
+            count += 1
+    return found[:count]
+
+
+@exact_kernel
+def _repeated(table: Floats, rows: Longs, count: int) -> Floats:
+    """These rows of a table of boxes, `count` times."""
+    out = np.empty((count, rows.shape[0], table.shape[1]))
+    for n in range(count):
+        for b in range(rows.shape[0]):
+            out[n, b] = table[rows[b]]
+    return out

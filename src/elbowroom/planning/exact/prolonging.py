@@ -52,7 +52,7 @@ def settled(left: Whole, path: RootPath, free: int) -> Settled | None:
 
 def rest_of(path: RootPath, at: int) -> RootPath:
     """A path from one of its key times on."""
-    return RootPath(float(path.times[at]), path.interval, path.states[at:])
+    return RootPath(path.time_of(at), path.interval, path.states[at:])
 
 
 def prolonged(kept: Settled, rest: UpperPlan, root: RootPlan) -> Whole:
@@ -82,9 +82,9 @@ class Walk(NamedTuple):
         local = whole.local
         if known.command != query.command or known.interval != query.interval or local.velocities is None:
             return None
-        if not 0 <= at < len(local.configurations) or abs(query.time - float(whole.root.path.times[at])) > _SAME:
+        if not 0 <= at < len(local.configurations) or abs(query.time - whole.root.path.time_of(at)) > _SAME:
             return None
-        there = (whole.root.path.states[at], local.configurations[at], local.velocities[at])
-        asked = (query.root.as_array(), query.upper, query.velocity)
-        same = all(np.abs(a - b).max() <= _SAME for a, b in zip(there, asked, strict=True))
+        there = np.concatenate([whole.root.path.states[at], local.configurations[at], local.velocities[at]])
+        asked = np.concatenate([query.root, query.upper, query.velocity])
+        same = bool(np.abs(there - asked).max() <= _SAME)
         return later(whole, at) if same else None

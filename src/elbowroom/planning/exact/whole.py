@@ -9,7 +9,7 @@ import numpy as np
 from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.result import GroupEvidence, LocalPlan
+from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
 
@@ -47,21 +47,24 @@ def kept_of(whole: Whole, path: RootPath) -> Kept | None:
 def first_part(whole: Whole, horizon: int) -> Motion:
     """The first `horizon` key intervals."""
     path, local = whole.root.path, whole.local
-    shown = replace(path, states=path.states[: horizon + 1])
-    return Motion(replace(whole.root, path=shown), part(local, slice(horizon + 1)))
+    shown = RootPath(path.start_time, path.interval, path.states[: horizon + 1])
+    return Motion(replace(whole.root, path=shown), part(local, slice(horizon + 1), local.evidence, local.joint))
 
 
-def part(local: LocalPlan, rows: slice) -> LocalPlan:
-    """Some key times of a plan."""
+def part(
+    local: LocalPlan, rows: slice, evidence: tuple[GroupEvidence, ...], joint: JointEvidence | None = None
+) -> LocalPlan:
+    """Some key times of a plan, and what they cost."""
     velocities = None if local.velocities is None else local.velocities[rows]
-    return replace(local, configurations=local.configurations[rows], goals=local.goals[rows], velocities=velocities)
+    keys, goals = local.configurations[rows], local.goals[rows]
+    return LocalPlan(local.status, keys, goals, evidence, joint, local.blockade, velocities)
 
 
 def later(whole: Whole, at: int) -> Whole:
     """What is left of a motion from its key time `at` on, for which nothing was searched."""
     root, local, asked = whole
-    path = RootPath(float(root.path.times[at]), root.path.interval, root.path.states[at:])
-    rest = part(replace(local, evidence=_free_of_charge(local), joint=None), slice(at, None))
+    path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
+    rest = part(local, slice(at, None), _free_of_charge(local))
     asked = None if asked is None else asked.since(at, path.horizon)
     return Whole(replace(root, path=path, checks=0, nanoseconds=0), rest, asked)
 
@@ -76,7 +79,7 @@ def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
-    return tuple(replace(row, checks=0, nodes=0, enhanced=0, nanoseconds=0) for row in local.evidence)
+    return tuple(GroupEvidence(row.group, row.status, 0, 0, 0, 0) for row in local.evidence)
 
 
 class Stand(NamedTuple):
