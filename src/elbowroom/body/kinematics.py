@@ -172,7 +172,7 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
     return posing.pose_body(
         m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs,
         c.joints, c.ends, postures, states, legs, sinks,
-    )  # fmt: skip
+    )[0]  # fmt: skip
 
 
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:

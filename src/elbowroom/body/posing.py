@@ -185,17 +185,26 @@ def pose_body(
     roots: Floats,
     leg_rotations: Floats,
     sinks: Floats,
-) -> Segments:
-    """Capsules (C, 6, N) in the world for postures (N, 14), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2)."""
+) -> tuple[Segments, Floats, Floats]:
+    """The body in the world for postures (N, 14), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2).
+
+    Returns capsules (C, 6, N), and place (N, 3) and rotation (N, 4) of the last spine joint.
+    """
     out = np.empty((len(joints), 6, len(q)), np.float32)
+    chest_places, chest_rotations = np.empty((len(q), 3)), np.empty((len(q), 4))
     local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    chest = spine[-1]
     for n in range(len(q)):
         _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q[n], leg_rotations[n], local, scratch)
         _place_hips(roots[n], offsets[0], sinks[n], rotations, places, 0)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
-    return out
+        for i in range(3):
+            chest_places[n, i] = places[chest, i]
+        for i in range(4):
+            chest_rotations[n, i] = rotations[chest, i]
+    return out, chest_places, chest_rotations
 
 
 @kernel

@@ -1,0 +1,78 @@
+"""The whole posed body for kernels: what `kinematics.posture_capsules` does, in one piece.
+
+A kernel that looks at many postures of a body takes its `WholeBody` once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body import posing
+from elbowroom.body.dof import LOWERING
+from elbowroom.body.gait import foot_poses, hips_sinks
+from elbowroom.body.kinematics import BodyModel
+from elbowroom.body.legs import leg_rotations
+from elbowroom.jit import exact_inner_kernel
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Segments = NDArray[np.float32]
+
+
+class WholeBody(NamedTuple):
+    """What posing every capsule needs of a `BodyModel`, under the names that these things have there."""
+
+    base: Floats
+    parents: Indices
+    offsets: Floats
+    order: Indices
+    spine: Indices
+    spine_weights: Floats
+    gaze: Indices
+    gaze_weights: Floats
+    arms: Indices
+    legs: Indices
+    joints: Indices
+    ends: Floats
+    leg_rest: Floats
+    gait_legs: Floats
+    scale: float
+    half_leg: float
+
+
+def whole_body(model: BodyModel) -> WholeBody:
+    """The same for kernels; the arrays are the model's own."""
+    return WholeBody(
+        model.base,
+        model.parents,
+        model.offsets,
+        model.body.order,
+        model.spine,
+        model.spine_weights,
+        model.gaze,
+        model.gaze_weights,
+        model.arms,
+        model.legs,
+        model.body.joints,
+        model.body.ends,
+        model.leg_rest,
+        model.gait.legs,
+        model.gait.scale,
+        model.gait.half_leg,
+    )
+
+
+@exact_inner_kernel
+def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
+    """All capsules (C, 6, N) for postures (N, 14) and root states (N, 7), in the world.
+
+    And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
+    """
+    feet, drops = foot_poses(body.gait_legs, body.scale, roots)
+    sinks = hips_sinks(body.half_leg, drops, q[:, LOWERING].copy())
+    legs = leg_rotations(body.leg_rest, feet, sinks)
+    return posing.pose_body(
+        body.base, body.parents, body.offsets, body.order, body.spine, body.spine_weights, body.gaze,
+        body.gaze_weights, body.arms, body.legs, body.joints, body.ends, q, roots, legs, sinks,
+    )  # fmt: skip
