@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.whole_body import whole_body
+from elbowroom.held import hold
 from elbowroom.planning.exact.curve import smooth_tangents
+from elbowroom.planning.exact.own_looks import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.interpolation import hermite
@@ -40,11 +43,16 @@ def swung(seed: int, horizon: int = 12) -> tuple[RootPath, Floats, Floats]:
     return path, keys, np.concatenate(rates, axis=1)
 
 
+def least_of_looks(path: RootPath, keys: Floats, rates: Floats, k: int, times: Floats) -> Floats:
+    """The least gap of each kind (3,) at some times (N,) of a key interval."""
+    shown = [hermite(np.array([0.0, T]), keys[k : k + 2], rates[k : k + 2], float(t))[0] for t in times]
+    gaps: Floats = self_clearances(MODEL, PAIRS, path.sample(k * T + times), np.array(shown)).min(axis=1)
+    return gaps
+
+
 def looked_at_closely(path: RootPath, keys: Floats, rates: Floats, k: int) -> float:
     """The least gap within a key interval."""
-    times = np.linspace(0.0, T, LOOKS)
-    shown = [hermite(np.array([0.0, T]), keys[k : k + 2], rates[k : k + 2], float(t))[0] for t in times]
-    return float(self_clearances(MODEL, PAIRS, path.sample(k * T + times), np.array(shown)).min())
+    return float(least_of_looks(path, keys, rates, k, np.linspace(0.0, T, LOOKS)).min())
 
 
 @pytest.mark.parametrize("first", [0, 6])
@@ -64,6 +72,32 @@ def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
             near += abs(gap) < 0.04
     assert min(found) > 5
     assert near > 5
+
+
+@pytest.mark.parametrize("wild", [0.0, 0.3])
+def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
+    """Against a twin that takes every look of a level in an interval where the last one left too little room."""
+    parts = hold(OwnParts(whole_body(MODEL), PAIRS.first, PAIRS.second, PAIRS.kinds, PAIRS.limits))
+    rng, touching, near = np.random.default_rng(5), 0, 0
+    for seed in range(20, 24):
+        path, keys, rates = swung(seed)
+        keys = keys + rng.uniform(-wild, wild, keys.shape)
+        rates = rates + 10.0 * rng.uniform(-wild, wild, rates.shape)
+        found = least_gaps(parts, path.states, keys, rates, T, np.arange(path.horizon))
+        for k in range(path.horizon):
+            for step, room in zip(STEPS, ROOMS, strict=True):
+                looks = np.arange(step, MOMENTS + 1, step) / MOMENTS * T
+                expected = least_of_looks(path, keys, rates, k, looks)
+                if expected.min() < 0.0 or expected.min() >= room:
+                    break
+            near += 0.0 <= expected.min() < ROOMS[0]
+            if expected.min() < CLEAR[-1]:
+                touching += 1
+                np.testing.assert_allclose(found[expected < CLEAR[-1], k], expected[expected < CLEAR[-1]], atol=1e-6)
+                assert found[:, k].argmin() == expected.argmin()
+            assert (found[:, k].min() < CLEAR[-1]) == (expected.min() < CLEAR[-1])
+    assert touching > 5
+    assert near > 5 or wild
 
 
 def test_what_was_looked_at_is_known_again_and_only_chosen_intervals_are_told() -> None:

@@ -112,7 +112,9 @@ def _closer_looks(
             continue
         before = at[i, moment - step] if moment > 0 else -1
         after = at[i, moment + 2 * step] if moment + step < MOMENTS else -1
-        if not _clear_between(own.first, own.second, own.limits, segments, gaps, near, before, a, b, after, CLEAR[level]):
+        if not _clear_between(
+            own.first, own.second, own.limits, segments, gaps, near, before, a, b, after, CLEAR[level]
+        ):
             for between in range(moment + finer, moment + step, finer):
                 at[i, between], looks[made, 0], looks[made, 1] = made, i, between
                 made += 1

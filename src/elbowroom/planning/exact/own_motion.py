@@ -39,8 +39,9 @@ class OwnMotion:
         It leaves room for what no look sees, and farther ahead as much again.
         """
         at: list[int] = np.flatnonzero(chosen).tolist()
-        ends = [row.tobytes() for row in np.concatenate([path.states[:, 3:], keys, rates], axis=1).round(6) + 0.0]
-        names = [ends[k] + ends[k + 1] for k in at]
+        ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1).round(6) + 0.0
+        content, size = ends.tobytes(), ends.strides[0]
+        names = [content[size * k : size * (k + 2)] for k in at]
         if len(self._known) > _REMEMBERED:
             self._known.clear()
         missing = [(k, name) for k, name in zip(at, names, strict=True) if name not in self._known]
