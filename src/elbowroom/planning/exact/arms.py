@@ -5,15 +5,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, columns_of
-from elbowroom.planning.exact.group import GroupWay, own_postures
+from elbowroom.body.dof import LOCAL_GROUPS
+from elbowroom.planning.exact.group import GroupTask, GroupWay, own_postures
 from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.path_problem import PathProblem
 from elbowroom.planning.exact.pauses import Pausing
-from elbowroom.planning.exact.self_contacts import SelfContacts
+from elbowroom.planning.exact.self_contacts import SelfContacts, rule_out_near
 from elbowroom.planning.exact.shelves import Shelves
 from elbowroom.planning.exact.together import Guide
 
@@ -32,6 +32,16 @@ class Ways(NamedTuple):
     failed: GroupWay | None
     reached: int  # the key time that all groups reached
     asked: Asked | None = None  # what clearances were asked for; None if a group failed
+
+    @property
+    def keys(self) -> Floats:
+        """The key postures of the groups side by side, (n+1, 11) if none failed."""
+        return np.concatenate([way.keys for way in self.ways], axis=1)
+
+    @property
+    def velocities(self) -> Floats:
+        """The velocities there, likewise."""
+        return np.concatenate([way.velocities for way in self.ways], axis=1)
 
 
 class Arms:
@@ -65,9 +75,10 @@ class Arms:
                 if way.reached < horizon:
                     return Ways(tuple(ways), way, way.reached)
                 ways.append(way)
-            contact = self._self_contact(ways)
+            found = Ways(tuple(ways), None, horizon, self._asked(ways))
+            contact = self._self_contact(found)
             if contact is None:
-                return Ways(tuple(ways), None, horizon, self._asked(ways))
+                return found
             first, touching, whole = *contact, True
             self._remember(ways, *contact)
         return Ways(tuple(ways[:-1]), ways[-1], touching)
@@ -76,40 +87,32 @@ class Arms:
         self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool
     ) -> Pausing[GroupWay]:
         """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
-        group = _ARMS[side]
-        own = self._folded(side, ways, follow) if whole else self._resting(side)
-        return (yield from ledger.search(group, self._problem.task(group, ways[0].slots, own, follow)))
+        task = self._problem.task(_ARMS[side], ways[0].slots, None if whole else self._resting(side), follow)
+        if whole:
+            folded = self._folded(side, ways, task)
+            task = task._replace(extra=folded if follow is None else folded + task.extra)
+        return (yield from ledger.search(_ARMS[side], task))
 
     def _resting(self, side: int) -> Floats32:
         """Infinite where a node touches the naturally walking body."""
-        return self._own_body.resting_prices(side, self._shelves.group(_ARMS[side]).postures, len(self._problem.goals))
+        postures, most = self._shelves.group(_ARMS[side]).postures, self._shelves.horizon + 1
+        return self._own_body.resting_prices(side, postures, most)[: len(self._problem.goals)]
 
-    def _folded(self, side: int, ways: list[GroupWay], follow: Guide | None) -> Floats32:
+    def _folded(self, side: int, ways: list[GroupWay], task: GroupTask) -> Floats32:
         """Infinite where a node touches the body on its ways, or is near to one that did."""
         problem, made = self._problem, self._shelves.group(_ARMS[side])
-        own, needed, _ = own_postures(made, problem.task(_ARMS[side], ways[0].slots, None, follow))
-        keys = [way.keys for way in ways[: 1 + side]]
-        natural = np.ones(len(problem.goals), np.bool_)
-        for known, group in zip(keys, LOCAL_GROUPS, strict=False):
-            natural &= np.abs(known - problem.goals[:, columns_of(group)]).max(axis=1) < _NATURAL
-        other = keys[1] if side == 1 else None
+        own, needed, _ = own_postures(made, task)
+        around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
+        natural = np.abs(around - problem.goals[:, : around.shape[1]]).max(axis=1) < _NATURAL
+        waists, other = ways[0].keys, ways[1].keys if side == 1 else None
         folded = self._own_body.folded_nodes(
-            side, made.postures, own, needed, natural, keys[0], problem.path.states, other
+            side, made.postures, own, needed, natural, waists, problem.path.states, other
         )
         prices = np.where(folded, np.float32(np.inf), np.float32(0.0))
-        self._rule_out(side, keys, own, prices)
+        for t, contact in self._contacts.of(side, problem.path.times):
+            if t > 0 and contact.happens(around[t]):
+                rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
         return prices
-
-    def _rule_out(self, side: int, keys: list[Floats], own: Floats, prices: Floats32) -> None:
-        """Rule out the nodes at key times near to postures that ran into the body there, the body being as it is."""
-        postures = self._shelves.group(_ARMS[side]).postures
-        size, width = len(postures.configurations), postures.moves.shape[1]
-        for t, contact in self._contacts.of(side, self._problem.path.times):
-            if t > 0 and contact.happens(np.concatenate([key[t] for key in keys])):
-                known = np.concatenate([postures.configurations, own[t]])
-                near = np.linalg.norm(known - contact.posture, axis=1) < _ALIKE
-                prices[t, np.flatnonzero(near[:size])] = np.inf
-                prices[t, width + np.flatnonzero(near[size:])] = np.inf
 
     def _remember(self, ways: list[GroupWay], side: int, interval: int) -> None:
         """Remember what an arm did at both ends of an interval in which it ran into the body."""
@@ -117,15 +120,14 @@ class Arms:
             around = np.concatenate([way.keys[t] for way in ways[: 1 + side]])
             self._contacts.add(side, float(self._problem.path.times[t]), around, ways[1 + side].keys[t].copy())
 
-    def _self_contact(self, ways: list[GroupWay]) -> tuple[int, int] | None:
+    def _self_contact(self, found: Ways) -> tuple[int, int] | None:
         """The arm and the first interval in which the shown motion runs into the body, or None."""
-        keys, goals = np.concatenate([way.keys for way in ways], axis=1), self._problem.goals
-        natural = np.abs(keys - goals).max(axis=1) < _NATURAL
+        keys = found.keys
+        natural = np.abs(keys - self._problem.goals).max(axis=1) < _NATURAL
         if natural.all():
             return None
-        rates = np.concatenate([way.velocities for way in ways], axis=1)
         chosen = ~(natural[:-1] & natural[1:])
-        arms = self._own_motion.contacts(self._problem.path, keys, rates, chosen, self._problem.begins.ahead)
+        arms = self._own_motion.contacts(self._problem.path, keys, found.velocities, chosen, self._problem.begins.ahead)
         touching = np.flatnonzero(arms >= 0)
         return None if not len(touching) else (int(arms[touching[0]]), int(touching[0]))
 

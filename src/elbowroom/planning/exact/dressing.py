@@ -94,23 +94,19 @@ class Dressing:
         if found.failed is not None:
             return None
         self.asked = found.asked
-        keys = np.concatenate([way.keys for way in found.ways], axis=1)
-        velocities = np.concatenate([way.velocities for way in found.ways], axis=1)
-        return LocalPlan(
-            PlanStatus.FOUND, keys, self.goals, self.ledger.evidence(), velocities=velocities, joint=self.ledger.joint
-        )
+        evidence, joint = self.ledger.evidence(), self.ledger.joint
+        return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
     def _jolts(self, found: Ways, last: Kept) -> bool:
         """Whether the waist has left the last plan's way, and some joint by more than a little."""
         known = min(last.known, len(last.keys))
         if np.array_equal(found.ways[0].keys[:known], last.keys[:known, columns_of(DofGroup.WAIST)]):
             return False
-        away = np.concatenate([way.keys[:known] for way in found.ways], axis=1) - last.keys[:known]
-        return bool(np.abs(away).max() > _LITTLE)
+        return bool(np.abs(found.keys[:known] - last.keys[:known]).max() > _LITTLE)
 
     def _cost(self, found: Ways) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""
-        away = np.concatenate([way.keys for way in found.ways], axis=1) - self.goals
+        away = found.keys - self.goals
         return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
     def apart(self) -> Pausing[Ways]:
@@ -219,10 +215,10 @@ class Dressing:
             return node_lowerings(lanes, self.goals[:, at], kept, self.problem.begins.upper[at])
 
         crouch = Crouch(self.legs, self.path, lowerings)
-        for _ in range(ROUNDS):
+        for attempt in range(ROUNDS):
             way = yield from self._search(closed, follow)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
-                if follow is None:
+                if follow is None and attempt > 0:
                     self._crouching[np.isinf(closed)] = np.inf
                 return way
         return way._replace(reached=0)

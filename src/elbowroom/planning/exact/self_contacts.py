@@ -5,7 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.activity_graph import squared_distance
+
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _ALERT = 16  # plans after one that ran into the body that look at it from the beginning
 _SAME = 1e-6  # radians
@@ -23,6 +27,21 @@ class Contact(NamedTuple):
     def happens(self, around: Floats) -> bool:
         """Whether the groups before the arm are as they were then."""
         return bool(np.abs(self.around - around).max() < _SAME)
+
+
+@exact_kernel
+def rule_out_near(prices: Floats32, known: Floats, own: Floats, posture: Floats, near: float) -> None:
+    """Make infinite what nodes cost that are `near` to a posture (d,), radians: `prices` (W + E,) of a key time.
+
+    The first nodes are the postures `known` (V, d), the last ones those of the key time alone, `own` (E, d).
+    """
+    width = prices.shape[0] - own.shape[0]
+    for node in range(known.shape[0]):
+        if np.sqrt(squared_distance(known[node], posture)) < near:
+            prices[node] = np.inf
+    for node in range(own.shape[0]):
+        if np.sqrt(squared_distance(own[node], posture)) < near:
+            prices[width + node] = np.inf
 
 
 class SelfContacts:

@@ -88,6 +88,7 @@ class UpperBody:
         self._weights = Weights(
             settings.step_weight, settings.near_weight, settings.comfort, settings.keeping, settings.rounds
         )
+        self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
         self._shelves: dict[float, Shelves] = {}
         self.own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
@@ -123,8 +124,7 @@ class UpperBody:
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
-        quick = effort in (Effort.QUICK, Effort.GLANCE)
-        weights = self._weights._replace(rounds=self.settings.quick_rounds) if quick else self._weights
+        weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
         for attempt in range(self.settings.refinements + 1):
             dressing = self._dressing(path, begins, kept, near, legs, weights)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
@@ -152,7 +152,7 @@ class UpperBody:
         horizon = round(self.settings.look_ahead / interval)
         self._shelves[interval] = self._new_shelves(interval, horizon)
         for side, group in enumerate(LOCAL_GROUPS[1:]):
-            self.own_body.resting(side, self.postures(group, interval))
+            self.own_body.resting_prices(side, self.postures(group, interval), horizon + 1)
 
     def _dressing(
         self,
