@@ -1,17 +1,20 @@
 """Kernels that only kernels call: refused where Python calls them, and none has a wrapper that nobody uses."""
 
 import ast
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import elbowroom
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inner_kernel, leaf
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, inner_kernel, leaf, lean_kernel
 
 PACKAGE = Path(elbowroom.__file__).parent
 TESTS = Path(__file__).parent
 OUTER, INNER = {"kernel", "exact_kernel"}, {"inner_kernel", "exact_inner_kernel", "inlined", "leaf"}
+LEAN = {"lean_kernel", "exact_lean_kernel"}
+INNER |= LEAN
 
 
 @leaf
@@ -29,17 +32,27 @@ def doubled(number: float) -> float:
     return 2.0 * number
 
 
+@exact_lean_kernel
+def squared(number: float) -> float:
+    return number * number
+
+
+@lean_kernel
+def negated(number: float) -> float:
+    return -number
+
+
 @exact_kernel
 def all_of_them(number: float) -> float:
-    return halved(one_less(doubled(number)))
+    return squared(negated(halved(one_less(doubled(number)))))
 
 
-@pytest.mark.parametrize("called", [halved, one_less, doubled])
+@pytest.mark.parametrize("called", [halved, one_less, doubled, squared, negated])
 def test_a_call_from_python_is_an_error_before_and_after_a_kernel_called_it(called: Callable[[float], float]) -> None:
     for _ in range(2):
         with pytest.raises(TypeError, match=f"{called.__name__} is called by kernels only"):
             called(3.0)
-        assert all_of_them(3.0) == 2.5
+        assert all_of_them(3.0) == 6.25
 
 
 def kind_of(function: ast.FunctionDef) -> str | None:
@@ -95,3 +108,42 @@ def test_python_calls_no_kernel_that_is_for_kernels_only() -> None:
 def test_no_kernel_has_a_wrapper_for_python_that_nobody_uses() -> None:
     idle = sorted(kernels_of(OUTER) - used())
     assert not idle, f"make these an inner_kernel or exact_inner_kernel, Python does not use them: {idle}"
+
+
+def kernels_called(module: str, function: ast.FunctionDef, tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """The modules and names of what a kernel calls by name."""
+    imported = {
+        alias.asname or alias.name: (node.module or "", alias.name)
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    for node in ast.walk(function):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            yield imported.get(node.func.id, (module, node.func.id))
+        elif (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
+            and isinstance(node.func.value, ast.Name)
+        ):
+            yield ".".join(imported.get(node.func.value.id, (module, ""))), node.func.attr
+
+
+def test_who_counts_no_references_is_handed_none() -> None:
+    returned, calls = {}, set()
+    for path in PACKAGE.rglob("*.py"):
+        module = ".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts))
+        tree = ast.parse(path.read_text("utf-8"))
+        for function in (node for node in tree.body if isinstance(node, ast.FunctionDef) and kind_of(node)):
+            if kind_of(function) == "inlined":
+                continue
+            returned[module, function.name] = ast.unparse(function.returns) if function.returns else "nothing said"
+            if kind_of(function) in LEAN:
+                calls |= {(called, function.name) for called in kernels_called(module, function, tree)}
+    arrays = {(*called, caller) for called, caller in calls if called in returned and holds_arrays(returned[called])}
+    assert len(calls) > 100
+    assert not arrays, f"these return arrays, which nobody would free: {sorted(arrays)}"
+
+
+def holds_arrays(annotation: str) -> bool:
+    return bool(set(re.findall(r"\w+", annotation)) - {"None", "Any", "bool", "float", "int", "tuple"})

@@ -24,7 +24,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _FASTMATH = {"nsz", "contract", "arcp", "afn", "reassoc"}
 # No kernel is called from C: without the wrapper for that, all compile in a twelfth less time.
 _KEPT: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-_LEAF: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True}
+_LEAF: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True, "_nrt": True}
+_COUNTING: dict[str, Any] = {"_nrt": True} | _KEPT  # references to arrays; said, since callers would decide otherwise
+_LEAN: dict[str, Any] = {"_nrt": False} | _KEPT
 
 
 def _use_whole_vectors() -> None:
@@ -78,23 +80,40 @@ class _InnerDispatcher(CPUDispatcher):
 
 def kernel(function: Function) -> Function:
     """Compile `function` for the hot path: cached on disk, without the GIL, NumPy division rules."""
-    return cast(Function, _kept(numba.njit(fastmath=_FASTMATH, **_KEPT)(function)))
+    return cast(Function, _kept(numba.njit(fastmath=_FASTMATH, **_COUNTING)(function)))
 
 
 def exact_kernel(function: Function) -> Function:
     """Compile `function` with strict IEEE arithmetic: for searches and state that must repeat bit for bit."""
-    return cast(Function, _kept(numba.njit(**_KEPT)(function)))
+    return cast(Function, _kept(numba.njit(**_COUNTING)(function)))
 
 
 def inner_kernel(function: Function) -> Function:
     """Compile as `kernel` does what only kernels call, without the wrapper for Python."""
-    compiled = numba.njit(fastmath=_FASTMATH, pipeline_class=_InnerCompiler, **_KEPT)(function)
+    compiled = numba.njit(fastmath=_FASTMATH, pipeline_class=_InnerCompiler, **_COUNTING)(function)
     return cast(Function, _inner(_kept(compiled)))
 
 
 def exact_inner_kernel(function: Function) -> Function:
     """Compile as `exact_kernel` does what only kernels call, without the wrapper for Python."""
-    return cast(Function, _inner(_kept(numba.njit(pipeline_class=_InnerCompiler, **_KEPT)(function))))
+    return cast(Function, _inner(_kept(numba.njit(pipeline_class=_InnerCompiler, **_COUNTING)(function))))
+
+
+def lean_kernel(function: Function) -> Function:
+    """Compile as `inner_kernel` what makes no array and returns none: without counting references.
+
+    To hand a tuple of arrays on, or to take one out, costs two atomic operations for each array in it where references
+    are counted; a function that is handed a limb and its tables spends more time on that than on a dozen postures.
+    What it needs to work on it is given. It must call no kernel that returns arrays: nobody would free them.
+    """
+    compiled = numba.njit(fastmath=_FASTMATH, pipeline_class=_InnerCompiler, **_LEAN)(function)
+    return cast(Function, _inner(_kept(compiled)))
+
+
+def exact_lean_kernel(function: Function) -> Function:
+    """Compile as `exact_inner_kernel` what makes no array and returns none; see `lean_kernel`."""
+    compiled = numba.njit(pipeline_class=_InnerCompiler, **_LEAN)(function)
+    return cast(Function, _inner(_kept(compiled)))
 
 
 def _inner(dispatcher: Any) -> Any:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from elbowroom.planning.exact.lattice import (
     BACK,
@@ -15,7 +16,6 @@ from elbowroom.planning.exact.lattice import (
     Work,
     cheapest_way,
     new_work,
-    posture_of,
     settle_backward,
     traced,
 )
@@ -52,6 +52,13 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
         step=STEP,
         weight=WEIGHT,
     )
+
+
+def posture_of(lattice: Lattice, depth: int, node: int) -> NDArray[np.float64]:
+    """The configuration (d,) of a node."""
+    width = lattice.moves.shape[1]
+    posture: NDArray[np.float64] = lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    return posture
 
 
 def work_for(lattice: Lattice) -> Work:

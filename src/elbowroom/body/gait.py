@@ -266,6 +266,13 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     return feet, drops
 
 
+@leaf
+def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float]:
+    """One row of `hips_sinks`."""
+    lowered = half_leg * lowering
+    return drop + lowered, _SETBACK * lowered
+
+
 @kernel
 def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
     """How far the hips are below and behind their place in T-pose, metres (N, 2).
@@ -275,7 +282,5 @@ def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
     """
     sinks = np.empty((len(drops), 2))
     for n in range(len(drops)):
-        lowered = half_leg * lowerings[n]
-        sinks[n, 0] = drops[n] + lowered
-        sinks[n, 1] = _SETBACK * lowered
+        sinks[n, 0], sinks[n, 1] = hips_sink(half_leg, drops[n], lowerings[n])
     return sinks

@@ -3,11 +3,13 @@
 Quaternions are rows `xyzw` of (J, 4) arrays; every kernel poses one posture after the other, in float64.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import hips_sinks
-from elbowroom.jit import kernel, leaf
+from elbowroom.body.gait import hips_sink
+from elbowroom.jit import inner_kernel, kernel, leaf, lean_kernel
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -232,6 +234,59 @@ def pose_legs(
     return out
 
 
+class PoseRoom(NamedTuple):
+    """What the posing of one chain of joints works on."""
+
+    local: Floats  # (J, 4) rotations in the parents' frames, those in T-pose where a chain moves nothing
+    rotations: Floats  # (J, 4)
+    places: Floats  # (J, 3)
+    scratch: Floats  # (2, 4)
+    row: Floats  # (1, 6)
+
+
+@inner_kernel
+def pose_room(base: Floats, offsets: Floats) -> PoseRoom:
+    """Room to pose chains of joints with the rotations `base` (J, 4) in T-pose."""
+    return PoseRoom(base.copy(), np.empty(base.shape), np.empty(offsets.shape), np.empty((2, 4)), np.empty((1, 6)))
+
+
+@lean_kernel
+def pose_trunk_into(
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    spine: Indices,
+    spine_weights: Floats,
+    gaze: Indices,
+    gaze_weights: Floats,
+    joints: Indices,
+    ends: Floats,
+    half_leg: float,
+    waist: Floats,
+    count: int,
+    room: PoseRoom,
+    first: int,
+    out: Segments,
+    chest_places: Floats,
+    chest_rotations: Floats,
+) -> None:
+    """`pose_trunk` for the first `count` waists (N, 3), written to `out` (C, 6, M) from the place `first` on.
+
+    The chest's frames are written to the first rows of (N, 3) and (N, 4).
+    """
+    chest = spine[len(spine) - 1]
+    for n in range(count):
+        below, behind = hips_sink(half_leg, 0.0, waist[n, 2])
+        _place(0, room.rotations, room.places, 0.0, -below, -behind, 0.0)
+        _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], room.local)
+        _chain(order, parents, offsets, room.local, room.rotations, room.places)
+        _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)
+        for i in range(3):
+            chest_places[n, i] = room.places[chest, i]
+        for i in range(4):
+            chest_rotations[n, i] = room.rotations[chest, i]
+
+
 @kernel
 def pose_trunk(
     base: Floats,
@@ -251,22 +306,37 @@ def pose_trunk(
 
     That frame is where the hips would be without lowering: waists (N, 3) of bend, twist and lowering move them in it.
     """
-    sinks = hips_sinks(half_leg, np.zeros(len(waist)), waist[:, 2])
     out = np.empty((len(joints), 6, len(waist)), np.float32)
     chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
-    local, row = base.copy(), np.empty((1, 6))
-    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
-    chest = spine[-1]
-    for n in range(len(waist)):
-        _place(0, rotations, places, 0.0, -sinks[n, 0], -sinks[n, 1], 0.0)
-        _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], local)
-        _chain(order, parents, offsets, local, rotations, places)
-        _segments(joints, ends, rotations, places, row, n, out)
-        for i in range(3):
-            chest_places[n, i] = places[chest, i]
-        for i in range(4):
-            chest_rotations[n, i] = rotations[chest, i]
+    pose_trunk_into(
+        parents, offsets, order, spine, spine_weights, gaze, gaze_weights, joints, ends, half_leg, waist, len(waist),
+        pose_room(base, offsets), 0, out, chest_places, chest_rotations,
+    )  # fmt: skip
     return out, chest_places, chest_rotations
+
+
+@lean_kernel
+def pose_arm_into(
+    parents: Indices,
+    offsets: Floats,
+    order: Indices,
+    chest: int,
+    arm_joints: Indices,
+    mirror: float,
+    joints: Indices,
+    ends: Floats,
+    arm: Floats,
+    count: int,
+    room: PoseRoom,
+    first: int,
+    out: Segments,
+) -> None:
+    """`pose_arm` for the first `count` arms (N, 4), written to `out` (C, 6, M) from the place `first` on."""
+    _place(chest, room.rotations, room.places, 0.0, 0.0, 0.0, 0.0)
+    for n in range(count):
+        _set_arm(arm_joints, mirror, arm[n], room.local, room.scratch)
+        _chain(order, parents, offsets, room.local, room.rotations, room.places)
+        _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)
 
 
 @kernel
@@ -284,20 +354,36 @@ def pose_arm(
 ) -> Segments:
     """Arm capsules (C, 6, N) in the frame of the last spine joint for arm configurations (N, 4)."""
     out = np.empty((len(joints), 6, len(arm)), np.float32)
-    local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
-    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
-    _place(chest, rotations, places, 0.0, 0.0, 0.0, 0.0)
-    for n in range(len(arm)):
-        _set_arm(arm_joints, mirror, arm[n], local, scratch)
-        _chain(order, parents, offsets, local, rotations, places)
-        _segments(joints, ends, rotations, places, row, n, out)
+    pose_arm_into(
+        parents,
+        offsets,
+        order,
+        chest,
+        arm_joints,
+        mirror,
+        joints,
+        ends,
+        arm,
+        len(arm),
+        pose_room(base, offsets),
+        0,
+        out,
+    )
     return out
+
+
+@lean_kernel
+def place_pelvis_into(
+    hips: Floats, roots: Floats, sinks: Floats, count: int, places: Floats, rotations: Floats
+) -> None:
+    """`place_pelvis` for the first `count` roots, written to `places` (N, 3) and `rotations` (N, 4)."""
+    for n in range(count):
+        _place_hips(roots[n], hips, sinks[n], rotations, places, n)
 
 
 @kernel
 def place_pelvis(hips: Floats, roots: Floats, sinks: Floats) -> tuple[Floats, Floats]:
     """Pelvis frames in the world: places (N, 3) and rotations (N, 4)."""
     places, rotations = np.empty((len(roots), 3)), np.empty((len(roots), 4))
-    for n in range(len(roots)):
-        _place_hips(roots[n], hips, sinks[n], rotations, places, n)
+    place_pelvis_into(hips, roots, sinks, len(roots), places, rotations)
     return places, rotations

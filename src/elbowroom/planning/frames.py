@@ -3,16 +3,17 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel
+from elbowroom.jit import kernel, lean_kernel
 
 Floats = NDArray[np.float64]
 
 
-@kernel
-def compose(positions: Floats, rotations: Floats, inner: Floats, turns: Floats) -> tuple[Floats, Floats]:
-    """Frames at `inner` (n, 3), `turns` (n, 4), given in frames at `positions`, `rotations`, seen from outside."""
-    places, out = np.empty_like(positions), np.empty_like(rotations)
-    for n in range(positions.shape[0]):
+@lean_kernel
+def compose_into(
+    positions: Floats, rotations: Floats, inner: Floats, turns: Floats, count: int, places: Floats, out: Floats
+) -> None:
+    """`compose` for the first `count` frames, written to `places` (n, 3) and `out` (n, 4); these may be the outer."""
+    for n in range(count):
         ax, ay, az, aw = rotations[n, 0], rotations[n, 1], rotations[n, 2], rotations[n, 3]
         bx, by, bz, bw = turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3]
         out[n, 0] = aw * bx + ax * bw + ay * bz - az * by
@@ -24,4 +25,11 @@ def compose(positions: Floats, rotations: Floats, inner: Floats, turns: Floats) 
         places[n, 0] = positions[n, 0] + x + aw * tx + ay * tz - az * ty
         places[n, 1] = positions[n, 1] + y + aw * ty + az * tx - ax * tz
         places[n, 2] = positions[n, 2] + z + aw * tz + ax * ty - ay * tx
+
+
+@kernel
+def compose(positions: Floats, rotations: Floats, inner: Floats, turns: Floats) -> tuple[Floats, Floats]:
+    """Frames at `inner` (n, 3), `turns` (n, 4), given in frames at `positions`, `rotations`, seen from outside."""
+    places, out = np.empty_like(positions), np.empty_like(rotations)
+    compose_into(positions, rotations, inner, turns, positions.shape[0], places, out)
     return places, out

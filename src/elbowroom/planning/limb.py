@@ -13,7 +13,7 @@ from elbowroom.body import posing
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import BodyModel, arm_capsules, chest_frames, trunk_capsules
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.self_contact import allowed_distances
 
 Floats = NDArray[np.float64]
@@ -84,25 +84,59 @@ def _trunk_limits(model: BodyModel, group: DofGroup) -> tuple[Floats, Floats]:
     return trunk, allowed_distances(hanging, radii, trunk, model.capsules_of(DofGroup.WAIST).radii)
 
 
-@exact_kernel
-def pose(limb: Limb, configurations: Floats) -> Floats32:
-    """Capsule end points (C, 6, N) for configurations (N, d), in the pelvis frame (waist) or the chest frame (arms)."""
-    if limb.is_waist:
-        return posing.pose_trunk(
-            limb.base, limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights,
-            limb.gaze, limb.gaze_weights, limb.joints, limb.ends, limb.half_leg, configurations,
-        )[0]  # fmt: skip
-    return posing.pose_arm(
-        limb.base, limb.parents, limb.offsets, limb.order, limb.spine[-1], limb.arm_joints, limb.mirror,
-        limb.joints, limb.ends, configurations,
-    )  # fmt: skip
+class LimbRoom(NamedTuple):
+    """What the posing of a limb works on; it belongs to that limb."""
+
+    joints: posing.PoseRoom
+    places: Floats  # (N, 3) of the frames that the waist's limb carries
+    turns: Floats  # (N, 4)
+    none: Floats32  # (0, 6, 0) no capsules
 
 
 @exact_inner_kernel
-def carried_frames(limb: Limb, configurations: Floats) -> tuple[Floats, Floats]:
-    """The frames (N, 3), (N, 4) that the waist's limb carries, the chest's, in the pelvis frame, for waists (N, d)."""
-    _, places, turns = posing.pose_trunk(
-        limb.base, limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights,
-        limb.gaze, limb.gaze_weights, limb.joints, limb.ends, limb.half_leg, configurations,
+def limb_room(limb: Limb, count: int) -> LimbRoom:
+    """Room to pose a limb in `count` configurations at once."""
+    return LimbRoom(
+        posing.pose_room(limb.base, limb.offsets),
+        np.empty((count, 3)),
+        np.empty((count, 4)),
+        np.empty((0, 6, 0), np.float32),
+    )
+
+
+@exact_lean_kernel
+def pose_into(limb: Limb, room: LimbRoom, configurations: Floats, count: int, first: int, out: Floats32) -> None:
+    """`pose` for the first `count` configurations (N, d), written to `out` (C, 6 or more, M) from `first` on.
+
+    The frames that the waist's limb carries are written to the room.
+    """
+    if limb.is_waist:
+        posing.pose_trunk_into(
+            limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
+            limb.joints, limb.ends, limb.half_leg, configurations, count, room.joints, first, out,
+            room.places, room.turns,
+        )  # fmt: skip
+    else:
+        posing.pose_arm_into(
+            limb.parents, limb.offsets, limb.order, limb.spine[len(limb.spine) - 1], limb.arm_joints, limb.mirror,
+            limb.joints, limb.ends, configurations, count, room.joints, first, out,
+        )  # fmt: skip
+
+
+@exact_lean_kernel
+def carry_frames(limb: Limb, room: LimbRoom, configurations: Floats, count: int) -> None:
+    """The frames that the waist's limb carries, the chest's, in the pelvis frame, into the room; no capsules."""
+    posing.pose_trunk_into(
+        limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
+        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, room.joints, 0, room.none,
+        room.places, room.turns,
     )  # fmt: skip
-    return places, turns
+
+
+@exact_kernel
+def pose(limb: Limb, configurations: Floats) -> Floats32:
+    """Capsule end points (C, 6, N) for configurations (N, d), in the pelvis frame (waist) or the chest frame (arms)."""
+    count = configurations.shape[0]
+    out = np.empty((limb.joints.shape[0], 6, count), np.float32)
+    pose_into(limb, limb_room(limb, count), configurations, count, 0, out)
+    return out

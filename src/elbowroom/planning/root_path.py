@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 
@@ -47,13 +47,20 @@ class RootPath:
 
 @exact_kernel
 def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
-    """The root state (7,) at the part `u` in [0, 1] of a key interval of `interval` seconds from state `a` to `b`.
+    """The root state (7,) at the part `u` in [0, 1] of a key interval; see `interpolate_root_into`."""
+    out = np.empty(ROOT_STATE)
+    interpolate_root_into(a, b, u, interval, out)
+    return out
+
+
+@exact_lean_kernel
+def interpolate_root_into(a: Floats, b: Floats, u: float, interval: float, out: Floats) -> None:
+    """The root state `out` (7,) at the part `u` in [0, 1] of a key interval of `interval` seconds from `a` to `b`.
 
     Place and heading follow the cubic Hermite curves through both states' places and velocities; the velocities are
     those curves' derivatives, in the axes of the heading reached. The gait phase runs from `a` to `b` at a rate that
     changes linearly between the cadences of the two states, so it never runs backwards.
     """
-    out = np.empty(ROOT_STATE)
     ax, az = _ground_velocity(a)
     bx, bz = _ground_velocity(b)
     out[0], vx = _hermite(a[0], ax, b[0], bx, u, interval)
@@ -66,7 +73,6 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
     if first + last > 0.0:
         done = u * (2.0 * first + (last - first) * u) / (first + last)
     out[6] = a[6] + (b[6] - a[6]) * done
-    return out
 
 
 @exact_inner_kernel

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -37,16 +37,22 @@ def allowed_distances(
 @exact_kernel
 def clear_of_trunk(segments: Floats32, trunk: Floats, allowed: Floats) -> NDArray[np.bool_]:
     """Whether forearm and hand keep the allowed distances (C, K) from the trunk, for capsules (C, 6, N): shape (N,)."""
-    clear = np.ones(segments.shape[2], np.bool_)
-    axis = np.empty(6)
+    clear, axis = np.empty(segments.shape[2], np.bool_), np.empty(6)
     for n in range(segments.shape[2]):
-        for c in range(FOREARM, segments.shape[0]):
-            for i in range(6):
-                axis[i] = segments[c, i, n]
-            for k in range(trunk.shape[0]):
-                if axis_distance(axis, trunk[k]) < allowed[c, k]:
-                    clear[n] = False
+        clear[n] = is_clear_of_trunk(segments, n, trunk, allowed, axis)
     return clear
+
+
+@exact_lean_kernel
+def is_clear_of_trunk(segments: Floats32, n: int, trunk: Floats, allowed: Floats, axis: Floats) -> bool:
+    """`clear_of_trunk` of capsules `n` alone; `axis` (6,) is scratch."""
+    for c in range(FOREARM, segments.shape[0]):
+        for i in range(6):
+            axis[i] = segments[c, i, n]
+        for k in range(trunk.shape[0]):
+            if axis_distance(axis, trunk[k]) < allowed[c, k]:
+                return False
+    return True
 
 
 @exact_kernel

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import inner_kernel, kernel
+from elbowroom.jit import inner_kernel, kernel, lean_kernel
 from elbowroom.world.capsule_tiles import BOX, LANES, PER_METRE, TILE, lower_squares, lower_to_squares
 
 _FIRST = 0
@@ -68,10 +68,16 @@ def _prepared(segments: ArrayLike, radii: ArrayLike, table: ArrayLike) -> tuple[
 def box_rows(table: Floats32 | NDArray[np.float64], count: int) -> Floats32:
     """The first `count` boxes of a table (B, 15), flat and in the units of `lower_squares`; centres stay in metres."""
     rows = np.empty(count * BOX, np.float32)
+    fill_box_rows(table, count, rows)
+    return rows
+
+
+@lean_kernel
+def fill_box_rows(table: Floats32 | NDArray[np.float64], count: int, rows: Floats32) -> None:
+    """`box_rows`, written to `rows` (15 B,)."""
     for b in range(count):
         for k in range(BOX):
             rows[b * BOX + k] = table[b, k] if k < 3 else table[b, k] * _SCALE
-    return rows
 
 
 @inner_kernel

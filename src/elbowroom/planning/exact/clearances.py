@@ -1,12 +1,14 @@
 """Clearance of whole blocks of postures around the key times, and of single capsules along a motion."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inner_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, lean_kernel
 from elbowroom.planning.exact.postures import BLOCK
 from elbowroom.world.capsule_tiles import BOX, PER_METRE, lower_squares, lower_to_squares
-from elbowroom.world.clearance import box_rows
+from elbowroom.world.clearance import fill_box_rows
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -22,7 +24,7 @@ _QUARTER = np.float32(0.25)
 _LAST = BLOCK - 1
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> int:
     """Copy the boxes (B, 15) whose ball comes within `reach` of a place (3,) to `near`; their number."""
     count = 0
@@ -36,16 +38,6 @@ def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> in
                 near[count, i] = boxes[b, i]
             count += 1
     return count
-
-
-@exact_inner_kernel
-def relative_to(origin: Floats, boxes: Floats, count: int, places: Floats, out: Floats) -> None:
-    """Move the first `count` boxes (B, 15) by minus a place (3,), and write `places` (N, 3) so moved to `out`."""
-    for i in range(3):
-        for b in range(count):
-            boxes[b, i] -= origin[i]
-        for n in range(places.shape[0]):
-            out[n, i] = places[n, i] - origin[i]
 
 
 @exact_kernel
@@ -64,27 +56,49 @@ def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
         out[12 + i] = box[12 + i]
 
 
+class CheckRoom(NamedTuple):
+    """What checks of T tiles of capsules against B boxes work on."""
+
+    rows: Floats32  # (B * 15,) boxes as `lower_squares` takes them
+    spread: Floats32  # (5, W) balls by components, W >= T a multiple of `BLOCK`
+    squares: Floats32  # (T * 16,)
+    pairs: Longs  # (_PAIRS + T, 2)
+    balls: Floats  # (C, 1, 4) around capsules
+    apart: Floats32  # (16,)
+
+
 @exact_inner_kernel
-def _spread(balls: Floats) -> Floats32:
+def check_room(tiles: int, capsules: int, boxes: int) -> CheckRoom:
+    """Room for checks of so many tiles, or of single capsules, against so many boxes."""
+    return CheckRoom(
+        np.empty(boxes * BOX, np.float32),
+        np.empty((5, (tiles + BLOCK - 1) // BLOCK * BLOCK), np.float32),
+        np.empty(tiles * BLOCK, np.float32),
+        np.empty((_PAIRS + tiles, 2), np.int64),
+        np.empty((capsules, 1, 4)),
+        np.empty(BLOCK, np.float32),
+    )
+
+
+@exact_lean_kernel
+def _spread(balls: Floats, out: Floats32) -> None:
     """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
 
-    The last W - B C are such that nothing is near them; W is a multiple of `BLOCK`. The last row is left empty.
+    Those beyond B C, up to a multiple of `BLOCK`, are such that nothing is near them. The last row is left as it is.
     """
     parts = balls.shape[1]
     total = balls.shape[0] * parts
-    out = np.empty((5, (total + BLOCK - 1) // BLOCK * BLOCK), np.float32)
     t = 0
     for b in range(balls.shape[0]):
         for c in range(parts):
             reach = (balls[b, c, 3] + COMFORT + _ROUNDING) * PER_METRE
             out[0, t], out[1, t], out[2, t], out[3, t] = balls[b, c, 0], balls[b, c, 1], balls[b, c, 2], reach * reach
             t += 1
-    for t in range(total, out.shape[1]):
+    for t in range(total, (total + BLOCK - 1) // BLOCK * BLOCK):
         out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
-    return out
 
 
-@inner_kernel
+@lean_kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> None:
     """How far (W,) balls as `_spread` are out of reach of box b; negative where they are within."""
     row = rows[b * BOX : (b + 1) * BOX]
@@ -98,17 +112,17 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> Non
         out[t] = p * p + q * q + r * r - balls[3, t]
 
 
-@exact_kernel
-def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
-    """Lower `out` (B, 16) to the clearance of blocks of postures from `count` boxes, all in one frame.
-
-    What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
-    """
+@exact_lean_kernel
+def lower_blocks_in(room: CheckRoom, lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
+    """`lower_blocks` with room to work in."""
     parts = lanes.shape[1]
     total = lanes.shape[0] * parts
-    rows, spread, tiles = box_rows(boxes, count), _spread(balls), lanes.reshape(lanes.size)
-    squares, pairs = np.full(total * BLOCK, _FAR, np.float32), np.empty((_PAIRS + total, 2), np.int64)
-    found, checks, beyond = int(_NONE), 0, spread[4]
+    rows, spread, tiles, squares, pairs = room.rows, room.spread, lanes.reshape(lanes.size), room.squares, room.pairs
+    fill_box_rows(boxes, count, rows)
+    _spread(balls, spread)
+    for i in range(np.uint64(total * BLOCK)):
+        squares[i] = _FAR
+    found, checks, beyond = int(_NONE), 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
     for b in range(count):
         _beyond_reach(spread, rows, b, beyond)
         for t in range(total):
@@ -124,29 +138,45 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     return checks
 
 
-@exact_inner_kernel
-def place_capsules(segments: Floats32, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32) -> None:
-    """Capsules (C, 6, N) in frames at `places` (N, 3), `turns` (N, 4), as lanes (C, 7, W) outside of them, W >= N.
+@exact_kernel
+def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
+    """Lower `out` (B, 16) to the clearance of blocks of postures from `count` boxes, all in one frame.
 
-    The lanes beyond N repeat the last.
+    What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
     """
-    count = segments.shape[2]
-    for n in range(lanes.shape[2]):
-        m = min(n, count - 1)
-        x, y, z, w = turns[m, 0], turns[m, 1], turns[m, 2], turns[m, 3]
+    room = check_room(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
+    return int(lower_blocks_in(room, lanes, balls, boxes, count, out))
+
+
+@exact_lean_kernel
+def place_capsules(
+    segments: Floats32, count: int, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32
+) -> None:
+    """The first `count` capsules (C, 6, N) in frames at `places` (N, 3), `turns` (N, 4), as lanes (C, 7, W) outside.
+
+    The lanes beyond these repeat the last.
+    """
+    for n in range(count):
+        x, y, z, w = turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3]
         xx, xy, xz = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
         yx, yy, yz = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
         zx, zy, zz = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
         for c in range(segments.shape[0]):
             for e in range(0, 6, 3):
-                a, b, d = segments[c, e, m], segments[c, e + 1, m], segments[c, e + 2, m]
-                lanes[c, e, n] = places[m, 0] + xx * a + xy * b + xz * d
-                lanes[c, e + 1, n] = places[m, 1] + yx * a + yy * b + yz * d
-                lanes[c, e + 2, n] = places[m, 2] + zx * a + zy * b + zz * d
+                a, b, d = segments[c, e, n], segments[c, e + 1, n], segments[c, e + 2, n]
+                lanes[c, e, n] = places[n, 0] + xx * a + xy * b + xz * d
+                lanes[c, e + 1, n] = places[n, 1] + yx * a + yy * b + yz * d
+                lanes[c, e + 2, n] = places[n, 2] + zx * a + zy * b + zz * d
+    for c in range(segments.shape[0]):
+        for e in range(6):
+            last = lanes[c, e, count - 1]
+            for n in range(count, lanes.shape[2]):
+                lanes[c, e, n] = last
+        for n in range(lanes.shape[2]):
             lanes[c, 6, n] = radii[c]
 
 
-@inner_kernel
+@lean_kernel
 def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
@@ -163,13 +193,35 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     ball[0], ball[1], ball[2], ball[3] = x, y, z, lanes[6, 0] + np.sqrt(farthest)
 
 
+@exact_lean_kernel
+def capsule_clearances_in(room: CheckRoom, lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
+    """`capsule_clearances` with room to work in."""
+    for c in range(lanes.shape[0]):
+        _ball_around(lanes[c], room.apart, room.balls[c, 0])
+    tiles = lanes.reshape(lanes.shape[0], 1, lanes.shape[1], lanes.shape[2])
+    return int(lower_blocks_in(room, tiles, room.balls, boxes, count, out))
+
+
 @exact_kernel
 def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
     """Lower `out` (C, 16) to the clearance of each capsule in each lane (C, 7, 16).
 
     Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
     """
-    balls, scratch = np.empty((lanes.shape[0], 1, 4)), np.empty(BLOCK, np.float32)
-    for c in range(lanes.shape[0]):
-        _ball_around(lanes[c], scratch, balls[c, 0])
-    return int(lower_blocks(lanes.reshape(lanes.shape[0], 1, lanes.shape[1], lanes.shape[2]), balls, boxes, count, out))
+    room = check_room(lanes.shape[0], lanes.shape[0], count)
+    return int(capsule_clearances_in(room, lanes, boxes, count, out))
+
+
+@exact_lean_kernel
+def least_of(rows: Floats32, scratch: Floats32) -> float:
+    """The least number in rows (C, 16) of clearances; `scratch` (16,)."""
+    for i in range(np.uint64(BLOCK)):
+        scratch[i] = rows[0, i]
+    for c in range(1, rows.shape[0]):
+        row = rows[c]
+        for i in range(np.uint64(BLOCK)):
+            scratch[i] = min(scratch[i], row[i])
+    least = scratch[0]
+    for i in range(1, BLOCK):
+        least = min(least, scratch[i])
+    return float(least)

@@ -9,19 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
-from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, set_keys, settle_backward, traced
+from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, least_in, set_keys, settle_backward, traced
 from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
-from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way
+from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way_in
 from elbowroom.planning.exact.shelves import Shelf
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
 from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays
+from elbowroom.planning.exact.workroom import Workroom, workroom
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -46,10 +47,10 @@ def _carrier(roots: RootWays, waists: LimbWays, task: GroupTask, k: int, is_wais
     )  # fmt: skip
 
 
-@inlined
+@exact_lean_kernel
 def _proven(
-    group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, keys: Floats, tangents: Floats,
-    skins: Floats, slots: Longs, touches: Bools, gentle: bool,
+    room: Workroom, group: Group, roots: RootWays, waists: LimbWays, chain: Chain, task: GroupTask, keys: Floats,
+    tangents: Floats, skins: Floats, slots: Longs, touches: Bools, gentle: bool,
 ) -> tuple[int, bool]:  # fmt: skip
     """Prove the curve through `keys` (n+1, d) free: `touches` (n,) where it is not; the capsules checked.
 
@@ -62,7 +63,7 @@ def _proven(
     for k in range(slots.shape[0]):
         carrier = _carrier(roots, waists, task, k, is_waist)
         ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
-        at, count = limb_way(ways, postures, levers, chain, carrier, ends, task.boxes[k], skins[k])
+        at, count = limb_way_in(room, ways, postures, levers, chain, carrier, ends, task.boxes[k], skins[k])
         slots[k] = at
         checks += count
         much = peak_acceleration(keys[k], tangents[k], keys[k + 1], tangents[k + 1], task.interval) > group.acceleration
@@ -72,7 +73,7 @@ def _proven(
     return checks, harsh
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _stiffened(stiff: Bools, touches: Bools) -> bool:
     """Make the key times (n+1,) stiff at both ends of the intervals (n,) that touch; whether any does."""
     found = False
@@ -82,8 +83,8 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
     return found
 
 
-@exact_inner_kernel
-def _closed(lattice: Lattice, masks: Masks, keys: Floats, way: Longs, touches: Bools) -> tuple[int, float]:
+@exact_lean_kernel
+def _closed(lattice: Lattice, work: Work, masks: Masks, keys: Floats, way: Longs, touches: Bools) -> tuple[int, float]:
     """Close the steps of a way in the intervals where it touches, and those near to them.
 
     Returns the first of these intervals, n if there is none, and how much dearer ways are to be looked at.
@@ -94,30 +95,29 @@ def _closed(lattice: Lattice, masks: Masks, keys: Floats, way: Longs, touches: B
             first = k
             if lattice.masks[k] < 0:
                 lattice.masks[k] = new_mask(masks, keys[k])
-            ban_near(lattice, k, way[k], way[k + 1], _BAN_RADIUS)
+            ban_near(lattice, work, k, way[k], way[k + 1], _BAN_RADIUS)
             slack = max(2.0 * masks.slack[lattice.masks[k]], _FIRST_SLACK)
             masks.slack[lattice.masks[k]], farthest = slack, max(farthest, slack)
     return first, farthest
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _close_promising(
-    postures: Postures, carriers: Carriers, boxes: Floats, skins: Floats, lattice: Lattice, work: Work, masks: Masks,
-    first: int, best: float,
+    room: Workroom, postures: Postures, carriers: Carriers, boxes: Floats, skins: Floats, lattice: Lattice, work: Work,
+    masks: Masks, steps: Longs, first: int, best: float,
 ) -> int:  # fmt: skip
     """Look at the steps of key intervals with a mask, from `first` on, through which ways lead that cost little more
-    than the `best`; close those that touch. Returns the capsules checked."""
+    than the `best`; close those that touch. Returns the capsules checked; `steps` (MOST_STEPS, 2) is scratch."""
     checks = 0
     for k in range(first, skins.shape[0]):
         at = lattice.masks[k]
         if at >= 0:
-            steps = promising(lattice, work, k, best + masks.slack[at], masks.seen[at])
-            if len(steps) == MOST_STEPS:
+            count = promising(lattice, work, k, best + masks.slack[at], masks.seen[at], steps)
+            if count == MOST_STEPS:
                 masks.slack[at] *= 0.5  # there are more of them: the same once again
-            if len(steps):
-                checks += close_steps(
-                    postures, lattice, k, steps, carriers.places[k], carriers.turns[k], boxes[k], skins[k]
-                )
+            if count:
+                places, turns = carriers.places[k], carriers.turns[k]
+                checks += close_steps(room, postures, lattice, k, steps, count, places, turns, boxes[k], skins[k])
     return checks
 
 
@@ -131,13 +131,15 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
     postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
+    room, steps = workroom(postures, chain.waist, boxes.shape[1]), np.empty((MOST_STEPS, 2), np.int64)
     begin_round(group.tables.slots)
     own, needed, kept = alone_at(configurations, columns, postures.step, goals, task.kept, task.start, task.settled)
     if postures.limb.is_waist:
         carriers = carriers_at(roots.slots.ids, roots.places, roots.turns, task.roots)
     else:
         carriers = carriers_at(waists.slots.ids, waists.places, waists.turns, task.carriers)
-    price, most, checks = node_prices(group.tables, postures, carriers, task, weights, own, needed, kept)
+    price, clear = np.empty_like(task.extra), np.empty_like(task.extra)
+    most, checks = node_prices(room, group.tables, postures, carriers, task, weights, own, needed, kept, clear, price)
     named = mask_keys(carriers.ids, goals)
     lattice = Lattice(
         configurations, columns, postures.moves, own, goals, price, known_masks(masks, named, kept),
@@ -164,16 +166,18 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
         stiff[:] = False
         for attempt in range(2):
             tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
-            count, asks_much = _proven(group, roots, waists, chain, task, keys, tangents, skins, slots, touches, gentle)
+            count, asks_much = _proven(
+                room, group, roots, waists, chain, task, keys, tangents, skins, slots, touches, gentle
+            )
             checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):
                 break
-        first, farthest = _closed(lattice, masks, named, way, touches)
+        first, farthest = _closed(lattice, work, masks, named, way, touches)
         if first == horizon:
             return GroupWay(horizon, keys, tangents, slots, price, most, checks, nodes, rounds + 1)
         deepest = max(deepest, first)
-        best = work.costs[horizon].min()
+        best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)
-        checks += _close_promising(postures, carriers, boxes, skins, lattice, work, masks, first, best)
+        checks += _close_promising(room, postures, carriers, boxes, skins, lattice, work, masks, steps, first, best)
     until = deepest + 1
     return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, weights.rounds)

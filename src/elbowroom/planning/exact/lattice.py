@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -56,6 +56,12 @@ class Work(NamedTuple):
     left: Floats32  # (n+1, W+OWN) of the cheapest way from each node on to the end
     squares: Floats32  # (n+1, OWN, W) squared distances of a key time's own postures from the others
     most: Floats  # (1,) dearer ways were left out
+    least: Floats  # (n+1,) what a way on from each depth costs at least
+    base: Floats32  # (W+OWN,) scratch, as is what follows
+    slopes: Floats32  # (W+OWN,)
+    closed: Floats32  # (W,)
+    origins: Ints  # (W,)
+    few: Floats  # (2, OWN)
 
 
 def new_work(depths: int, nodes: int) -> Work:
@@ -66,18 +72,23 @@ def new_work(depths: int, nodes: int) -> Work:
         np.empty((depths, nodes), np.float32),
         np.empty((depths, OWN, nodes - OWN), np.float32),
         np.zeros(1),
+        np.zeros(depths),
+        np.empty(nodes, np.float32),
+        np.empty(nodes, np.float32),
+        np.empty(nodes - OWN, np.float32),
+        np.empty(nodes - OWN, np.int32),
+        np.empty((2, OWN)),
     )
 
 
-@exact_kernel
-def posture_of(lattice: Lattice, depth: int, node: int) -> Floats:
-    """The configuration (d,) of a node."""
+@exact_lean_kernel
+def component_of(lattice: Lattice, depth: int, node: int, i: int) -> float:
+    """One component of the configuration of a node."""
     width = lattice.moves.shape[1]
-    posture: Floats = lattice.postures[node] if node < width else lattice.own[depth, node - width]
-    return posture
+    return float(lattice.postures[node, i] if node < width else lattice.own[depth, node - width, i])
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
     """The squared distances (W,) of the postures from one (d,)."""
     out[:] = 0.0
@@ -87,7 +98,7 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
             out[v] += (column[v] - place) * (column[v] - place)
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _measure(lattice: Lattice, work: Work) -> None:
     """Distances of each key time's own postures from all others; too long a step is infinite."""
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
@@ -103,7 +114,7 @@ def _measure(lattice: Lattice, work: Work) -> None:
             row[size:] = _INFINITE
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     """The squared length of the step between own postures of two successive depths; infinite if it is too long."""
     total = 0.0
@@ -112,7 +123,7 @@ def _own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
     """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
@@ -123,7 +134,7 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
         origins[b] = origin if better else origins[b]
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _relax_open(
     out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Floats32
 ) -> None:
@@ -136,7 +147,7 @@ def _relax_open(
         origins[b] = origin if better else origins[b]
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     """2 w q.g into `out` (W+OWN,) for the nodes q of `row`; returns w |g|^2; g is the goal's way from `depth` on."""
     width, weight = lattice.moves.shape[1], lattice.weight
@@ -155,7 +166,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     return square
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
     nodes have a way."""
@@ -163,7 +174,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     out, origins = work.costs[depth + 1], work.parents[depth + 1]
     targets, target_origins = out[:width], origins[:width]
     out[:] = _INFINITE
-    base, limit = np.empty(width + OWN, np.float32), np.float32(most)
+    base, limit = work.base, np.float32(most)
     square, known = np.float32(slopes_of(lattice, depth, depth, base)), work.costs[depth]
     for node in range(np.uint64(width + OWN)):
         base[node] = known[node] + base[node] + square if known[node] <= limit else _INFINITE
@@ -188,7 +199,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     return count
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of a step to an own posture of the next depth, and where it comes from."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
@@ -207,13 +218,17 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     return best, origin
 
 
-@exact_inner_kernel
-def _own_way(lattice: Lattice) -> float:
-    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more."""
-    width = lattice.moves.shape[1]
-    known, found = np.full(OWN, np.inf), np.empty(OWN)
-    known[HOLD] = 0.0
-    for depth in range(lattice.goals.shape[0] - 1):
+@exact_lean_kernel
+def _own_way(lattice: Lattice, few: Floats) -> float:
+    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more.
+
+    `few` (2, OWN) is scratch.
+    """
+    width, last = lattice.moves.shape[1], lattice.goals.shape[0] - 1
+    for e in range(OWN):
+        few[0, e] = 0.0 if e == HOLD else np.inf
+    for depth in range(last):
+        known, found = few[depth % 2], few[1 - depth % 2]
         found[:] = np.inf
         for f in range(OWN):
             price = lattice.price[depth + 1, width + f]
@@ -222,11 +237,13 @@ def _own_way(lattice: Lattice) -> float:
             for e in range(OWN):
                 if known[e] < np.inf:
                     found[f] = min(found[f], known[e] + price + step_cost(lattice, depth, width + e, width + f))
-        known, found = found, known
-    return float(known.min())
+    least = np.inf
+    for e in range(OWN):
+        least = min(least, few[last % 2, e])
+    return least
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _kept_way(lattice: Lattice) -> float:
     """The cost of the last plan's way, infinite where it is not free."""
     total, before = 0.0, lattice.moves.shape[1] + HOLD
@@ -239,20 +256,29 @@ def _kept_way(lattice: Lattice) -> float:
     return total
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
     mask = lattice.masks[depth]
     if mask >= 0 and lattice.closed[mask, source, target] == _INFINITE:
         return np.inf
-    a, b, moved, changed = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target), 0.0, 0.0
+    moved, changed = 0.0, 0.0
     for i in range(lattice.goals.shape[1]):
-        step = b[i] - a[i]
+        step = component_of(lattice, depth + 1, target, i) - component_of(lattice, depth, source, i)
         moved += step * step
         changed += (step - lattice.goals[depth + 1, i] + lattice.goals[depth, i]) ** 2
     listed = source >= size or target >= size or lattice.moves[source, target] < _INFINITE
     return lattice.weight * changed if listed and moved <= lattice.step * lattice.step * _ROUNDING else np.inf
+
+
+@exact_lean_kernel
+def least_in(row: Floats32) -> Any:
+    """The least of many numbers."""
+    least = row[0]
+    for i in range(1, row.shape[0]):
+        least = min(least, row[i])
+    return least
 
 
 @exact_kernel
@@ -265,15 +291,16 @@ def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
     depths, width = lattice.goals.shape[0], lattice.moves.shape[1]
     if begin == 0:
         _measure(lattice, work)
-    most = min(_own_way(lattice), _kept_way(lattice)) + _SLACK
+    most = min(_own_way(lattice, work.few), _kept_way(lattice)) + _SLACK
     if begin == 0 or most > work.most[0]:
         begin = 0  # what was left out may be needed
         work.costs[0] = _INFINITE
         work.costs[0, width + HOLD] = 0.0
     work.most[0] = most
-    least = np.zeros(depths)
+    least = work.least
+    least[depths - 1] = 0.0
     for depth in range(depths - 2, -1, -1):
-        price = lattice.price[depth + 1].min()
+        price = least_in(lattice.price[depth + 1])
         least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
     reached, nodes = begin, 0
     for depth in range(begin, depths - 1):
@@ -295,13 +322,12 @@ def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     return way
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
     """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
     for t in range(way.shape[0]):
-        posture = posture_of(lattice, t, way[t])
-        for i in range(posture.shape[0]):
-            keys[t, i] = posture[i]
+        for i in range(keys.shape[1]):
+            keys[t, i] = component_of(lattice, t, way[t], i)
 
 
 @exact_kernel
@@ -311,8 +337,7 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
     Nodes that no way of at most the cost `most` leads through are left out.
     """
     size, width, weight = lattice.postures.shape[0], lattice.moves.shape[1], lattice.weight
-    base, slopes = np.empty(width + OWN, np.float32), np.empty(width + OWN, np.float32)
-    origins, column, limit = np.empty(width, np.int32), np.empty(width, np.float32), np.float32(most)
+    base, slopes, origins, column, limit = work.base, work.slopes, work.origins, work.closed, np.float32(most)
     work.left[lattice.goals.shape[0] - 1] = 0.0
     for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
         out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 
@@ -55,7 +55,7 @@ def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
     return out
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def new_mask(masks: Masks, key: Floats) -> int:
     """The mask of an interval under `key` (K,), with all steps open."""
     at = admit(masks.slots, key)
@@ -63,7 +63,7 @@ def new_mask(masks: Masks, key: Floats) -> int:
     return int(at)
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def reopen(masks: Masks, at: int) -> None:
     """Open all steps of a mask, if it is one."""
     if at >= 0:

@@ -5,15 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, inlined
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.group import GroupTask, Weights
 from elbowroom.planning.exact.lattice import BACK, OWN, squares_from
 from elbowroom.planning.exact.postures import Postures
-from elbowroom.planning.exact.tables import HELD_AT_START, HELD_EARLY, HELD_LATE, Tables, held_clearance, table_of
+from elbowroom.planning.exact.tables import HELD_AT_START, HELD_EARLY, HELD_LATE, Tables, held_clearance_in, table_of
 from elbowroom.planning.exact.ways import SWEEP
-from elbowroom.planning.limb import Limb, pose
-from elbowroom.planning.self_contact import clear_of_trunk
+from elbowroom.planning.exact.workroom import Workroom
+from elbowroom.planning.limb import Limb, pose_into
+from elbowroom.planning.self_contact import is_clear_of_trunk
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -47,18 +48,18 @@ def carriers_at(ids: Longs, places: Floats, turns: Floats, slots: Longs) -> Carr
     return out
 
 
-@inlined
+@exact_lean_kernel
 def _clearances(
-    tables: Tables, postures: Postures, carriers: Carriers, goals: Floats, boxes: Floats, own: Floats, needed: Bools
-) -> tuple[Floats32, int]:
-    """The clearances of the nodes (n+1, W+OWN), and the capsules that had to be checked for them."""
+    room: Workroom, tables: Tables, postures: Postures, carriers: Carriers, goals: Floats, boxes: Floats, own: Floats,
+    needed: Bools, clear: Floats32,
+) -> int:  # fmt: skip
+    """The clearances of the nodes into `clear` (n+1, W+OWN); returns the capsules that had to be checked for them."""
     width = postures.columns.shape[1]
-    horizon = goals.shape[0] - 1
-    clear = np.full((horizon + 1, width + OWN), _INFINITE, np.float32)
+    clear[:] = _INFINITE
     checks = 0
-    for k in range(horizon):
+    for k in range(goals.shape[0] - 1):
         places, turns, around = carriers.places[k], carriers.turns[k], boxes[k]
-        at, count = table_of(tables, postures, carriers.ids[k], places, turns, goals[k : k + 2], around)
+        at, count = table_of(room, tables, postures, carriers.ids[k], places, turns, goals[k : k + 2], around)
         checks += count
         _lower(clear[k], tables.early[at])
         _lower(clear[k + 1], tables.late[at])
@@ -66,31 +67,30 @@ def _clearances(
             for end in range(2):
                 if needed[k + end, e]:
                     part = HELD_EARLY if end == 0 else HELD_LATE
-                    found, count = held_clearance(postures, own[k + end, e], places, turns, around, part)
+                    found, count = held_clearance_in(room, postures, own[k + end, e], places, turns, around, part)
                     checks += count
                     clear[k + end, width + e] = min(clear[k + end, width + e], found)
-    return clear, checks
+    return checks
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _lower(row: Floats32, other: Floats32) -> None:
     """Lower the beginning of a row to another."""
     for i in range(np.uint64(other.shape[0])):
         row[i] = min(row[i], other[i])
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _priced(
     columns: Floats32, goals: Floats, own: Floats, clear: Floats32, extras: Floats32, margins: Floats, most: float,
-    weights: Weights, kept: Longs,
-) -> Floats32:  # fmt: skip
+    weights: Weights, kept: Longs, price: Floats32,
+) -> None:  # fmt: skip
     """Squared distance from the goal and the lack of comfort, for nodes with the clearances `clear` (n+1, W+OWN).
 
     Infinite where there is less than the margin, or than `most`. What is `kept` (n+1,) costs less, but near the goal
     not so much less that nobody would go back to it.
     """
     width = columns.shape[1]
-    price = np.empty_like(clear)
     comfort, near = np.float32(weights.comfort), np.float32(weights.near)
     for t in range(price.shape[0]):
         row, free, extra = price[t], clear[t], extras[t]
@@ -103,21 +103,20 @@ def _priced(
             lack = max(comfort - free[node], np.float32(0.0))
             cost = row[node] + near * lack * lack + extra[node]
             row[node] = cost if free[node] >= margin else _INFINITE
-    return price
 
 
-@exact_inner_kernel
-def _unfold(limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
+@exact_lean_kernel
+def _unfold(room: Workroom, limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
     """Rule out ways back that lead through the trunk."""
     width = price.shape[1] - OWN
     for t in range(own.shape[0]):
         if needed[t, BACK]:
-            segments = pose(limb, own[t, BACK : BACK + 1])
-            if not clear_of_trunk(segments, limb.trunk, limb.allowed)[0]:
+            pose_into(limb, room.limb, own[t, BACK : BACK + 1], 1, 0, room.segments)
+            if not is_clear_of_trunk(room.segments, 0, limb.trunk, limb.allowed, room.axis):
                 price[t, width + BACK] = _INFINITE
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
     """Lanes that only fill up the last block, and postures of a key time alone that are not needed, are no nodes."""
     width = price.shape[1] - OWN
@@ -130,25 +129,25 @@ def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
                 row[width + e] = _INFINITE
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def node_prices(
-    tables: Tables, postures: Postures, carriers: Carriers, task: GroupTask, weights: Weights, own: Floats,
-    needed: Bools, kept: Longs,
-) -> tuple[Floats32, float, int]:  # fmt: skip
-    """The prices (n+1, W+OWN) of all nodes, infinite where one is not free.
+    room: Workroom, tables: Tables, postures: Postures, carriers: Carriers, task: GroupTask, weights: Weights,
+    own: Floats, needed: Bools, kept: Longs, clear: Floats32, price: Floats32,
+) -> tuple[float, int]:  # fmt: skip
+    """The prices (n+1, W+OWN) of all nodes, infinite where one is not free, into `price`; `clear` like it is scratch.
 
-    Also the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
+    Returns the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
     """
     limb, columns, goals, boxes = postures.limb, postures.columns, task.goals, task.boxes
     most, checks = np.inf, 0
     if not task.settled:
-        clearance, checks = held_clearance(
-            postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
+        clearance, checks = held_clearance_in(
+            room, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
         )
         most = max(0.5 * clearance, 0.0)
-    clear, count = _clearances(tables, postures, carriers, goals, boxes, own, needed)
-    price = _priced(columns, goals, own, clear, task.extra, task.margins, most, weights, kept)
+    checks += _clearances(room, tables, postures, carriers, goals, boxes, own, needed, clear)
+    _priced(columns, goals, own, clear, task.extra, task.margins, most, weights, kept, price)
     _rule_out(price, postures.configurations.shape[0], needed)
     if not limb.is_waist:
-        _unfold(limb, own, needed, price)
-    return price, most, checks + count
+        _unfold(room, limb, own, needed, price)
+    return most, checks

@@ -3,39 +3,39 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, inlined
+from elbowroom.jit import exact_lean_kernel
 from elbowroom.planning.activity_graph import squared_distance
-from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances
-from elbowroom.planning.exact.lattice import OWN, Lattice, Work, posture_of, slopes_of, squares_from
+from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances_in
+from elbowroom.planning.exact.lattice import OWN, Lattice, Work, least_in, slopes_of, squares_from
 from elbowroom.planning.exact.postures import BETWEEN, BLOCK, ON_WAY, Postures
 from elbowroom.planning.exact.ways import SWEEP
-from elbowroom.planning.limb import Limb, pose
+from elbowroom.planning.exact.workroom import Workroom
+from elbowroom.planning.limb import pose_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
-Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 
 MOST_STEPS = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
     width = lattice.moves.shape[1]
-    posture = posture_of(lattice, depth, node)
+    posture = lattice.postures[node] if node < width else lattice.own[depth, node - width]
     squares_from(lattice.columns, posture, out[:width])
     for e in range(OWN):
         out[width + e] = squared_distance(lattice.own[depth, e], posture)
 
 
-@exact_inner_kernel
-def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: float) -> None:
+@exact_lean_kernel
+def ban_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
     """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
     nodes, most = lattice.price.shape[1], np.float32(radius * radius)
-    before, after = np.empty(nodes, np.float32), np.empty(nodes, np.float32)
+    before, after = work.base, work.slopes
     _distances(lattice, depth, source, before)
     _distances(lattice, depth + 1, target, after)
     kept, closed = lattice.kept[depth + 1], lattice.closed[lattice.masks[depth]]
@@ -50,21 +50,20 @@ def ban_near(lattice: Lattice, depth: int, source: int, target: int, radius: flo
     closed[source, target] = _INFINITE
 
 
-@exact_inner_kernel
-def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools) -> Longs:
-    """The steps (K, 2) of a key interval through which a way might go that costs at most `most`, without those `seen`.
+@exact_lean_kernel
+def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
+    """The steps of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
-    They are marked as seen in `seen` (W+OWN, W+OWN).
+    They are written to `found` (MOST_STEPS, 2), and marked as seen in `seen` (W+OWN, W+OWN). Returns their number.
     """
     size, nodes, weight = lattice.postures.shape[0], lattice.price.shape[1], np.float32(lattice.weight)
     width, limit = nodes - OWN, np.float32(most)
-    found, count = np.empty((MOST_STEPS, 2), np.int64), 0
-    costs, base, end = work.costs[depth], np.empty(nodes, np.float32), np.empty(nodes, np.float32)
+    count, costs, base, end = 0, work.costs[depth], work.base, work.slopes
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
         end[b] = work.left[depth + 1, b] + lattice.price[depth + 1, b] - end[b]
-    least, closed = end.min(), lattice.closed[lattice.masks[depth]]
+    least, closed = least_in(end), lattice.closed[lattice.masks[depth]]
     for a in range(nodes):
         start = costs[a] + base[a] + square
         if not start + least <= limit:
@@ -73,8 +72,9 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
             if not start + end[b] <= limit or seen[a, b] or closed[a, b] == _INFINITE or a == b:
                 continue
             if b >= width:
-                own = lattice.own[depth + 1, b - width]
-                move = np.float32(squared_distance(own, posture_of(lattice, depth, a)))
+                own, posture = lattice.own[depth + 1, b - width], lattice.own[depth, max(a - width, 0)]
+                posture = lattice.postures[a] if a < width else posture
+                move = np.float32(squared_distance(own, posture))
                 move = move if move <= lattice.step * lattice.step else _INFINITE
             else:
                 move = lattice.moves[a, b] if a < size else work.squares[depth, a - width, b]
@@ -83,86 +83,74 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
                 found[count, 0], found[count, 1] = a, b
                 count += 1
                 if count == MOST_STEPS:
-                    return found
-    return found[:count]
+                    return count
+    return count
 
 
-@inlined
+@exact_lean_kernel
 def _posed_between(
-    limb: Limb, pairs: Ints, between: Floats32, lattice: Lattice, depth: int, steps: Longs, part: int, lanes: Floats32
+    room: Workroom, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
 ) -> None:
-    """The capsules (C, 6, K) of every step's posture on its way, at one of the looks between."""
-    size = lattice.postures.shape[0]
-    share = ON_WAY[part]
-    configuration, last = np.empty((1, lattice.goals.shape[1])), steps.shape[0] - 1
-    for k in range(lanes.shape[2]):
-        a, b = steps[min(k, last), 0], steps[min(k, last), 1]
+    """Sixteen steps' postures on their way, from the step `first` on, at one of the looks between, into the room.
+
+    The lanes beyond the `count` steps repeat the last.
+    """
+    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], room.lanes
+    pairs, filled = postures.pairs, min(count - first, BLOCK)
+    for n in range(filled):
+        a, b = steps[first + n, 0], steps[first + n, 1]
         pair = pairs[a, b] if a < size and b < size else -1
         if pair >= 0:
-            on_way = between[pair, part if a < b else BETWEEN - 1 - part]
+            on_way = postures.between[pair, part if a < b else BETWEEN - 1 - part]
             for c in range(lanes.shape[0]):
                 for i in range(6):
-                    lanes[c, i, k] = on_way[c, i]
-        elif k <= last:
-            start, end = posture_of(lattice, depth, a), posture_of(lattice, depth + 1, b)
-            for i in range(configuration.shape[1]):
-                configuration[0, i] = start[i] + share * (end[i] - start[i])
-            posed = pose(limb, configuration)
-            for c in range(lanes.shape[0]):
-                for i in range(6):
-                    lanes[c, i, k] = posed[c, i, 0]
+                    lanes[c, i, n] = on_way[c, i]
         else:
-            for c in range(lanes.shape[0]):
-                for i in range(6):
-                    lanes[c, i, k] = lanes[c, i, last]
-
-
-@exact_inner_kernel
-def _take(lanes: Floats32, radii: Floats32, first: int, piece: Floats32) -> None:
-    """Sixteen lanes and their radii into `piece` (C, 7, 16)."""
-    for c in range(piece.shape[0]):
+            start = lattice.postures[a] if a < width else lattice.own[depth, a - width]
+            end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
+            for i in range(start.shape[0]):
+                room.configurations[0, i] = start[i] + share * (end[i] - start[i])
+            pose_into(postures.limb, room.limb, room.configurations, 1, n, lanes)
+    for c in range(lanes.shape[0]):
+        for i in range(6):
+            for n in range(filled, BLOCK):
+                lanes[c, i, n] = lanes[c, i, filled - 1]
         for n in range(BLOCK):
-            for i in range(6):
-                piece[c, i, n] = lanes[c, i, first + n]
-            piece[c, 6, n] = radii[c]
+            lanes[c, 6, n] = postures.limb.radii[c]
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def close_steps(
+    room: Workroom,
     postures: Postures,
     lattice: Lattice,
     depth: int,
     steps: Longs,
+    many: int,
     places: Floats,
     turns: Floats,
     boxes: Floats,
     skin: float,
 ) -> int:
-    """Close those of `steps` (K, 2) that touch on the way; returns the capsules checked.
+    """Close those of the first `many` steps (K, 2) that touch on the way; returns the capsules checked.
 
     `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
     """
-    limb, pairs, between, reach = postures.limb, postures.pairs, postures.between, postures.reach
-    width, radii = (steps.shape[0] + BLOCK - 1) // BLOCK * BLOCK, limb.radii
-    lanes = np.empty((radii.shape[0], 6, width), np.float32)
-    piece, out = np.empty((radii.shape[0], 7, BLOCK), np.float32), np.empty((radii.shape[0], BLOCK), np.float32)
-    near, moved, closed = np.empty_like(boxes), np.empty_like(boxes), lattice.closed[lattice.masks[depth]]
-    checks = 0
+    out, closed, checks = room.found, lattice.closed[lattice.masks[depth]], 0
     for part in range(BETWEEN):
         look = (part + 1) * SWEEP // (BETWEEN + 1)
         place, turn = places[look], turns[look]
-        count = boxes_around(boxes, place, reach, near)
+        count = boxes_around(boxes, place, postures.reach, room.near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(near[b], place, turn, moved[b])
-        _posed_between(limb, pairs, between, lattice, depth, steps, part, lanes)
-        for block in range(0, width, BLOCK):
+            box_in_frame(room.near[b], place, turn, room.framed[b])
+        for first in range(0, many, BLOCK):
+            _posed_between(room, postures, lattice, depth, steps, many, first, part)
             out[:] = _INFINITE
-            _take(lanes, radii, block, piece)
-            checks += capsule_clearances(piece, moved, count, out)
-            for k in range(block, min(block + BLOCK, steps.shape[0])):
-                for c in range(radii.shape[0]):
-                    if out[c, k - block] < skin:
+            checks += capsule_clearances_in(room.checks, room.lanes, room.framed, count, out)
+            for k in range(first, min(first + BLOCK, many)):
+                for c in range(out.shape[0]):
+                    if out[c, k - first] < skin:
                         closed[steps[k, 0], steps[k, 1]] = _INFINITE
     return checks

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, quickness
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
-from elbowroom.planning.frames import compose
-from elbowroom.planning.limb import Limb, carried_frames
+from elbowroom.planning.frames import compose_into
+from elbowroom.planning.limb import Limb, LimbRoom
 from elbowroom.planning.root_path import interpolate_root
 
 Floats = NDArray[np.float64]
@@ -167,7 +167,7 @@ def states_between(a: Floats, b: Floats, interval: float, first: float, last: fl
     return out
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
     """The third derivative of the cubic with these values and slopes at its ends."""
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
@@ -217,33 +217,36 @@ def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sw
         sway[i] = part * (ground + turn * chain.span + lift)
 
 
-@exact_kernel
-def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
-    """Configurations (N, d) of a limb at parts (N,) of a key interval.
-
-    `ends` are posture, velocity, posture, velocity at the interval's ends.
-    """
+@exact_lean_kernel
+def configurations_into(ends: Ends, interval: float, shares: Floats, count: int, out: Floats) -> None:
+    """`configurations_at` for the first `count` parts, written to `out` (N, d)."""
     q, m, p, n = ends
-    out = np.empty((shares.shape[0], q.shape[0]))
-    for i in range(shares.shape[0]):
+    for i in range(count):
         u = shares[i]
         rest = 1.0 - u
         for j in range(q.shape[0]):
             out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * m[j] * interval) + u * u * (
                 (3.0 - 2.0 * u) * p[j] - rest * n[j] * interval
             )
-    return out
 
 
 @exact_kernel
-def moves_between(ends: Ends, interval: float, count: int) -> Floats:
-    """What a limb's components move at most in each of `count` equal parts of a key interval, (count, 3).
+def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
+    """Configurations (N, d) of a limb at parts (N,) of a key interval.
 
-    The first two count together; then the third, the fourth.
+    `ends` are posture, velocity, posture, velocity at the interval's ends.
     """
+    out = np.empty((shares.shape[0], ends[0].shape[0]))
+    configurations_into(ends, interval, shares, shares.shape[0], out)
+    return out
+
+
+@exact_lean_kernel
+def moves_into(ends: Ends, interval: float, count: int, rates: Floats, moved: Floats) -> None:
+    """`moves_between`, written to `moved` (count, 3); `rates` (count+2, 4) is scratch."""
     q, m, p, n = ends
-    size, part = q.shape[0], interval / count
-    rates, jerks, moved = np.zeros((count + 1, 4)), np.zeros(4), np.empty((count, 3))
+    size, part, jerks = q.shape[0], interval / count, rates[count + 1]
+    rates[:] = 0.0
     for j in range(size):
         jerks[j] = _jerk(q[j], m[j], p[j], n[j], interval)
         for i in range(count + 1):
@@ -253,30 +256,35 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
                 6.0 * u * rest * (p[j] - q[j]) / interval + rest * (rest - 2.0 * u) * m[j] + u * (u - 2.0 * rest) * n[j]
             )
     bend = part * part / 8.0
+    before, jerk = np.hypot(rates[0, 0], rates[0, 1]), np.hypot(jerks[0], jerks[1])
     for i in range(count):
-        swing = max(np.hypot(rates[i, 0], rates[i, 1]), np.hypot(rates[i + 1, 0], rates[i + 1, 1]))
-        moved[i, 0] = part * (swing + np.hypot(jerks[0], jerks[1]) * bend)
+        after = np.hypot(rates[i + 1, 0], rates[i + 1, 1])
+        moved[i, 0] = part * (max(before, after) + jerk * bend)
+        before = after
         for j in range(2, 4):
             moved[i, j - 1] = part * (max(abs(rates[i, j]), abs(rates[i + 1, j])) + abs(jerks[j]) * bend)
+
+
+@exact_kernel
+def moves_between(ends: Ends, interval: float, count: int) -> Floats:
+    """What a limb's components move at most in each of `count` equal parts of a key interval, (count, 3).
+
+    The first two count together; then the third, the fourth.
+    """
+    moved = np.empty((count, 3))
+    moves_into(ends, interval, count, np.empty((count + 2, 4)), moved)
     return moved
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def carry(
-    chain: Chain, waists: Floats, moved: Floats, places: Floats, turns: Floats, sway: Floats, chest: Floats,
+    chain: Chain, waist: LimbRoom, moved: Floats, places: Floats, turns: Floats, sway: Floats, chest: Floats,
     chest_turns: Floats, chest_sway: Floats,
 ) -> None:  # fmt: skip
-    """The chest's frames in the world and its sway, for waists (N, d) on pelvis frames and their sway (N-1,).
+    """The chest's frames in the world and its sway, for a posed `waist` on pelvis frames (N, 3), (N, 4) and their sway.
 
     They are written to `chest` (N, 3), `chest_turns` (N, 4) and `chest_sway` (N-1,).
     """
-    lever, lift = chain.lever, chain.lift
-    inner, inner_turns = carried_frames(chain.waist, waists)
-    out, out_turns = compose(places, turns, inner, inner_turns)
-    for n in range(waists.shape[0]):
-        for i in range(3):
-            chest[n, i] = out[n, i]
-        for i in range(4):
-            chest_turns[n, i] = out_turns[n, i]
+    compose_into(places, turns, waist.places, waist.turns, places.shape[0], chest, chest_turns)
     for i in range(sway.shape[0]):
-        chest_sway[i] = sway[i] + lever * moved[i, 0] + lift * moved[i, 1]
+        chest_sway[i] = sway[i] + chain.lever * moved[i, 0] + chain.lift * moved[i, 1]

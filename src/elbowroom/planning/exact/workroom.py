@@ -1,0 +1,106 @@
+"""What the kernels of a search work on, made once for a search: the smaller the work, the dearer new arrays are."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.planning.exact.clearances import CheckRoom, capsule_clearances_in, check_room, place_capsules
+from elbowroom.planning.exact.postures import BLOCK, Postures
+from elbowroom.planning.exact.ways import SWEEP
+from elbowroom.planning.limb import Limb, LimbRoom, limb_room
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+
+HALVINGS = 4  # of the parts of a key interval in a proof
+
+
+class Parts(NamedTuple):
+    """Parts of an interval that are not proven yet, in two sets that take turns."""
+
+    at: Floats  # (2, N) where they begin
+    look: Longs  # (2, N) the look before them
+    ends: Floats32  # (2, N, 2, C) clearances at both their ends
+
+
+class Workroom(NamedTuple):
+    """Room for sixteen looks at a limb with C capsules and d components, past B boxes."""
+
+    checks: CheckRoom
+    limb: LimbRoom
+    stem: LimbRoom  # of the limb that carries it
+    near: Floats  # (B, 15) boxes
+    framed: Floats  # (B, 15) boxes in the limb's frame
+    blocks: Floats32  # (W/16, 16) of all postures
+    segments: Floats32  # (C, 6, 16) in the limb's frame
+    lanes: Floats32  # (C, 7, 16) outside of it, with radii
+    coarse: Floats32  # (C, 16) clearances at the looks
+    found: Floats32  # (C, 16) clearances between them
+    configurations: Floats  # (16, d)
+    waists: Floats  # (16, d of the waist)
+    states: Floats  # (16, 7) of the root
+    level: Floats  # (16, 2) zeros: hips that are not lowered
+    places: Floats  # (16, 3) of frames
+    turns: Floats  # (16, 4)
+    at: Floats  # (16, 3) places seen from the first
+    shares: Floats  # (16,) of the interval
+    moves: Floats  # (SWEEP, 3) of the joints, between looks
+    rates: Floats  # (SWEEP+2, 4) of the joints at the looks; the last row is for their jerks
+    key: Floats  # (1 + 4 d,) of a limb's way
+    axis: Floats  # (6,) of a capsule
+    parts: Parts
+
+
+@exact_inner_kernel
+def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
+    """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
+    limb, room = postures.limb, SWEEP << HALVINGS
+    count, size = limb.radii.shape[0], postures.configurations.shape[1]
+    return Workroom(
+        check_room(max(postures.lanes.shape[0], 1) * count, count, boxes),
+        limb_room(limb, BLOCK),
+        limb_room(stem, BLOCK),
+        np.empty((boxes, 15)),
+        np.empty((boxes, 15)),
+        np.empty((postures.lanes.shape[0], BLOCK), np.float32),
+        np.empty((count, 6, BLOCK), np.float32),
+        np.empty((count, 7, BLOCK), np.float32),
+        np.empty((count, BLOCK), np.float32),
+        np.empty((count, BLOCK), np.float32),
+        np.empty((BLOCK, size)),
+        np.empty((BLOCK, 3)),
+        np.empty((BLOCK, 7)),
+        np.zeros((BLOCK, 2)),
+        np.empty((BLOCK, 3)),
+        np.empty((BLOCK, 4)),
+        np.empty((BLOCK, 3)),
+        np.empty(BLOCK),
+        np.empty((SWEEP, 3)),
+        np.empty((SWEEP + 2, 4)),
+        np.empty(1 + 4 * size),
+        np.empty(6),
+        Parts(np.empty((2, room)), np.empty((2, room), np.int64), np.empty((2, room, 2, count), np.float32)),
+    )
+
+
+@exact_lean_kernel
+def held_against(
+    room: Workroom, radii: Floats32, near: int, count: int, origin: Floats, places: Floats, turns: Floats, out: Floats32
+) -> int:
+    """Lower `out` (C, 16) to the clearances of the room's first `count` capsules from its first `near` boxes.
+
+    The capsules are in frames at `places` (N, 3), `turns` (N, 4); all is reckoned from `origin`, a place near to them.
+    Returns the capsules that were checked.
+    """
+    at = room.at
+    for n in range(count):
+        for i in range(3):
+            at[n, i] = places[n, i] - origin[i]
+    for b in range(near):
+        for i in range(3):
+            room.near[b, i] -= origin[i]
+    place_capsules(room.segments, count, radii, at, turns, room.lanes)
+    return int(capsule_clearances_in(room.checks, room.lanes, room.near, near, out))
