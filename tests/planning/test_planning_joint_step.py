@@ -11,9 +11,9 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.dressing import Dressing
+from elbowroom.planning.exact.folding import SPARE
 from elbowroom.planning.exact.joint_step import JointStep
 from elbowroom.planning.exact.kept import Start
-from elbowroom.planning.exact.own_body import SPARE
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody

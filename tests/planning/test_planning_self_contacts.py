@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elbowroom.planning.exact.self_contacts import SelfContacts
+from elbowroom.planning.exact.self_contacts import SelfContacts, rule_out_near
 
 WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
@@ -46,3 +46,15 @@ def test_the_alert_ends() -> None:
     assert alerts == sorted(alerts, reverse=True)
     assert alerts[0]
     assert not alerts[-1]
+
+
+def test_nodes_near_to_what_touched_are_ruled_out() -> None:
+    rng = np.random.default_rng(0)
+    known, own = ARM + rng.uniform(-0.15, 0.15, (30, 4)), ARM + rng.uniform(-0.15, 0.15, (10, 4))
+    prices = np.zeros(32 + 10, np.float32)
+    prices[7] = np.inf
+    rule_out_near(prices, known, own, ARM, 0.15)
+    expected = np.concatenate([np.linalg.norm(rows - ARM, axis=1) < 0.15 for rows in (known, np.zeros((2, 4)), own)])
+    expected[7] = True
+    assert np.array_equal(np.isinf(prices), expected)
+    assert 5 < expected.sum() < 37

@@ -104,11 +104,7 @@ class Arms:
         own, needed, _ = own_postures(made, task)
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
         natural = np.abs(around - problem.goals[:, : around.shape[1]]).max(axis=1) < _NATURAL
-        waists, other = ways[0].keys, ways[1].keys if side == 1 else None
-        folded = self._own_body.folded_nodes(
-            side, made.postures, own, needed, natural, waists, problem.path.states, other
-        )
-        prices = np.where(folded, np.float32(np.inf), np.float32(0.0))
+        prices = self._own_body.folded_prices(side, made.postures, own, needed, natural, around, problem.path.states)
         for t, contact in self._contacts.of(side, problem.path.times):
             if t > 0 and contact.happens(around[t]):
                 rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)

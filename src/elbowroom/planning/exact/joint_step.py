@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from elbowroom.body.kinematics import chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.axis_gaps import arm_clearances
+from elbowroom.planning.exact.folding import SPARE, folded
 from elbowroom.planning.exact.joint import JointWay, joint_way
 from elbowroom.planning.exact.joint_bounds import Problem, way_costs
 from elbowroom.planning.exact.joint_tables import Lanes, clearances_under
-from elbowroom.planning.exact.own_body import SPARE, OwnBody, folded
+from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.pauses import Pausing
 from elbowroom.planning.exact.postures import BLOCK, Postures, blocks_of
 from elbowroom.planning.frames import compose

@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.body.kinematics import chest_frames
+from elbowroom.planning.exact.folding import SPARE, folded
 from elbowroom.planning.exact.joint_step import Surroundings
 from elbowroom.planning.exact.joint_tables import Lanes, clearances_under
-from elbowroom.planning.exact.own_body import SPARE, OwnBody, folded
+from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import blocks_of
 from elbowroom.planning.exact.refinement import RefinementSettings, chosen, drawn_postures
 from elbowroom.planning.frames import compose

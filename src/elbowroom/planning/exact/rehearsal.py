@@ -62,7 +62,7 @@ def _fold(body: UpperBody, path: RootPath) -> None:
     postures, waists = body.postures(DofGroup.LEFT_ARM, _INTERVAL), np.full((_HORIZON + 1, DofGroup.WAIST.size), 0.1)
     own = np.zeros((_HORIZON + 1, OWN, DofGroup.LEFT_ARM.size))
     bent, needed = np.zeros(_HORIZON + 1, np.bool_), np.ones(own.shape[:2], np.bool_)
-    body.own_body.folded_nodes(0, postures, own, needed, bent, waists, path.states, None)
+    body.own_body.folded_prices(0, postures, own, needed, bent, waists, path.states)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:

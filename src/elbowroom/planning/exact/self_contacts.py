@@ -1,5 +1,6 @@
 """Where motions ran into the avatar's own body of late, so that the next plan does not try the same again."""
 
+from bisect import bisect_left
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +73,10 @@ class SelfContacts:
         self._known.append(Contact(side, time, around, posture))
 
     def of(self, side: int, times: Floats) -> list[tuple[int, Contact]]:
-        """What is known of an arm at some of the key times (n,), each with the number of its key time."""
-        found = [(int(np.argmin(np.abs(times - one.time))), one) for one in self._known if one.side == side]
-        return [(t, one) for t, one in found if abs(times[t] - one.time) < _SAME]
+        """What is known of an arm at some of the ascending key times (n,), each with the number of its key time."""
+        known = [one for one in self._known if one.side == side]
+        if not known:
+            return []
+        grid = times.tolist()
+        found = [(bisect_left(grid, one.time - _SAME), one) for one in known]
+        return [(t, one) for t, one in found if t < len(grid) and grid[t] - one.time < _SAME]

@@ -1,0 +1,135 @@
+"""Which nodes of an arm its own body rules out, against every posture held against every part, one after the other."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
+from elbowroom.body.kinematics import arm_capsules, body_model
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.planning.exact.folding import SPARE, folded
+from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.postures import BLOCK, Postures, postures_of
+from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.limb import limb_of
+from elbowroom.planning.self_contact import axis_distance
+from elbowroom.planning.self_pairs import EXEMPT, body_from_chest
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+MODEL = body_model(proportional_humanoid(1.72))
+BODY = OwnBody(MODEL, natural_walk())
+ROWS, OWN, UNSURE = 5, 3, 1e-4  # metres about the limit in which single precision may decide either way
+
+
+def drawn(rng: np.random.Generator, group: DofGroup, count: int, share: float) -> Floats:
+    low, high = limits(group).T
+    return clamp(group, rng.uniform(share * low, share * high, (count, group.size)))
+
+
+def some_postures(side: int) -> Postures:
+    group = LOCAL_GROUPS[1 + side]
+    return postures_of(limb_of(MODEL, group), drawn(np.random.default_rng(side), group, 40, 0.7), 0.5)
+
+
+POSTURES = [some_postures(side) for side in range(2)]
+
+
+def gaps_of(side: int, arms: Floats, uppers: Floats, state: Floats) -> Floats:
+    """How far beyond what is allowed arm `side` is at `arms` (V, d) from the body, and the right arm from the left."""
+    pairs = BODY.pairs
+    axes = body_from_chest(MODEL, pairs, uppers[None, :3], state[None])[:, :, 0]
+    allowed = pairs.allowed[side]
+    if side == 1:
+        axes = np.concatenate([axes, arm_capsules(MODEL, LOCAL_GROUPS[1], uppers[None, 3:])[:, :, 0]])
+        allowed = np.concatenate([allowed, pairs.between.T], axis=1)
+    segments = arm_capsules(MODEL, LOCAL_GROUPS[1 + side], arms).astype(np.float64)
+    return np.array(
+        [
+            min(
+                axis_distance(segments[c, :, v].copy(), axes[k].astype(np.float64)) - allowed[c, k]
+                for c, k in np.argwhere(allowed > EXEMPT)
+            )
+            for v in range(len(arms))
+        ]
+    )
+
+
+class Case:
+    """An arm's nodes along a path on which the groups before it are anywhere."""
+
+    def __init__(self, side: int, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        self.side, self.postures = side, POSTURES[side]
+        group = LOCAL_GROUPS[1 + side]
+        before = [drawn(rng, one, ROWS, 0.5) for one in LOCAL_GROUPS[: 1 + side]]
+        self.uppers = np.concatenate(before, axis=1)
+        self.states = rng.uniform(-1.0, 1.0, (ROWS, 7)) * [9.0, 9.0, 3.0, 1.2, 0.2, 0.5, 1.0]
+        self.own = np.stack([drawn(rng, group, OWN, 0.7) for _ in range(ROWS)])
+        self.natural = rng.uniform(size=ROWS) < 0.4
+        self.needed = rng.uniform(size=(ROWS, OWN)) < 0.4
+
+    def prices(self, body: OwnBody = BODY) -> Floats:
+        found: Floats = body.folded_prices(
+            self.side, self.postures, self.own, self.needed, self.natural, self.uppers, self.states
+        ).astype(np.float64)
+        return found
+
+    def twin(self) -> tuple[Bools, Bools]:
+        """Which nodes are ruled out (ROWS, W + OWN), and of which that is sure."""
+        known = self.postures.configurations
+        width = len(self.postures.lanes) * BLOCK
+        out, sure = np.zeros((ROWS, width + OWN), np.bool_), np.ones((ROWS, width + OWN), np.bool_)
+        out[:, :width] = BODY.resting(self.side, self.postures)
+        filled = np.minimum(np.arange(width), len(known) - 1)
+        for t in range(ROWS):
+            if self.natural[t] and not self.needed[t, 1:].any():
+                continue
+            gaps = gaps_of(self.side, np.concatenate([known, self.own[t]]), self.uppers[t], self.states[t])
+            nodes = np.concatenate([gaps[: len(known)][filled], gaps[len(known) :]]) - SPARE
+            looked = np.ones(width + OWN, np.bool_)
+            if self.natural[t]:
+                looked[: width + 1] = False
+            out[t] |= looked & (nodes < 0.0)
+            sure[t] = ~looked | (np.abs(nodes) > UNSURE)
+        return out, sure
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_ruled_out_is_what_touches_and_nothing_else(side: int) -> None:
+    counts = np.zeros(2, np.int64)
+    for seed in range(12):
+        case = Case(side, seed)
+        found, (expected, sure) = np.isinf(case.prices()), case.twin()
+        assert np.array_equal(found[sure], expected[sure])
+        assert sure.mean() > 0.99
+        counts += [expected.sum(), (~expected).sum()]
+    assert counts.min() > 50
+
+
+def test_what_was_looked_at_is_known_again_among_new_surroundings() -> None:
+    body, case, other = OwnBody(MODEL, natural_walk()), Case(1, 7), Case(1, 8)
+    first = case.prices(body)
+    other.uppers[2], other.states[2], other.states[2, :3] = case.uppers[2], case.states[2], 0.0  # wherever it stands
+    mixed = other.prices(body)
+    assert np.array_equal(mixed, other.prices(OwnBody(MODEL, natural_walk())))
+    assert np.array_equal(case.prices(body), first)
+    assert not np.array_equal(mixed, first)
+
+
+def test_no_ball_hides_a_posture() -> None:
+    """Blocks are passed over by their balls: what is found is what single postures show."""
+    rng, postures = np.random.default_rng(11), POSTURES[0]
+    axes = rng.uniform(-0.6, 0.6, (12, 6)).astype(np.float32)
+    allowed = rng.uniform(-0.05, 0.15, (postures.segments.shape[0], 12)).astype(np.float32)
+    found = folded(postures.lanes, postures.balls, axes, allowed, SPARE)
+    for v in range(len(postures.configurations)):
+        gaps = [
+            axis_distance(postures.segments[c, :, v].astype(np.float64), axes[p].astype(np.float64))
+            - (allowed[c, p] + SPARE)
+            for c, p in np.ndindex(allowed.shape)
+            if allowed[c, p] + SPARE > 0.0
+        ]
+        assert found[v] == (min(gaps) < 0.0) or abs(min(gaps)) < UNSURE
+    assert 0.1 < found.mean() < 0.9
