@@ -52,23 +52,42 @@ def test_arrays_live_as_long_as_what_holds_them() -> None:
     assert offsets() is None
 
 
-def test_another_process_compiles_nothing(tmp_path: Path) -> None:
-    """What takes it is found on disk, and what unpacks it too."""
-    (tmp_path / "program.py").write_text(
-        "import numpy as np\n"
-        "from typing import NamedTuple\n"
-        "from elbowroom.held import _unpacked, hold\n"
-        "from elbowroom.jit import exact_kernel\n\n\n"
-        "class Pair(NamedTuple):\n    row: np.ndarray\n    weight: float\n\n\n"
-        "@exact_kernel\ndef weighed(pair):\n    return pair.value.weight * pair.value.row.sum()\n\n\n"
-        "weighed(hold(Pair(np.ones(3), 0.5)))\n"
-        "print(*(sum(kernel.stats.cache_hits.values()) for kernel in (weighed, _unpacked)))\n"
-    )
+PROGRAM = """
+from typing import NamedTuple
+import numpy as np
+from elbowroom.held import _unpacking, hold
+from elbowroom.jit import exact_kernel
 
-    def run() -> str:
+
+class Pair(NamedTuple):
+    row: np.ndarray
+    weight: float
+
+
+class Outer(NamedTuple):
+    pair: Pair
+
+
+@exact_kernel
+def weighed(outer):
+    pair = outer.value.pair
+    return pair.weight * pair.row.sum()
+
+
+weighed(hold(Outer(Pair(np.ones(3), 0.5))))
+print(*(sum(kernel.stats.cache_hits.values()) for kernel in (weighed, _unpacking(Outer))))
+"""
+
+
+def test_another_process_compiles_nothing_until_a_type_is_another(tmp_path: Path) -> None:
+    """What unpacks a tuple is found on disk as the kernels that take it are; not where its types have changed."""
+
+    def run(program: str) -> str:
+        (tmp_path / "program.py").write_text(program)
         call = [sys.executable, "-c", "import program"]
-        place = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+        place = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONDONTWRITEBYTECODE": "1"}
         return subprocess.run(call, cwd=tmp_path, env=place, capture_output=True, text=True, check=True).stdout.strip()
 
-    assert run() == "0 0"
-    assert run() == "1 1"
+    assert run(PROGRAM) == "0 0"
+    assert run(PROGRAM) == "1 1"
+    assert run(PROGRAM.replace("Pair", "Couple")) == "0 0"

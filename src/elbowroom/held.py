@@ -6,12 +6,16 @@ that takes something held reads its `value` and goes on as if it had been given 
 tuple under the same name. The arrays are shared. Which arrays they are never changes.
 """
 
+import inspect
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any, Generic, TypeVar, cast
 
 from numba.core import types
 from numba.experimental import structref
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, forgotten_with
 
 Value = TypeVar("Value", bound=tuple[Any, ...])
 
@@ -34,14 +38,21 @@ _structref.define_proxy(Held, HeldType, ["value"])
 _made: Any = Held
 
 
-@exact_kernel
-def _unpacked(value: Any) -> Any:
-    """What compiled code keeps of `hold`; it is compiled once for each type of value."""
-    return _made(value)
-
-
 def hold(value: Value) -> Held[Value]:
     """Keep a NamedTuple of arrays, numbers and other such tuples for kernels that take it as `Held`."""
-    held: Held[Value] = _unpacked(value)
+    held = _unpacking(type(value))(value)
     held.value = value
     return held
+
+
+@cache
+def _unpacking(kind: type[Value]) -> Callable[[Value], Held[Value]]:
+    """The part of `hold` that is compiled: for each kind of tuple a kernel of its own, kept on disk as long as the
+    source of the kind is the same."""
+
+    def unpacked(value: Any) -> Any:
+        return _made(value)
+
+    unpacked.__qualname__ = f"unpacked-{kind.__module__}.{kind.__qualname__}"
+    kernel: Callable[[Value], Held[Value]] = forgotten_with(Path(inspect.getfile(kind)), exact_kernel(unpacked))
+    return kernel

@@ -124,9 +124,17 @@ def _inner(dispatcher: Any) -> Any:
 
 def _kept(dispatcher: Any) -> Any:
     """Have what is kept on disk forgotten when any source that was compiled into it has changed."""
+    return forgotten_with(Path(dispatcher.py_func.__code__.co_filename), dispatcher)
+
+
+def forgotten_with(source: Path, dispatcher: Any) -> Any:
+    """Have what a kernel keeps on disk forgotten when a source, or what it imports, has changed.
+
+    It is not even read then: it may name types that there are no more.
+    """
     file = getattr(dispatcher._cache, "_cache_file", None)
     if file is not None:
-        file._source_stamp = file._source_stamp, digest_of(Path(dispatcher.py_func.__code__.co_filename))
+        file._version = f"{file._version} {digest_of(source)}"
     return dispatcher
 
 
