@@ -30,6 +30,8 @@ LOWERING = 5  # the place of the lowering in `q`
 class DofGroup(Enum):
     """One of the paper's groups J; its value is the slice of `q` that it owns."""
 
+    __hash__ = object.__hash__  # there is one of each: found in half the time that its name would be
+
     ROOT = slice(0, 3)
     WAIST = slice(3, 6)
     LEFT_ARM = slice(6, 10)
@@ -43,6 +45,7 @@ class DofGroup(Enum):
 
 # J*: the groups of the local motion, in the order of decoupled planning (a later group hangs on the earlier).
 LOCAL_GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
+_LOCAL = DofGroup.WAIST.value.start
 LOCAL = DOF - DofGroup.ROOT.size  # components of the local groups, side by side: an upper body (11,)
 
 # Ranges of motion: American Academy of Orthopaedic Surgeons, "Joint Motion: Method of Measuring and Recording" (1965):
@@ -59,10 +62,12 @@ MAX_ELEVATION = float(np.deg2rad(175.0))
 _LIMITS = np.concatenate([np.deg2rad(_WAIST_DEG), [_LOWERING], np.deg2rad(2 * _ARM_DEG)])
 
 
+_COLUMNS = {group: slice(group.value.start - _LOCAL, group.value.stop - _LOCAL) for group in LOCAL_GROUPS}
+
+
 def columns_of(group: DofGroup) -> slice:
     """A local group's columns of an upper body (11,), a configuration without the root."""
-    first = DofGroup.WAIST.value.start
-    return slice(group.value.start - first, group.value.stop - first)
+    return _COLUMNS[group]
 
 
 def limits(group: DofGroup) -> NDArray[np.float64]:

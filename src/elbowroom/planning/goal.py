@@ -34,7 +34,7 @@ def fixed_goal(configuration: ArrayLike) -> GoalFunction:
     fixed = np.array(configuration, np.float64)
 
     def goals(path: RootPath) -> Floats:
-        return np.tile(fixed, (len(path.states), 1))
+        return fixed[None].repeat(len(path.states), axis=0)
 
     return goals
 

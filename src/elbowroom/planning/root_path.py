@@ -32,6 +32,10 @@ class RootPath:
         times: Floats = self.start_time + self.interval * np.arange(len(self.states), dtype=np.float64)
         return times
 
+    def until(self, horizon: int) -> "RootPath":
+        """The first key intervals."""
+        return RootPath(self.start_time, self.interval, self.states[: horizon + 1])
+
     def time_of(self, number: int) -> float:
         """The time of one key frame, as in `times`."""
         return self.start_time + self.interval * number

@@ -1,6 +1,7 @@
 """The ways of the arms under the waist's: clear of the obstacles, of the body, and the right arm of the left one."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,8 @@ _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the 
 _ARMS = LOCAL_GROUPS[1:]
 
 
-class Ways(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Ways:
     """The ways of the groups, in order, as far as they were found; and the one that ended it."""
 
     ways: tuple[GroupWay, ...]
@@ -33,12 +35,12 @@ class Ways(NamedTuple):
     reached: int  # the key time that all groups reached
     asked: Asked | None = None  # what clearances were asked for; None if a group failed
 
-    @property
+    @cached_property
     def keys(self) -> Floats:
         """The key postures of the groups side by side, (n+1, 11) if none failed."""
         return np.concatenate([way.keys for way in self.ways], axis=1)
 
-    @property
+    @cached_property
     def velocities(self) -> Floats:
         """The velocities there, likewise."""
         return np.concatenate([way.velocities for way in self.ways], axis=1)
@@ -124,8 +126,8 @@ class Arms:
             return None
         chosen = ~(natural[:-1] & natural[1:])
         arms = self._own_motion.contacts(self._problem.path, keys, found.velocities, chosen, self._problem.begins.ahead)
-        touching = np.flatnonzero(arms >= 0)
-        return None if not len(touching) else (int(arms[touching[0]]), int(touching[0]))
+        first = int(np.argmax(arms >= 0))
+        return None if arms[first] < 0 else (int(arms[first]), first)
 
     def _asked(self, ways: list[GroupWay]) -> Asked:
         """The clearances that were asked for: less where the start has less."""

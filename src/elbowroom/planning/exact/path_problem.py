@@ -49,12 +49,12 @@ class PathProblem:
     @cached_property
     def asked_margins(self) -> Floats:
         """The clearances (3, n+1) of each group's postures; what the last plan was allowed stays allowed."""
-        return np.tile(self.margins, (3, 1)) if self.last is None else np.minimum(self.margins, self.last.asked.margins)
+        return _thrice(self.margins) if self.last is None else np.minimum(self.margins, self.last.asked.margins)
 
     @cached_property
     def asked_skins(self) -> Floats:
         """The clearances (3, n) of each group's motion."""
-        return np.tile(self.skins, (3, 1)) if self.last is None else np.minimum(self.skins, self.last.asked.skins)
+        return _thrice(self.skins) if self.last is None else np.minimum(self.skins, self.last.asked.skins)
 
     def task(
         self, group: DofGroup, carriers: Longs, extra: Floats32 | None = None, follow: Guide | None = None
@@ -72,6 +72,11 @@ class PathProblem:
             self.asked_margins[number], self.asked_skins[number], prices, self.roots, carriers,
             self.near.intervals, self.path.interval, begins.harsh, begins.ahead > 0,
         )  # fmt: skip
+
+
+def _thrice(row: Floats) -> Floats:
+    """A row (n,) for each group, (3, n)."""
+    return row[None].repeat(len(LOCAL_GROUPS), axis=0)
 
 
 def no_prices(shelves: Shelves, group: DofGroup, horizon: int) -> Floats32:

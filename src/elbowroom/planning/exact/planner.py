@@ -130,9 +130,11 @@ class ExactPlanner:
         root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
-        shorter = replace(root, path=replace(root.path, states=root.path.states[: near + 1]))
         whole = yield from self._prolonged(left, root, query, Effort.QUICK)
-        return whole or (yield from self._prolonged(left, shorter, query, Effort.QUICK))
+        if whole is None:
+            shorter = replace(root, path=root.path.until(near))
+            whole = yield from self._prolonged(left, shorter, query, Effort.QUICK)
+        return whole
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)

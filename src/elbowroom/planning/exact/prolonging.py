@@ -6,7 +6,6 @@ a world that ended there, so that part is left free: an obstacle is reckoned wit
 what was planned for it can be bettered until it is that near.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ from elbowroom.planning.exact.kept import Asked, Start
 from elbowroom.planning.exact.upper_body import UpperPlan
 from elbowroom.planning.exact.whole import Whole, later
 from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
 
@@ -60,12 +60,10 @@ def prolonged(kept: Settled, rest: UpperPlan, root: RootPlan) -> Whole:
     at, plan = kept.at, rest.plan
     assert plan.velocities is not None
     assert rest.asked is not None
-    local = replace(
-        plan,
-        configurations=np.concatenate([kept.configurations[:at], plan.configurations]),
-        velocities=np.concatenate([kept.velocities[:at], plan.velocities]),
-        goals=np.concatenate([kept.goals[:at], plan.goals]),
-    )
+    keys = np.concatenate([kept.configurations[:at], plan.configurations])
+    velocities = np.concatenate([kept.velocities[:at], plan.velocities])
+    goals = np.concatenate([kept.goals[:at], plan.goals])
+    local = LocalPlan(plan.status, keys, goals, plan.evidence, plan.joint, plan.blockade, velocities)
     return Whole(root, local, kept.asked.then(at, rest.asked))
 
 

@@ -103,7 +103,7 @@ class UpperBody:
     @property
     def versions(self) -> tuple[int, ...]:
         """How often postures were added to each group; a number that is the same means the same posture sets."""
-        return tuple(pool.version for pool in self._pools.values())
+        return tuple([pool.version for pool in self._pools.values()])
 
     def plan(
         self,

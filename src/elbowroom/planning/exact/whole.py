@@ -46,9 +46,9 @@ def kept_of(whole: Whole, path: RootPath) -> Kept | None:
 
 def first_part(whole: Whole, horizon: int) -> Motion:
     """The first `horizon` key intervals."""
-    path, local = whole.root.path, whole.local
-    shown = RootPath(path.start_time, path.interval, path.states[: horizon + 1])
-    return Motion(replace(whole.root, path=shown), part(local, slice(horizon + 1), local.evidence, local.joint))
+    root, local = whole.root, whole.local
+    shown = replace(root, path=root.path.until(horizon))
+    return Motion(shown, part(local, slice(horizon + 1), local.evidence, local.joint))
 
 
 def part(
@@ -71,11 +71,13 @@ def later(whole: Whole, at: int) -> Whole:
 
 def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
     """A motion that is as it was found, for whose groups so much was searched meanwhile, a row for each of them."""
+    if not rows:
+        return whole
     spent = {row.group: row for row in rows}
     evidence = tuple(
         row if row.group not in spent else replace(spent[row.group], status=row.status) for row in whole.local.evidence
     )
-    return whole._replace(local=replace(whole.local, evidence=evidence)) if rows else whole
+    return whole._replace(local=replace(whole.local, evidence=evidence))
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
