@@ -47,9 +47,8 @@ def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, o
 
 
 @leaf
-def _turn_between(rest: Floats, posed: Floats, out: Floats) -> None:
-    """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn."""
-    m = np.empty((3, 3))
+def _turn_between(rest: Floats, posed: Floats, m: Floats, out: Floats) -> None:
+    """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn. `m` (3, 3) is scratch."""
     for i in range(3):
         for j in range(3):
             m[i, j] = posed[i, 0] * rest[j, 0] + posed[i, 1] * rest[j, 1] + posed[i, 2] * rest[j, 2]
@@ -78,7 +77,7 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
     go back in a crouch. A target out of reach is approached straight.
     """
     out = np.empty((len(feet), 2, LEG_ROTATIONS, 4))
-    at_rest, posed = np.empty((2, 2, 3, 3)), np.empty((3, 3))
+    at_rest, posed, scratch = np.empty((2, 2, 3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for side in range(2):
         for bone in range(2):
             x, y, z = rest[side, 3 + 3 * bone], rest[side, 4 + 3 * bone], rest[side, 5 + 3 * bone]
@@ -104,9 +103,9 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
             # direction x knee axis points forward for a hanging leg: (0,-1,0) x (1,0,0) = (0,0,1)
             kx, ky, kz = cosine * dx + sine * ax, cosine * dy + sine * ay, cosine * dz + sine * az
             _bone_basis(kx, ky, kz, nx, ny, nz, posed)
-            _turn_between(at_rest[side, 0], posed, thigh)
+            _turn_between(at_rest[side, 0], posed, scratch, thigh)
             _bone_basis(reach * dx - upper * kx, reach * dy - upper * ky, reach * dz - upper * kz, nx, ny, nz, posed)
-            _turn_between(at_rest[side, 1], posed, shin)
+            _turn_between(at_rest[side, 1], posed, scratch, shin)
             cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
             foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
             for i in range(4):

@@ -16,6 +16,7 @@ from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
+from elbowroom.planning.exact.content import names_of
 from elbowroom.planning.exact.folding import SPARE, Folding, folded, folded_prices
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import Postures
@@ -105,12 +106,11 @@ class OwnBody:
         """
         held, places = self._folding_of(side, postures)
         rows = np.flatnonzero(~natural | needed[:, 1:].any(axis=1))
-        content = np.concatenate([uppers, states[:, 3:]], axis=1).round(6) + 0.0
-        names, size = content.tobytes(), content.strides[0]
+        names = names_of(states, uppers, None, rows.tolist(), 1)
         if len(places) + len(rows) > _REMEMBERED:
             places.clear()
         known = len(places)
-        at = [places.setdefault(names[size * t : size * (t + 1)], len(places)) for t in rows.tolist()]
+        at = [places.setdefault(name, len(places)) for name in names]
         fresh = _first_at(at, known)
         return folded_prices(held, own, natural, uppers, states, rows, np.array(at, np.int64), fresh)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import hold
+from elbowroom.planning.exact.content import names_of
 from elbowroom.planning.exact.own_looks import OwnParts, least_gaps
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_pairs import SelfPairs
@@ -39,18 +40,15 @@ class OwnMotion:
         It leaves room for what no look sees, and farther ahead as much again.
         """
         at: list[int] = np.flatnonzero(chosen).tolist()
-        ends = np.concatenate([path.states[:, 3:], keys, rates], axis=1).round(6) + 0.0
-        content, size = ends.tobytes(), ends.strides[0]
-        names = [content[size * k : size * (k + 2)] for k in at]
+        names = names_of(path.states, keys, rates, at, 2)
         if len(self._known) > _REMEMBERED:
             self._known.clear()
         missing = [(k, name) for k, name in zip(at, names, strict=True) if name not in self._known]
         if missing:
             intervals = np.array([k for k, _ in missing])
             gaps = least_gaps(self._parts, path.states, keys, rates, path.interval, intervals)
-            arms, least = np.minimum(gaps.argmin(axis=0), 1).tolist(), gaps.min(axis=0).tolist()
-            for (_, name), arm, gap in zip(missing, arms, least, strict=True):
-                self._known[name] = arm, gap
+            for (_, name), (left, right, both) in zip(missing, gaps.T.tolist(), strict=True):
+                self._known[name] = (0, left) if left <= min(right, both) else (1, min(right, both))
         found = np.full(path.horizon, -1)
         for k, name in zip(at, names, strict=True):
             arm, gap = self._known[name]
