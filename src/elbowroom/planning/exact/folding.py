@@ -10,7 +10,7 @@ from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
 from elbowroom.planning.exact.postures import BLOCK
 
@@ -77,7 +77,7 @@ def _spheres(lanes: Floats32, balls: Floats) -> Floats:
     return out
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> bool:
     """Whether a segment (6,) comes within `least` of any ball (4, B); which of them, into `near` (B,)."""
     ax, ay, az = float(axis[0]), float(axis[1]), float(axis[2])
@@ -152,7 +152,7 @@ def _look_around(it: Folding, uppers: Floats, states: Floats, rows: Indices, pla
             it.marks[place, v] = marks[v]
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn: Floats, out: Floats32) -> None:
     """Some capsules (P,) of posture `n` of (C, 6, N) as seen from a frame, into `out` (P, 6)."""
     x, y, z, w = -turn[0], -turn[1], -turn[2], turn[3]

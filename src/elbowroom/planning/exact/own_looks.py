@@ -14,7 +14,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel, leaf
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, leaf
 from elbowroom.planning.axis_gaps import clear_pairs
 from elbowroom.planning.root_path import interpolate_root
 
@@ -64,11 +64,12 @@ def least_gaps(
     for level in range(STEPS.shape[0]):
         postures, roots = _shown(states, keys, rates, interval, chosen, looks[known:made])
         capsules, _, _ = posed_body(own.body, postures, roots)
-        _measure(capsules, own.first, own.second, own.limits, near, segments[known:made], gaps[known:made])
-        _lower(gaps[known:made], own.kinds, looks[known:made], least)
+        _measure(
+            capsules, own.first, own.second, own.limits, own.kinds, looks[known:made], near, segments[known:made],
+            gaps[known:made], least,
+        )  # fmt: skip
         if level == STEPS.shape[0] - 1:
             break
-        _drop_far(gaps[known:made], near)
         known = made
         for i in range(count):
             low = min(least[0, i], least[1, i], least[2, i])
@@ -79,7 +80,7 @@ def least_gaps(
     return least
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _first_looks(chosen: Indices, at: Indices, looks: Indices) -> int:
     """Write down the looks (M, 2), an interval's place among the chosen and a moment, that come first; their number."""
     made = 0
@@ -92,7 +93,7 @@ def _first_looks(chosen: Indices, at: Indices, looks: Indices) -> int:
     return made
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _closer_looks(
     own: OwnParts,
     segments: Floats32,
@@ -145,48 +146,37 @@ def _measure(
     first: Indices,
     second: Indices,
     limits: Floats32,
+    kinds: Indices,
+    looks: Indices,
     near: Bools,
     segments: Floats32,
     gaps: Floats32,
+    least: Floats32,
 ) -> None:
     """Put capsules (C, 6, N) into `segments` (N, C, 6), and the gaps of pairs that are `near` (P,) into `gaps` (N, P).
 
-    Those of other pairs are infinite.
+    The `least` (3, K) of each kind are lowered to them, but for looks (N, 2) at the start of an interval. Pairs that
+    are far at all looks are near no more; their gaps are infinite from then on.
     """
     for c in range(capsules.shape[0]):
         for j in range(6):
             for n in range(capsules.shape[2]):
                 segments[n, c, j] = capsules[c, j, n]
     for p in range(near.shape[0]):
-        if near[p]:
-            found = clear_pairs(capsules[first[p]], capsules[second[p]])
-            for n in range(gaps.shape[0]):
-                gaps[n, p] = found[n] - limits[p]
-        else:
+        if not near[p]:
             for n in range(gaps.shape[0]):
                 gaps[n, p] = np.inf
-
-
-@exact_inner_kernel
-def _lower(gaps: Floats32, kinds: Indices, looks: Indices, least: Floats32) -> None:
-    """Lower the `least` gaps (3, K) of each kind to `gaps` (N, P) at some looks (N, 2), those at the start excepted."""
-    for n in range(gaps.shape[0]):
-        if looks[n, 1] > 0:
-            for p in range(gaps.shape[1]):
-                least[kinds[p], looks[n, 0]] = min(least[kinds[p], looks[n, 0]], gaps[n, p])
-
-
-@exact_inner_kernel
-def _drop_far(gaps: Floats32, near: Bools) -> None:
-    """Strike off the pairs that are far at all of some looks (N, P)."""
-    for p in range(gaps.shape[1]):
-        least = _FAR
+            continue
+        found, kind, nearest = clear_pairs(capsules[first[p]], capsules[second[p]]), kinds[p], np.inf
         for n in range(gaps.shape[0]):
-            least = min(least, gaps[n, p])
-        near[p] &= least < _FAR
+            gap = found[n] - limits[p]
+            gaps[n, p], nearest = gap, min(nearest, gap)
+            if looks[n, 1] > 0:
+                least[kind, looks[n, 0]] = min(least[kind, looks[n, 0]], gap)
+        near[p] = nearest < _FAR
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _clear_between(
     first: Indices,
     second: Indices,
