@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import inner_kernel, kernel, leaf
+from elbowroom.jit import kernel, leaf, lean_kernel
 
 Floats = NDArray[np.float64]
 
@@ -177,7 +177,7 @@ def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Strid
     return _Stride(forward, lateral, turn, speed, period, duty, ahead, effort, scale)
 
 
-@inner_kernel
+@lean_kernel
 def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     forward, lateral, turn, _, period, duty, ahead, effort, scale = stride
@@ -230,7 +230,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
-@inner_kernel
+@lean_kernel
 def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
     """How far the pelvis must come down for both feet to reach the ground all through the stance; `foot` is scratch."""
     stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
@@ -242,6 +242,28 @@ def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
     return low
 
 
+@lean_kernel
+def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Floats, scratch: Floats) -> None:
+    """`foot_poses`, written to `feet` (N, 2, 6), or (0, 2, 6) where nobody asks for them, and `drops` (N,).
+
+    `scratch` (6,) is a foot's.
+    """
+    stride, low, wanted = _stride(scale, 0.0, 0.0, 0.0), -1.0, feet.shape[0] > 0
+    for n in range(len(roots)):
+        forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
+        if low < 0.0 or forward != stride.forward or lateral != stride.lateral or turn != stride.turn:
+            stride = _stride(scale, forward, lateral, turn)
+            low = _longest_drop(legs, stride, scratch)
+        if wanted:
+            for side in range(2):
+                cycle = phase + 0.5 * side
+                _foot_pose(legs, stride, side, cycle - np.floor(cycle), feet[n, side])
+        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (stride.duty - 0.5))
+        peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
+        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - 0.5 * (stride.duty - 0.5)))
+        drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
+
+
 @kernel
 def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Floats]:
     """Feet and pelvis of the walking cycle for root states (N, 7).
@@ -249,20 +271,8 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     Returns the feet (N, 2, 6) in the root frame: ankle x, y, z, yaw, pitch (positive toes down), bend of the toes; and
     how far the hips are below their height in T-pose (N,).
     """
-    feet, drops, scratch = np.empty((len(roots), 2, 6)), np.empty(len(roots)), np.empty(6)
-    stride, low = _stride(scale, 0.0, 0.0, 0.0), -1.0
-    for n in range(len(roots)):
-        forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        if low < 0.0 or forward != stride.forward or lateral != stride.lateral or turn != stride.turn:
-            stride = _stride(scale, forward, lateral, turn)
-            low = _longest_drop(legs, stride, scratch)
-        for side in range(2):
-            cycle = phase + 0.5 * side
-            _foot_pose(legs, stride, side, cycle - np.floor(cycle), feet[n, side])
-        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (stride.duty - 0.5))
-        peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
-        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - 0.5 * (stride.duty - 0.5)))
-        drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
+    feet, drops = np.empty((len(roots), 2, 6)), np.empty(len(roots))
+    walk_into(legs, scale, roots, feet, drops, np.empty(6))
     return feet, drops
 
 

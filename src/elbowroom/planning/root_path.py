@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 
@@ -51,42 +51,50 @@ class RootPath:
 
 @exact_kernel
 def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
-    """The root state (7,) at the part `u` in [0, 1] of a key interval; see `interpolate_root_into`."""
-    out = np.empty(ROOT_STATE)
-    interpolate_root_into(a, b, u, interval, out)
-    return out
-
-
-@exact_lean_kernel
-def interpolate_root_into(a: Floats, b: Floats, u: float, interval: float, out: Floats) -> None:
-    """The root state `out` (7,) at the part `u` in [0, 1] of a key interval of `interval` seconds from `a` to `b`.
+    """The root state (7,) at the part `u` in [0, 1] of a key interval of `interval` seconds from state `a` to `b`.
 
     Place and heading follow the cubic Hermite curves through both states' places and velocities; the velocities are
     those curves' derivatives, in the axes of the heading reached. The gait phase runs from `a` to `b` at a rate that
     changes linearly between the cadences of the two states, so it never runs backwards.
     """
+    out = np.empty(ROOT_STATE)
+    interpolate_between(a, b, rates_at(a, b), u, interval, out)
+    return out
+
+
+@exact_lean_kernel
+def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, float]:
+    """Velocities along world x and z in state `a` and in `b`, and the strides per second there."""
     ax, az = _ground_velocity(a)
     bx, bz = _ground_velocity(b)
+    return ax, az, bx, bz, phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5])
+
+
+@exact_lean_kernel
+def interpolate_between(
+    a: Floats, b: Floats, rates: tuple[float, float, float, float, float, float], u: float, interval: float, out: Floats
+) -> None:
+    """`interpolate_root` between two states with the `rates_at` them, written to `out` (7,)."""
+    ax, az, bx, bz, first, last = rates
     out[0], vx = _hermite(a[0], ax, b[0], bx, u, interval)
     out[1], vz = _hermite(a[1], az, b[1], bz, u, interval)
     out[2], out[5] = _hermite(a[2], a[5], b[2], b[5], u, interval)
     sine, cosine = np.sin(out[2]), np.cos(out[2])
     out[3], out[4] = vx * sine + vz * cosine, vx * cosine - vz * sine
-    first, last = phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5])
     done = u
     if first + last > 0.0:
         done = u * (2.0 * first + (last - first) * u) / (first + last)
     out[6] = a[6] + (b[6] - a[6]) * done
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _ground_velocity(state: Floats) -> tuple[float, float]:
     """Velocity along world x and z."""
     sine, cosine = np.sin(state[2]), np.cos(state[2])
     return state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, interval: float) -> tuple[float, float]:
     """Value and rate of change of the cubic from `a` to `b` with the given rates at its ends."""
     rest = 1.0 - u

@@ -81,7 +81,7 @@ def check_room(tiles: int, capsules: int, boxes: int) -> CheckRoom:
 
 
 @exact_lean_kernel
-def _spread(balls: Floats, out: Floats32) -> None:
+def spread_balls(balls: Floats, out: Floats32) -> None:
     """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
 
     Those beyond B C, up to a multiple of `BLOCK`, are such that nothing is near them. The last row is left as it is.
@@ -100,7 +100,7 @@ def _spread(balls: Floats, out: Floats32) -> None:
 
 @lean_kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> None:
-    """How far (W,) balls as `_spread` are out of reach of box b; negative where they are within."""
+    """How far (W,) balls as `spread_balls` are out of reach of box b; negative where they are within."""
     row = rows[b * BOX : (b + 1) * BOX]
     cx, cy, cz, hx, hy, hz = row[0], row[1], row[2], row[12], row[13], row[14]
     m = (row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])
@@ -113,13 +113,14 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> Non
 
 
 @exact_lean_kernel
-def lower_blocks_in(room: CheckRoom, lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
-    """`lower_blocks` with room to work in."""
+def lower_blocks_in(
+    room: CheckRoom, lanes: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
+) -> int:
+    """`lower_blocks` with room to work in, for balls as `spread_balls` leaves them."""
     parts = lanes.shape[1]
     total = lanes.shape[0] * parts
-    rows, spread, tiles, squares, pairs = room.rows, room.spread, lanes.reshape(lanes.size), room.squares, room.pairs
+    rows, tiles, squares, pairs = room.rows, lanes.reshape(lanes.size), room.squares, room.pairs
     fill_box_rows(boxes, count, rows)
-    _spread(balls, spread)
     for i in range(np.uint64(total * BLOCK)):
         squares[i] = _FAR
     found, checks, beyond = int(_NONE), 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
@@ -145,7 +146,8 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
     """
     room = check_room(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
-    return int(lower_blocks_in(room, lanes, balls, boxes, count, out))
+    spread_balls(balls, room.spread)
+    return int(lower_blocks_in(room, lanes, room.spread, boxes, count, out))
 
 
 @exact_lean_kernel
@@ -199,7 +201,8 @@ def capsule_clearances_in(room: CheckRoom, lanes: Floats32, boxes: Floats, count
     for c in range(lanes.shape[0]):
         _ball_around(lanes[c], room.apart, room.balls[c, 0])
     tiles = lanes.reshape(lanes.shape[0], 1, lanes.shape[1], lanes.shape[2])
-    return int(lower_blocks_in(room, tiles, room.balls, boxes, count, out))
+    spread_balls(room.balls, room.spread)
+    return int(lower_blocks_in(room, tiles, room.spread, boxes, count, out))
 
 
 @exact_kernel

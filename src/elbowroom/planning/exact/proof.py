@@ -28,7 +28,7 @@ from elbowroom.planning.exact.ways import (
 from elbowroom.planning.exact.workroom import HALVINGS, Parts, Workroom, held_against, workroom
 from elbowroom.planning.frames import compose_into
 from elbowroom.planning.limb import carry_frames, pose_into
-from elbowroom.planning.root_path import interpolate_root_into
+from elbowroom.planning.root_path import interpolate_between, rates_at
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -94,9 +94,10 @@ def _frames_between(room: Workroom, chain: Chain, is_waist: bool, carrier: Carri
     The pelvis' height is read between the looks; it bends by less than `ENOUGH` counts in there.
     """
     states, heights, places, shares = carrier.states, carrier.heights, room.places, room.shares
-    interval = states[0]
+    interval, begin, end = states[0], states[1:8], states[8:15]
+    rates = rates_at(begin, end)
     for n in range(count):
-        interpolate_root_into(states[1:8], states[8:15], shares[n], interval, room.states[n])
+        interpolate_between(begin, end, rates, shares[n], interval, room.states[n])
     place_pelvis_into(chain.hips, room.states, room.level, count, places, room.turns)
     for n in range(count):
         look = min(int(shares[n] * SWEEP), SWEEP - 1)

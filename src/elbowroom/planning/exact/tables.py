@@ -87,7 +87,7 @@ def _moments(
         for b in range(count):
             box_in_frame(room.near[b], place, turn, room.framed[b])
         rows[:] = _FAR
-        checks += lower_blocks_in(room.checks, lanes, postures.balls, room.framed, count, rows)
+        checks += lower_blocks_in(room.checks, lanes, room.spread, room.framed, count, rows)
         if moment <= _EARLY:
             _lower(early, rows)
         if moment >= _LATE:

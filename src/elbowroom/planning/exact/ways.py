@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import foot_poses, hips_sinks, phase_rate, quickness
+from elbowroom.body.gait import hips_sinks, quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
-from elbowroom.body.posing import place_pelvis
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.body.posing import place_pelvis_into
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
 from elbowroom.planning.frames import compose_into
 from elbowroom.planning.limb import Limb, LimbRoom
-from elbowroom.planning.root_path import interpolate_root
+from elbowroom.planning.root_path import interpolate_between, rates_at
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -147,26 +147,6 @@ def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
     return levers
 
 
-@exact_inner_kernel
-def pelvis_at(chain: Chain, states: Floats) -> tuple[Floats, Floats]:
-    """Pelvis frames (N, 3), (N, 4) in the world for root states (N, 7)."""
-    _, drops = foot_poses(chain.legs, chain.scale, states)
-    sinks = hips_sinks(chain.half_leg, drops, np.zeros(states.shape[0]))
-    frames: tuple[Floats, Floats] = place_pelvis(chain.hips, states, sinks)
-    return frames
-
-
-@exact_inner_kernel
-def states_between(a: Floats, b: Floats, interval: float, first: float, last: float, count: int) -> Floats:
-    """Root states (count+1, 7) at equal steps from the part `first` to the part `last` of a key interval."""
-    out = np.empty((count + 1, 7))
-    for i in range(count + 1):
-        state = interpolate_root(a, b, first + (last - first) * i / count, interval)
-        for k in range(7):
-            out[i, k] = state[k]
-    return out
-
-
 @exact_lean_kernel
 def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
     """The third derivative of the cubic with these values and slopes at its ends."""
@@ -184,30 +164,26 @@ def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float
     if known >= 0:
         return int(known)
     at = admit(ways.slots, key)
-    states = states_between(a, b, interval, 0.0, 1.0, SWEEP)
-    places, turns = pelvis_at(chain, states)
+    states, rates = np.empty((SWEEP + 1, 7)), rates_at(a, b)
     for i in range(SWEEP + 1):
-        for k in range(3):
-            ways.places[at, i, k] = places[i, k]
-        for k in range(4):
-            ways.turns[at, i, k] = turns[i, k]
-    _root_sway(chain, states, places, interval, ways.sway[at])
+        interpolate_between(a, b, rates, i / SWEEP, interval, states[i])
+    sinks, drops = np.zeros((SWEEP + 1, 2)), np.empty(SWEEP + 1)
+    walk_into(chain.legs, chain.scale, states, np.empty((0, 2, 6)), drops, np.empty(6))
+    for i in range(SWEEP + 1):
+        sinks[i, 0] = drops[i]
+    place_pelvis_into(chain.hips, states, sinks, SWEEP + 1, ways.places[at], ways.turns[at])
+    _root_sway(chain, states, ways.places[at], interval, ways.sway[at])
     return int(at)
 
 
-@exact_inner_kernel
+@exact_lean_kernel
 def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
-    ends = np.empty((2, 2))
-    for i in range(2):
-        state = states[i * SWEEP]
-        sine, cosine = np.sin(state[2]), np.cos(state[2])
-        ends[i, 0], ends[i, 1] = state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
-    jerk_x = _jerk(a[0], ends[0, 0], b[0], ends[1, 0], interval)
-    jerk_z = _jerk(a[1], ends[0, 1], b[1], ends[1, 1], interval)
+    ax, az, bx, bz, first, last = rates_at(a, b)
+    jerk_x, jerk_z = _jerk(a[0], ax, b[0], bx, interval), _jerk(a[1], az, b[1], bz, interval)
     jerk_turn = _jerk(a[2], a[5], b[2], b[5], interval)
-    stride = quickness(chain.scale) * max(phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5]))
+    stride = quickness(chain.scale) * max(first, last)
     bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2
     for i in range(SWEEP):
         one, two = states[i], states[i + 1]

@@ -6,7 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
-from elbowroom.planning.exact.clearances import CheckRoom, capsule_clearances_in, check_room, place_capsules
+from elbowroom.planning.exact.clearances import (
+    CheckRoom,
+    capsule_clearances_in,
+    check_room,
+    place_capsules,
+    spread_balls,
+)
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.exact.ways import SWEEP
 from elbowroom.planning.limb import Limb, LimbRoom, limb_room
@@ -34,6 +40,7 @@ class Workroom(NamedTuple):
     stem: LimbRoom  # of the limb that carries it
     near: Floats  # (B, 15) boxes
     framed: Floats  # (B, 15) boxes in the limb's frame
+    spread: Floats32  # (5, W) balls around all postures, as `spread_balls` leaves them
     blocks: Floats32  # (W/16, 16) of all postures
     segments: Floats32  # (C, 6, 16) in the limb's frame
     lanes: Floats32  # (C, 7, 16) outside of it, with radii
@@ -59,12 +66,16 @@ def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
     """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
     limb, room = postures.limb, SWEEP << HALVINGS
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
+    checks = check_room(postures.lanes.shape[0] * count, count, boxes)
+    spread = np.empty_like(checks.spread)
+    spread_balls(postures.balls, spread)
     return Workroom(
-        check_room(max(postures.lanes.shape[0], 1) * count, count, boxes),
+        checks,
         limb_room(limb, BLOCK),
         limb_room(stem, BLOCK),
         np.empty((boxes, 15)),
         np.empty((boxes, 15)),
+        spread,
         np.empty((postures.lanes.shape[0], BLOCK), np.float32),
         np.empty((count, 6, BLOCK), np.float32),
         np.empty((count, 7, BLOCK), np.float32),
