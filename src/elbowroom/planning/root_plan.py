@@ -62,3 +62,7 @@ class RootPlan:
     checks: int  # postures and places whose clearance was computed
     nanoseconds: int
     lost: float = 0.0  # seconds that it costs against a walk as commanded, ways aside and turns included
+
+    def going_on(self, path: RootPath) -> "RootPlan":
+        """The same plan on a path for which nothing was searched any more."""
+        return RootPlan(path, self.kind, self.goal, 0, 0, self.lost)

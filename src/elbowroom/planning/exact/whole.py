@@ -66,7 +66,7 @@ def later(whole: Whole, at: int) -> Whole:
     path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
     rest = part(local, slice(at, None), _free_of_charge(local))
     asked = None if asked is None else asked.since(at, path.horizon)
-    return Whole(replace(root, path=path, checks=0, nanoseconds=0), rest, asked)
+    return Whole(root.going_on(path), rest, asked)
 
 
 def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
@@ -108,7 +108,7 @@ class Stand(NamedTuple):
         why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + passed)
         path = replace(root.path, start_time=time)
         return Whole(
-            replace(root, path=path, checks=0, nanoseconds=0),
+            root.going_on(path),
             replace(local, evidence=_free_of_charge(local), joint=None, blockade=why),
             self.whole.asked,
         )
@@ -116,5 +116,5 @@ class Stand(NamedTuple):
 
 def stands(whole: Whole, query: MotionQuery) -> bool:
     """Whether a plan leaves all as it is."""
-    still = not np.any(whole.root.path.states[:, 3:6]) and not np.any(query.velocity)
+    still = not whole.root.path.states[:, 3:6].any() and not query.velocity.any()
     return still and bool((whole.local.configurations == query.upper).all())
