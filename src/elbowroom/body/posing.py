@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
+_FIRST = 0  # place in a row of capsules
+
 
 @leaf
 def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
@@ -310,7 +312,7 @@ def pose_trunk(
     chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
     pose_trunk_into(
         parents, offsets, order, spine, spine_weights, gaze, gaze_weights, joints, ends, half_leg, waist, len(waist),
-        pose_room(base, offsets), 0, out, chest_places, chest_rotations,
+        pose_room(base, offsets), int(_FIRST), out, chest_places, chest_rotations,
     )  # fmt: skip
     return out, chest_places, chest_rotations
 
@@ -366,7 +368,7 @@ def pose_arm(
         arm,
         len(arm),
         pose_room(base, offsets),
-        0,
+        int(_FIRST),
         out,
     )
     return out

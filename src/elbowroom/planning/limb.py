@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
+_FIRST = 0  # place in a row of capsules
+
 
 class Limb(NamedTuple):
     """What posing one local group needs of a `BodyModel`."""
@@ -128,7 +130,7 @@ def carry_frames(limb: Limb, room: LimbRoom, configurations: Floats, count: int)
     """The frames that the waist's limb carries, the chest's, in the pelvis frame, into the room; no capsules."""
     posing.pose_trunk_into(
         limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
-        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, room.joints, 0, room.none,
+        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, room.joints, int(_FIRST), room.none,
         room.places, room.turns,
     )  # fmt: skip
 
@@ -138,5 +140,5 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
     """Capsule end points (C, 6, N) for configurations (N, d), in the pelvis frame (waist) or the chest frame (arms)."""
     count = configurations.shape[0]
     out = np.empty((limb.joints.shape[0], 6, count), np.float32)
-    pose_into(limb, limb_room(limb, count), configurations, count, 0, out)
+    pose_into(limb, limb_room(limb, count), configurations, count, int(_FIRST), out)
     return out

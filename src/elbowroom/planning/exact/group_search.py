@@ -167,7 +167,7 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
         for attempt in range(2):
             tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
             count, asks_much = _proven(
-                room, group, roots, waists, chain, task, keys, tangents, skins, slots, touches, gentle
+                room, group, roots, waists, chain, task, keys, tangents, skins, slots, touches, bool(gentle)
             )
             checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):

@@ -22,6 +22,7 @@ Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _INFINITE = np.float32(np.inf)
+_ONE, _FIRST = 1, 0  # posture; place
 
 
 class Carriers(NamedTuple):
@@ -111,8 +112,8 @@ def _unfold(room: Workroom, limb: Limb, own: Floats, needed: Bools, price: Float
     width = price.shape[1] - OWN
     for t in range(own.shape[0]):
         if needed[t, BACK]:
-            pose_into(limb, room.limb, own[t, BACK : BACK + 1], 1, 0, room.segments)
-            if not is_clear_of_trunk(room.segments, 0, limb.trunk, limb.allowed, room.axis):
+            pose_into(limb, room.limb, own[t, BACK : BACK + 1], int(_ONE), int(_FIRST), room.segments)
+            if not is_clear_of_trunk(room.segments, int(_FIRST), limb.trunk, limb.allowed, room.axis):
                 price[t, width + BACK] = _INFINITE
 
 

@@ -36,6 +36,7 @@ Longs = NDArray[np.int64]
 
 ENOUGH = 4e-4  # metres: proven clearance that counts as free; more than rounding, and than the bob's bend between looks
 _UNKNOWN = -np.inf
+_NONE, _UNPOSED = 0, False  # at first; not yet
 
 
 class Carrier(NamedTuple):
@@ -68,7 +69,7 @@ def _looks(
     if near == 0:
         return 0
     if not posed:
-        pose_into(postures.limb, room.limb, room.configurations, count, 0, room.segments)
+        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
     return int(held_against(room, postures.limb.radii, near, count, places[0], places, turns, out))
 
 
@@ -129,7 +130,7 @@ def _refined(
     """
     is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], room.moves, carrier.sway
     columns, found, parts, shares = room.coarse.T, room.found.T, room.parts, room.shares
-    open_parts, proven, checks, now, share = 0, np.inf, 0, 0, 1.0
+    open_parts, now, proven, checks, share = int(_NONE), int(_NONE), np.inf, 0, 1.0
     for i in range(SWEEP):
         low = _between(columns[i], columns[i + 1], sway[i], moved[i], 1.0, levers)
         if low < ENOUGH:
@@ -139,14 +140,14 @@ def _refined(
             proven = min(proven, low)
     for _ in range(HALVINGS):
         share *= 0.5
-        left = 0
+        left = int(_NONE)
         for begin in range(0, open_parts, BLOCK):
             batch = min(BLOCK, open_parts - begin)
             for n in range(batch):
                 shares[n] = parts.at[now, begin + n] + share / SWEEP
             _frames_between(room, chain, is_waist, carrier, waist, batch)
             configurations_into(ends, interval, shares, batch, room.configurations)
-            checks += _looks(room, postures, False, batch, room.places, room.turns, boxes, room.found)
+            checks += _looks(room, postures, bool(_UNPOSED), batch, room.places, room.turns, boxes, room.found)
             for n in range(batch):
                 one, i = parts.ends[now, begin + n], parts.look[now, begin + n]
                 for half in range(2):
@@ -195,7 +196,7 @@ def limb_way_in(
     configurations_into(ends, interval, room.shares, count, room.configurations)
     moves_into(ends, interval, SWEEP, room.rates, room.moves)
     if is_waist:
-        pose_into(postures.limb, room.limb, room.configurations, count, 0, room.segments)
+        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
         carry(chain, room.limb, room.moves, places, turns, carrier.sway, ways.places[at], ways.turns[at], ways.sway[at])
     checks = _looks(room, postures, is_waist, count, places, turns, boxes, room.coarse)
     least = least_of(room.coarse, room.checks.apart)

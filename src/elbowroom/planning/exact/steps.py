@@ -19,6 +19,7 @@ Longs = NDArray[np.int64]
 
 MOST_STEPS = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
+_ONE = 1  # posture
 
 
 @exact_lean_kernel
@@ -110,7 +111,7 @@ def _posed_between(
             end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
             for i in range(start.shape[0]):
                 room.configurations[0, i] = start[i] + share * (end[i] - start[i])
-            pose_into(postures.limb, room.limb, room.configurations, 1, n, lanes)
+            pose_into(postures.limb, room.limb, room.configurations, int(_ONE), n, lanes)
     for c in range(lanes.shape[0]):
         for i in range(6):
             for n in range(filled, BLOCK):

@@ -26,6 +26,7 @@ _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
+_ONE, _FIRST = 1, 0  # posture; place
 
 
 class Tables(NamedTuple):
@@ -116,7 +117,7 @@ def held_clearance_in(
         return float(_FAR), 0
     for i in range(configuration.shape[0]):
         room.configurations[0, i] = configuration[i]
-    pose_into(postures.limb, room.limb, room.configurations, 1, 0, segments)
+    pose_into(postures.limb, room.limb, room.configurations, int(_ONE), int(_FIRST), segments)
     total = end - begin
     for n in range(total):
         look = (begin + n) * _STRIDE

@@ -71,8 +71,8 @@ def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
     spread_balls(postures.balls, spread)
     return Workroom(
         checks,
-        limb_room(limb, BLOCK),
-        limb_room(stem, BLOCK),
+        limb_room(limb, int(BLOCK)),
+        limb_room(stem, int(BLOCK)),
         np.empty((boxes, 15)),
         np.empty((boxes, 15)),
         spread,
