@@ -83,6 +83,7 @@ class Arms:
                 return found
             first, touching, whole = *contact, True
             self._remember(ways, *contact)
+            yield None
         return Ways(tuple(ways[:-1]), ways[-1], touching)
 
     def _way(

@@ -14,8 +14,10 @@ from elbowroom.planning.exact.whole import Whole
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import GroupEvidence
 
-# What a part costs at least, before it ends, in nodes that are settled; so much do other things cost.
-_PART, _BEGINNING, _SEARCH, _CHECK = 1500.0, 1000.0, 400.0, 0.04
+# A part ends when it has cost so much, in nodes that are settled. A search counts for so much more than its nodes, to
+# begin and whatever else takes its time for so much; a check for more than it takes: where something is near, the next
+# search may be a long one.
+_PART, _SEARCH, _ELSE, _CHECK = 5000.0, 1000.0, 2000.0, 0.4
 
 
 class Farther:
@@ -25,7 +27,7 @@ class Farther:
         """It was begun at a `query`, from where `work` goes on."""
         self._query, self._work = query, work
         self._rows: list[GroupEvidence] = []
-        self._spent = _BEGINNING
+        self._spent = _ELSE
         self._done = False
         self._found: Whole | None = None
 
@@ -55,7 +57,8 @@ class Farther:
         except StopIteration as end:
             self._found, self._done = end.value, True
             return
-        self._spent += _SEARCH
-        if row is not None:
-            self._spent += row.nodes + _CHECK * row.checks
+        if row is None:
+            self._spent += _ELSE
+        else:
+            self._spent += _SEARCH + row.nodes + _CHECK * row.checks
             self._rows.append(row)

@@ -7,7 +7,7 @@ from elbowroom.planning.result import GroupEvidence
 
 Found = TypeVar("Found")
 
-# What it stops with: the cost of a group's search, or None within a search of all groups together.
+# What it stops with: the cost of a group's search, or None after something else that takes its time.
 Pausing = Generator[GroupEvidence | None, None, Found]
 
 
