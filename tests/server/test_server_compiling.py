@@ -64,7 +64,14 @@ def test_a_command_names_its_part() -> None:
 def test_kernels_of_other_rooms_than_a_sessions_are_left_out() -> None:
     kernels = kernel_cache.session_kernels()
     assert len(kernels) > 100
-    assert {kernel.__module__.split(".")[1] for kernel in kernels} <= {"body", "world", "planning", "control", "clips"}
+    assert {kernel.__module__.split(".")[1] for kernel in kernels} <= {
+        "body",
+        "world",
+        "planning",
+        "control",
+        "clips",
+        "held",
+    }
 
 
 def test_compiled_files_are_counted_by_kernel(tmp_path: Path) -> None:

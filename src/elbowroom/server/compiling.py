@@ -15,7 +15,13 @@ from contextlib import closing
 from dataclasses import replace
 from threading import Lock
 
-from elbowroom.planning.exact.rehearsal import rehearse, rehearse_product, rehearse_proof
+from elbowroom.planning.exact.rehearsal import (
+    rehearse,
+    rehearse_detour,
+    rehearse_own_body,
+    rehearse_product,
+    rehearse_proof,
+)
 from elbowroom.planning.names import EXACT, FIGURE6
 from elbowroom.server.kernel_cache import is_warm, mark_warm
 from elbowroom.server.library import Library
@@ -81,6 +87,8 @@ def compile_part(part: str, report: Report) -> None:
         else:
             rehearse_product()
             rehearse_proof(humanoid)
+            rehearse_own_body(humanoid)
+            rehearse_detour(humanoid)
         for scene in _TELLING:
             walk_and_stand(replace(library, scene=scene), EXACT if part == "limbs" else FIGURE6)
 

@@ -1,6 +1,6 @@
 """Plans that nobody asked for: past a box and before a wall, so that what is rarely needed is compiled and loaded.
 
-Two of their parts can be had alone, without a plan: so that another process may compile them meanwhile.
+Some of their parts can be had alone, without a plan: so that another process may compile them meanwhile.
 """
 
 from dataclasses import replace
@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import LOCAL, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
@@ -18,13 +18,15 @@ from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
 from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.lattice import OWN
+from elbowroom.planning.exact.own_body import OwnBody
+from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.postures import postures_of
 from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
-from elbowroom.planning.goal import goal_configurations
+from elbowroom.planning.goal import goal_configurations, natural_walk
 from elbowroom.planning.limb import limb_of
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
@@ -41,28 +43,35 @@ _LOW = ((0.1, 0.3, 1.2), (0.2, 0.3, 0.2))  # in the way of the legs
 @lru_cache(maxsize=4)
 def rehearse(humanoid: Humanoid) -> None:
     """Plan once each way, joint step, added postures and certificate included; once for each humanoid."""
-    states = np.zeros((_HORIZON + 1, ROOT_STATE))
-    times = _INTERVAL * np.arange(_HORIZON + 1.0)
-    states[:, 1], states[:, 3], states[:, 6] = _SPEED * times, _SPEED, 0.9 * times
-    path = RootPath(0.0, _INTERVAL, states)
+    path = _straight_on()
     for box in (_BESIDE, _WALL):
         body = UpperBody(humanoid, _scene_with(*box), ExactSettings())
         start = goal_configurations(body.goals, path)[0]
         dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
         finished(dressing.together(1))
         dressing.blockade()
-    _fold(body, path)
+    rehearse_own_body(humanoid)
     rehearse_detour(humanoid)
     rehearse_product()
     path.sample(path.times)
 
 
-def _fold(body: UpperBody, path: RootPath) -> None:
-    """Look whether an arm of the standing body runs into the rest of it, the waist being bent."""
-    postures, waists = body.postures(DofGroup.LEFT_ARM, _INTERVAL), np.full((_HORIZON + 1, DofGroup.WAIST.size), 0.1)
-    own = np.zeros((_HORIZON + 1, OWN, DofGroup.LEFT_ARM.size))
-    bent, needed = np.zeros(_HORIZON + 1, np.bool_), np.ones(own.shape[:2], np.bool_)
-    body.own_body.folded_prices(0, postures, own, needed, bent, waists, path.states)
+def _straight_on() -> RootPath:
+    states = np.zeros((_HORIZON + 1, ROOT_STATE))
+    times = _INTERVAL * np.arange(_HORIZON + 1.0)
+    states[:, 1], states[:, 3], states[:, 6] = _SPEED * times, _SPEED, 0.9 * times
+    return RootPath(0.0, _INTERVAL, states)
+
+
+def rehearse_own_body(humanoid: Humanoid) -> None:
+    """Hold an arm, and a bent body in motion, against the rest of the avatar."""
+    model, arm, path = body_model(humanoid), DofGroup.LEFT_ARM, _straight_on()
+    body, count = OwnBody(model, natural_walk()), len(path.states)
+    postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
+    own, bent = np.zeros((count, OWN, arm.size)), np.full((count, LOCAL), 0.1)
+    natural, needed = np.zeros(count, np.bool_), np.ones(own.shape[:2], np.bool_)
+    body.folded_prices(0, postures, own, needed, natural, bent[:, : DofGroup.WAIST.size].copy(), path.states)
+    OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), ~natural[1:], 0)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
