@@ -36,8 +36,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
     price = rng.uniform(0.0, 1.0, (horizon + 1, BLOCK + OWN)).astype(np.float32)
     price[rng.random(price.shape) < rng.uniform(0.0, 0.6)] = INF
     price[:, size:BLOCK], price[:, BLOCK + own :] = INF, INF
-    closed = np.zeros((horizon, BLOCK + OWN, BLOCK + OWN), np.float32)
-    closed[rng.random(closed.shape) < rng.choice([0.0, 0.4])] = INF
+    closed = rng.random((horizon, BLOCK + OWN, BLOCK + OWN)) < rng.choice([0.0, 0.4])
     columns = np.ascontiguousarray(postures[np.minimum(np.arange(BLOCK), size - 1)].T, np.float32)
     return Lattice(
         postures=postures,
@@ -69,7 +68,7 @@ def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What going from a node to one of the next depth costs, its own price included."""
     a, b = posture_of(lattice, depth, source), posture_of(lattice, depth + 1, target)
     mask = lattice.masks[depth]
-    if np.linalg.norm(b - a) > STEP or (mask >= 0 and lattice.closed[mask, source, target] > 0):
+    if np.linalg.norm(b - a) > STEP or (mask >= 0 and lattice.closed[mask, source, target]):
         return np.inf
     change = (b - lattice.goals[depth + 1]) - (a - lattice.goals[depth])
     return float(lattice.price[depth + 1, target] + WEIGHT * change @ change)
@@ -117,7 +116,7 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
     if cheapest_way(lattice, work, 0)[0] < HORIZON:
         return
     lattice.masks[1] = 1
-    lattice.closed[1] = np.where(np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5, INF, 0.0)
+    lattice.closed[1] = np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5
     resumed, _ = cheapest_way(lattice, work, 1)
     fresh = work_for(lattice)
     anew, _ = cheapest_way(lattice, fresh, 0)

@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 OWN = 4  # postures of a key time alone
 GOAL, KEPT, HOLD, BACK = range(
@@ -42,7 +43,7 @@ class Lattice(NamedTuple):
     goals: Floats  # (n+1, d)
     price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
     masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its steps are open
-    closed: Floats32  # (M, W+OWN, W+OWN) infinite where a step is closed, else 0
+    closed: Bools  # (M, W+OWN, W+OWN) which steps are closed
     kept: Longs  # (n+1,) the nodes that the last plan had
     step: float  # radians
     weight: float  # w
@@ -59,7 +60,7 @@ class Work(NamedTuple):
     least: Floats  # (n+1,) what a way on from each depth costs at least
     base: Floats32  # (W+OWN,) scratch, as is what follows
     slopes: Floats32  # (W+OWN,)
-    closed: Floats32  # (W,)
+    closed: Bools  # (W,)
     origins: Ints  # (W,)
     few: Floats  # (2, OWN)
 
@@ -75,7 +76,7 @@ def new_work(depths: int, nodes: int) -> Work:
         np.zeros(depths),
         np.empty(nodes, np.float32),
         np.empty(nodes, np.float32),
-        np.empty(nodes - OWN, np.float32),
+        np.empty(nodes - OWN, np.bool_),
         np.empty(nodes - OWN, np.int32),
         np.empty((2, OWN)),
     )
@@ -136,12 +137,12 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
 
 @exact_lean_kernel
 def _relax_open(
-    out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Floats32
+    out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Bools
 ) -> None:
     """`_relax` where some steps are closed."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
     for b in range(np.uint64(out.shape[0])):
-        cost = start + factor * row[b] + closed[b]
+        cost = _INFINITE if closed[b] else start + factor * row[b]
         better = cost < out[b]
         out[b] = cost if better else out[b]
         origins[b] = origin if better else origins[b]
@@ -207,12 +208,10 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     mask = lattice.masks[depth]
     closed = lattice.closed[mask]
     for node in range(width + OWN):
-        if base[node] >= best:
+        if base[node] >= best or (mask >= 0 and closed[node, width + f]):
             continue
         move = row[node] if node < width else np.float32(_own_move(lattice, depth, node - width, f))
         cost = base[node] + weight * move
-        if mask >= 0:
-            cost += closed[node, width + f]
         if cost < best:
             best, origin = cost, node
     return best, origin
@@ -261,7 +260,7 @@ def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
     mask = lattice.masks[depth]
-    if mask >= 0 and lattice.closed[mask, source, target] == _INFINITE:
+    if mask >= 0 and lattice.closed[mask, source, target]:
         return np.inf
     moved, changed = 0.0, 0.0
     for i in range(lattice.goals.shape[1]):
@@ -359,11 +358,9 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
             else:
                 _relax(targets, origins, base[node], row, weight, node)
             for e in range(OWN):
-                if work.costs[depth, width + e] < _INFINITE:
+                if work.costs[depth, width + e] < _INFINITE and not (mask >= 0 and closed[width + e, node]):
                     move = work.squares[depth, e, node] if node < size else _own_move(lattice, depth, e, node - width)
                     cost = np.float32(base[node] + weight * move)
-                    if mask >= 0:
-                        cost += closed[width + e, node]
                     out[width + e] = min(out[width + e], cost)
         slopes_of(lattice, depth, depth, slopes)
         for node in range(np.uint64(width + OWN)):

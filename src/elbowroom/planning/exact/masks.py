@@ -10,7 +10,6 @@ from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
@@ -19,7 +18,7 @@ class Masks(NamedTuple):
     """Steps that were found to touch, by interval; the key is that of its table. So no plan has to find them again."""
 
     slots: Slots
-    closed: Floats32  # (M, W+OWN, W+OWN) infinite where a step is closed, else 0
+    closed: Bools  # (M, W+OWN, W+OWN) which steps are closed
     seen: Bools  # (M, W+OWN, W+OWN) steps that were looked at
     slack: Floats  # (M,) squared radians: how much dearer ways were looked at
 
@@ -28,7 +27,7 @@ def new_masks(count: int, size: int, nodes: int) -> Masks:
     """Room for `count` intervals of a group with `size` components and rows of `nodes` nodes."""
     square = (count, nodes, nodes)
     return Masks(
-        new_slots(count, 1 + 2 * size), np.zeros(square, np.float32), np.zeros(square, np.bool_), np.zeros(count)
+        new_slots(count, 1 + 2 * size), np.zeros(square, np.bool_), np.zeros(square, np.bool_), np.zeros(count)
     )
 
 
@@ -49,9 +48,9 @@ def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
             nodes = closed.shape[0]
             for e in range(nodes - OWN + 1, nodes):
                 for node in range(nodes):
-                    closed[e, node], closed[node, e] = 0.0, 0.0
+                    closed[e, node], closed[node, e] = False, False
                     seen[e, node], seen[node, e] = False, False
-            closed[kept[k], kept[k + 1]] = 0.0
+            closed[kept[k], kept[k + 1]] = False
     return out
 
 
@@ -59,7 +58,7 @@ def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
 def new_mask(masks: Masks, key: Floats) -> int:
     """The mask of an interval under `key` (K,), with all steps open."""
     at = admit(masks.slots, key)
-    masks.closed[at], masks.seen[at], masks.slack[at] = 0.0, False, 0.0
+    masks.closed[at], masks.seen[at], masks.slack[at] = False, False, 0.0
     return int(at)
 
 
@@ -67,7 +66,7 @@ def new_mask(masks: Masks, key: Floats) -> int:
 def reopen(masks: Masks, at: int) -> None:
     """Open all steps of a mask, if it is one."""
     if at >= 0:
-        masks.closed[at], masks.seen[at], masks.slack[at] = 0.0, False, 0.0
+        masks.closed[at], masks.seen[at], masks.slack[at] = False, False, 0.0
 
 
 @exact_inner_kernel

@@ -45,10 +45,10 @@ def ban_near(lattice: Lattice, work: Work, depth: int, source: int, target: int,
             row, spared = closed[node], closed[node, kept]
             for other in range(nodes):
                 if before[node] + after[other] <= most:
-                    row[other] = _INFINITE
+                    row[other] = True
             if depth == 0 or node == lattice.kept[depth]:
                 row[kept] = spared
-    closed[source, target] = _INFINITE
+    closed[source, target] = True
 
 
 @exact_lean_kernel
@@ -70,7 +70,7 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
         if not start + least <= limit:
             continue
         for b in range(nodes):
-            if not start + end[b] <= limit or seen[a, b] or closed[a, b] == _INFINITE or a == b:
+            if not start + end[b] <= limit or seen[a, b] or closed[a, b] or a == b:
                 continue
             if b >= width:
                 own, posture = lattice.own[depth + 1, b - width], lattice.own[depth, max(a - width, 0)]
@@ -153,5 +153,5 @@ def close_steps(
             for k in range(first, min(first + BLOCK, many)):
                 for c in range(out.shape[0]):
                     if out[c, k - first] < skin:
-                        closed[steps[k, 0], steps[k, 1]] = _INFINITE
+                        closed[steps[k, 0], steps[k, 1]] = True
     return checks
