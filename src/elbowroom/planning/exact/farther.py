@@ -29,6 +29,7 @@ class Farther:
         self._rows: list[GroupEvidence] = []
         self._spent = _ELSE
         self._done = False
+        self.searched = False  # whether the root had a path that is worth it
         self._found: Whole | None = None
 
     def do_part(self, go_on: Callable[[], None]) -> None:
@@ -62,3 +63,4 @@ class Farther:
         else:
             self._spent += _SEARCH + row.nodes + _CHECK * row.checks
             self._rows.append(row)
+            self.searched = True

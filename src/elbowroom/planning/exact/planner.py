@@ -114,14 +114,16 @@ class ExactPlanner:
             self._farther.do_part(query.go_on)
             return costing(left, self._farther.costs())
         begun, self._farther = self._farther, None
-        anew = Farther(query, self._prolonging(left, root_planner, query))
-        return self._taken_on(begun, query) or self._taken_on(anew, query)
+        found = None if begun is None else self._taken_on(begun, query)
+        if found is not None or (begun is not None and begun.searched):
+            return found
+        return self._taken_on(Farther(query, self._prolonging(left, root_planner, query)), query)
 
-    def _taken_on(self, farther: Farther | None, query: MotionQuery) -> Whole | None:
+    def _taken_on(self, farther: Farther, query: MotionQuery) -> Whole | None:
         """What was found farther on becomes the walk; None if there is nothing."""
-        self._walk = None if farther is None else farther.walk(query.go_on)
+        self._walk = farther.walk(query.go_on)
         left = None if self._walk is None else self._walk.left(query)
-        return None if farther is None or left is None else costing(left, farther.costs())
+        return None if left is None else costing(left, farther.costs())
 
     def _prolonging(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Pausing[Whole | None]:
         """What is left of a walk, prolonged to where it has to lead when it has become too short."""
