@@ -43,15 +43,17 @@ def test_lane_has_its_posts_beside_the_way() -> None:
 def test_plots_are_svg_documents() -> None:
     costs = CallCosts(3, 2, 0.2, 0.4, 0.5, 0.2, 0.6, 0.3, 100.0, 300, 1.0)
     settings = PlanSettings(horizons=(4, 8), obstacles=(0, 8))
-    for picture in growth_plots(PlanReport(settings, costs, (costs,) * 2, (costs,) * 2)).values():
+    for picture in growth_plots(PlanReport(settings, costs, costs, (costs,) * 2, (costs,) * 2)).values():
         assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
     assert costs.worst_to_median_checks == 3.0
-    assert amount(settings) == 9
+    assert amount(settings) == 29
 
 
 def test_command_refuses_nonsense() -> None:
     with pytest.raises(InputError, match="key frames 1"):
         PlanSettings(key_frames=1)
+    with pytest.raises(InputError, match="starts 0"):
+        PlanSettings(starts=0)
     result = CliRunner().invoke(app, ["bench", "plan", "--scene", "nowhere", "--json"], standalone_mode=False)
     assert result.return_value == 2
     assert "nowhere" in result.output

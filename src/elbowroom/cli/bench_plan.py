@@ -18,6 +18,7 @@ def plan(
     scene: Annotated[str, typer.Option(help="The scene that is crossed.")] = "d",
     key_frames: Annotated[int, typer.Option(help="Key frames ahead, 0.15 s apart.")] = 12,
     rounds: Annotated[int, typer.Option(help="Crossings.")] = 5,
+    starts: Annotated[int, typer.Option(help="Further crossings, each from another start.")] = 20,
     plots: Annotated[Path | None, typer.Option(help="Folder for pictures of how the cost grows.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
@@ -26,7 +27,7 @@ def plan(
     from elbowroom.experiment.bench.plan import PlanSettings, amount, run
     from elbowroom.experiment.machine import machine_kind
 
-    settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds)
+    settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
     with progress_bar("Planning", amount(settings), quiet) as bar:
         report = run(settings, bar.move)
     if plots is not None:
@@ -53,6 +54,13 @@ def show(report: "PlanReport") -> None:
         "found": f"{100.0 * calls.found:.1f} %",
     }
     print_row(f"Planning in scene {settings.scene}, {settings.key_frames} key frames ahead ({machine_kind()})", rows)
+    other = report.elsewhere
+    rows = {
+        "median": f"{other.median_ms:.3g} ms",
+        "99 %": f"{other.p99_ms:.3g} ms",
+        "worst": f"{other.worst_ms:.3g} ms of {other.calls} calls",
+    }
+    print_row(f"From {settings.starts} other starts", rows)
     for name, places, costs in (
         ("By key frames ahead", settings.horizons, report.by_horizon),
         ("By posts at a lane", settings.obstacles, report.by_obstacles),

@@ -9,6 +9,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
+from elbowroom.experiment.crossing import start_for
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.world.boxes import Boxes
@@ -26,14 +27,16 @@ class PlanSettings:
     scene: str = "d"
     key_frames: int = 12
     rounds: int = 5  # crossings
+    starts: int = 20  # further crossings, each from another start, as the trials of Table 1 have them
     horizons: tuple[int, ...] = (4, 8, 12, 16, 20, 24)
     obstacles: tuple[int, ...] = (0, 8, 16, 24, 32, 40)
 
     def __post_init__(self) -> None:
         if not 2 <= self.key_frames <= 100:
             raise InputError(f"key frames {self.key_frames}: allowed are 2 to 100")
-        if not 1 <= self.rounds <= 1000:
-            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
+        for name, count in (("rounds", self.rounds), ("starts", self.starts)):
+            if not 1 <= count <= 1000:
+                raise InputError(f"{name} {count}: allowed are 1 to 1000")
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class PlanReport:
 
     settings: PlanSettings
     calls: CallCosts
+    elsewhere: CallCosts  # from the other starts together
     by_horizon: tuple[CallCosts, ...]
     by_obstacles: tuple[CallCosts, ...]
 
@@ -73,32 +77,34 @@ class PlanReport:
 
 
 def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) -> PlanReport:
-    """Cross the scene `rounds` times, then once for each horizon, then the lane once for each number of posts."""
+    """Cross the scene `rounds` times, then from other starts, for each horizon, and a lane for each number of posts."""
     humanoid, scene = Humanoid.default(), Scene.load(settings.scene)
     done = 0
     rehearse(humanoid)  # load what is compiled, as a session does before it begins
     list(crossing_calls(humanoid, scene, settings.key_frames))
 
-    def measured(where: Scene, key_frames: int, rounds: int) -> CallCosts:
+    def measured(key_frames: int, *scenes: Scene) -> CallCosts:
         nonlocal done
         calls: list[PlanCall] = []
-        for _ in range(rounds):
+        for where in scenes:
             calls += crossing_calls(humanoid, where, key_frames)
             done += 1
             tick(done)
         return _costs(calls)
 
+    elsewhere = [replace(scene, start=start_for(scene, seed)) for seed in range(1, settings.starts + 1)]
     return PlanReport(
         settings,
-        measured(scene, settings.key_frames, settings.rounds),
-        tuple(measured(scene, horizon, 1) for horizon in settings.horizons),
-        tuple(measured(lane(posts), settings.key_frames, 1) for posts in settings.obstacles),
+        measured(settings.key_frames, *[scene] * settings.rounds),
+        measured(settings.key_frames, *elsewhere),
+        tuple(measured(horizon, scene) for horizon in settings.horizons),
+        tuple(measured(settings.key_frames, lane(posts)) for posts in settings.obstacles),
     )
 
 
 def amount(settings: PlanSettings) -> int:
     """How many crossings there will be."""
-    return settings.rounds + len(settings.horizons) + len(settings.obstacles)
+    return settings.rounds + settings.starts + len(settings.horizons) + len(settings.obstacles)
 
 
 def lane(posts: int) -> Scene:
