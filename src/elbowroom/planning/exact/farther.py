@@ -17,7 +17,7 @@ from elbowroom.planning.result import GroupEvidence
 # A part ends when it has cost so much, in nodes that are settled. A search counts for so much more than its nodes, to
 # begin and whatever else takes its time for so much; a check for more than it takes: where something is near, the next
 # search may be a long one.
-_PART, _SEARCH, _ELSE, _CHECK = 5500.0, 1000.0, 2500.0, 0.4
+_PART, _SEARCH, _ELSE, _CHECK = 6300.0, 1000.0, 2500.0, 0.6
 
 
 class Farther:
