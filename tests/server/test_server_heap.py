@@ -1,18 +1,23 @@
-"""One heap for all threads of a server."""
+"""One heap for all threads of a server, and what lasts in it."""
 
+import gc
 import platform
 
 import numpy as np
 
 from elbowroom.cli.session_cost import memory_budget
-from elbowroom.server.heap import give_back, share_one_heap
+from elbowroom.server.heap import settle, share_one_heap
 
 
 def test_glibc_is_asked_for_one_heap_and_others_are_left_alone() -> None:
     assert share_one_heap() == (platform.libc_ver()[0] == "glibc")
     blocks = [np.ones(1000) for _ in range(1000)]
     del blocks
-    assert isinstance(give_back(), bool)
+    try:
+        assert isinstance(settle(), bool)
+        assert gc.get_freeze_count() > 1000
+    finally:
+        gc.unfreeze()
 
 
 def test_the_budget_counts_the_process_once_and_every_session() -> None:

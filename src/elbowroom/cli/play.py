@@ -120,12 +120,12 @@ def _tell_openness(console: "Console", opened: "socket.socket") -> None:
 
 
 def _ready(library: "Library", url: str, open_page: bool) -> None:
-    from elbowroom.server.heap import give_back
+    from elbowroom.server.heap import settle
     from elbowroom.server.warmup import warm_up
 
     def load_the_rest() -> None:  # while the page opens
         warm_up(library)
-        give_back()
+        settle()
 
     threading.Thread(target=load_the_rest, daemon=True).start()
     print(f"Elbowroom is at {url}  (Ctrl-C ends it)", flush=True)

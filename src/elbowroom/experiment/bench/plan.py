@@ -1,5 +1,6 @@
 """What a planning call costs, and how that grows with how far it looks and with what stands near."""
 
+import gc
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -82,6 +83,7 @@ def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) ->
     done = 0
     rehearse(humanoid)  # load what is compiled, as a session does before it begins
     list(crossing_calls(humanoid, scene, settings.key_frames))
+    gc.freeze()  # as a server does: kernels and libraries are no garbage
 
     def measured(key_frames: int, *scenes: Scene) -> CallCosts:
         nonlocal done
