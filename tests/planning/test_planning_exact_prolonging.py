@@ -164,6 +164,27 @@ def test_a_plan_made_longer_in_parts_is_the_one_made_at_once(
     assert max(searched[0][1:]) < max(searched[1][1:])
 
 
+def test_a_plan_for_something_else_calls_off_what_was_begun(
+    humanoid: Humanoid, posts: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(farther, "_PART", 1.0)  # so that there is always something begun
+    states = np.zeros((9, 7))
+    states[:, 1], states[:, 3] = 0.1 * np.arange(9.0), 0.7
+    elsewhere, rng = RootPath(0.0, T, states), np.random.default_rng(0)
+
+    def walked(*, disturbed: bool) -> list[Motion]:
+        planner, roots, query, motions = ExactPlanner(humanoid, posts), RootPlanner(humanoid, posts), first_query(), []
+        for _ in range(14):
+            motions.append(planner.plan_motion(roots, query))
+            query = after(query, motions[-1])
+            if disturbed:
+                planner.plan(elsewhere, first_query().upper, rng)
+        return motions
+
+    for one, other in zip(walked(disturbed=False), walked(disturbed=True), strict=True):
+        assert np.array_equal(one.local.configurations, other.local.configurations)
+
+
 def test_while_something_moves_every_plan_is_new(humanoid: Humanoid, posts: Scene) -> None:
     far = Track("far", np.full(3, 0.2), np.array([0.0, 9.0]), np.array([[5.0, 1.0, 5.0]] * 2), np.zeros(2))
     scene = replace(posts, moving=MovingBoxes((far,)))

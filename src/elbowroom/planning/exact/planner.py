@@ -70,6 +70,7 @@ class ExactPlanner:
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
+        self._farther = None
         return self._body.plan(path, Start(start, np.zeros_like(start))).plan
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
