@@ -1,6 +1,7 @@
 """The planning benchmark makes the calls that a walk makes, and says what they cost."""
 
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,3 +58,14 @@ def test_command_refuses_nonsense() -> None:
     result = CliRunner().invoke(app, ["bench", "plan", "--scene", "nowhere", "--json"], standalone_mode=False)
     assert result.return_value == 2
     assert "nowhere" in result.output
+
+
+def test_a_folder_that_cannot_be_is_told_before_anything_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("elbowroom.experiment.bench.plan.run", lambda *_: pytest.fail("it was measured"))
+    (tmp_path / "file").touch()
+    command = ["bench", "plan", "--plots", str(tmp_path / "file" / "pictures")]
+    result = CliRunner().invoke(app, command, standalone_mode=False)
+    assert result.return_value == 2
+    assert "cannot write pictures there" in result.output

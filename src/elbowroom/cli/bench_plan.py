@@ -28,14 +28,16 @@ def plan(
     from elbowroom.experiment.machine import machine_kind
 
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
+    if plots is not None:
+        _make_folder(plots)
     with progress_bar("Planning", amount(settings), quiet) as bar:
         report = run(settings, bar.move)
-    if plots is not None:
-        _write_plots(report, plots)
     if json:
         print_json({"machine": machine_kind()} | report.as_dict())
     else:
         show(report)
+    if plots is not None:
+        _write_plots(report, plots)
 
 
 def show(report: "PlanReport") -> None:
@@ -72,13 +74,25 @@ def show(report: "PlanReport") -> None:
         print_row(name, dict(zip(map(str, places), texts, strict=True)))
 
 
+def _make_folder(folder: Path) -> None:
+    """Before anything is measured: a name that will not do is told at once."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+
+
 def _write_plots(report: "PlanReport", folder: Path) -> None:
-    from elbowroom.errors import InputError
     from elbowroom.experiment.bench.plots import growth_plots
 
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for name, picture in growth_plots(report).items():
             (folder / f"planning_by_{name}.svg").write_text(picture, "utf-8")
     except OSError as error:
-        raise InputError(f"{folder}: cannot write pictures there: {error.strerror}") from None
+        raise _unwritable(folder, error) from None
+
+
+def _unwritable(folder: Path, error: OSError) -> Exception:
+    from elbowroom.errors import InputError
+
+    return InputError(f"{folder}: cannot write pictures there: {error.strerror}")
