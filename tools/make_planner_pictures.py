@@ -17,6 +17,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.joint_step import JointStep
+from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody
@@ -43,7 +44,7 @@ def walk(horizon: int, begin: float) -> RootPath:
 def dressing_of(body: UpperBody, path: RootPath) -> Dressing:
     """A plan's dressing along a path that begins in the natural walk; nothing searched yet."""
     start = goal_configurations(body.goals, path)[0]
-    return body.plan(path, start, np.zeros_like(start), effort=Effort.JOINT).dressing
+    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
 
 
 def shade(share: float) -> str:
