@@ -27,6 +27,7 @@ _KEPT: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "
 _LEAF: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True, "_nrt": True}
 _COUNTING: dict[str, Any] = {"_nrt": True} | _KEPT  # references to arrays; said, since callers would decide otherwise
 _LEAN: dict[str, Any] = {"_nrt": False} | _KEPT
+_kernels: list[Any] = []  # all that were made: they last as long as their modules
 
 
 def _use_whole_vectors() -> None:
@@ -122,8 +123,14 @@ def _inner(dispatcher: Any) -> Any:
     return dispatcher
 
 
+def kernels_made() -> list[Any]:
+    """All kernels of the modules imported so far, in that order: Numba's dispatchers."""
+    return list(_kernels)
+
+
 def _kept(dispatcher: Any) -> Any:
     """Have what is kept on disk forgotten when any source that was compiled into it has changed."""
+    _kernels.append(dispatcher)
     return forgotten_with(Path(dispatcher.py_func.__code__.co_filename), dispatcher)
 
 

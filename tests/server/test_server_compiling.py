@@ -1,9 +1,12 @@
 """The first start: two processes compile, each kernel is told once, and a failure costs only time."""
 
+import gc
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
+import numba
 import pytest
 
 from elbowroom.cli.bench_compile import compiled_in
@@ -72,6 +75,21 @@ def test_kernels_of_other_rooms_than_a_sessions_are_left_out() -> None:
         "clips",
         "held",
     }
+
+
+def test_kernels_are_known_beside_functions_of_no_module_and_when_all_is_taken_for_lasting() -> None:
+    scope: dict[str, Any] = {}
+    exec("def of_no_module(number):\n    return number", scope)
+    nobodys = numba.njit(scope["of_no_module"])
+    assert nobodys.__module__ is None
+    known = kernel_cache.kernels()
+    assert nobodys not in known
+    gc.freeze()
+    try:
+        assert kernel_cache.kernels() == known
+        assert kernel_cache.cache_folders()
+    finally:
+        gc.unfreeze()
 
 
 def test_compiled_files_are_counted_by_kernel(tmp_path: Path) -> None:

@@ -1,23 +1,19 @@
 """Which kernels there are, and which of them are compiled and kept on disk."""
 
 import contextlib
-import gc
 import hashlib
 from pathlib import Path
 from typing import Any
 
 import numba
 from llvmlite.binding import get_host_cpu_name
-from numba.core.caching import NullCache
-from numba.core.dispatcher import Dispatcher
+
+from elbowroom.jit import kernels_made
 
 
 def kernels() -> list[Any]:
-    """The kernels of our modules imported so far that are kept on disk once they are compiled."""
-    # By `type`, not `isinstance`: that would ask weak proxies for their class, and some of them have lost their object.
-    found: list[Any] = [thing for thing in gc.get_objects() if issubclass(type(thing), Dispatcher)]
-    ours = (kernel for kernel in found if kernel.__module__.startswith("elbowroom."))
-    return [kernel for kernel in ours if not isinstance(kernel._cache, NullCache)]
+    """The kernels of our modules imported so far; each is kept on disk once it is compiled."""
+    return [kernel for kernel in kernels_made() if kernel.__module__.startswith("elbowroom.")]
 
 
 def session_kernels() -> list[Any]:
