@@ -71,10 +71,9 @@ class Case:
         self.needed = rng.uniform(size=(ROWS, OWN)) < 0.4
 
     def prices(self, body: OwnBody = BODY) -> Floats:
-        found: Floats = body.folded_prices(
-            self.side, self.postures, self.own, self.needed, self.natural, self.uppers, self.states
-        ).astype(np.float64)
-        return found
+        goals = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
+        prices = body.folded_prices(self.side, self.postures, self.own, self.needed, goals, self.uppers, self.states)
+        return prices.astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:
         """Which nodes are ruled out (ROWS, W + OWN), and of which that is sure."""

@@ -9,6 +9,7 @@ from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import hold
+from elbowroom.planning.exact import own_motion
 from elbowroom.planning.exact.curve import smooth_tangents
 from elbowroom.planning.exact.own_looks import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
 from elbowroom.planning.exact.own_motion import OwnMotion
@@ -19,6 +20,7 @@ from elbowroom.planning.self_pairs import self_clearances, self_pairs
 
 Floats = NDArray[np.float64]
 T, LOOKS, FAR = 0.15, 500, 99  # seconds, of a key interval; so many key intervals ahead
+ASIDE = 1.0  # radians: goals that no key posture is at
 
 MODEL = body_model(proportional_humanoid(1.72))
 PAIRS = self_pairs(MODEL)
@@ -60,8 +62,8 @@ def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
     motion, found, near = OwnMotion(MODEL, PAIRS), [0, 0], 0
     for seed in range(first, first + 6):
         path, keys, rates = swung(seed)
-        arms = motion.contacts(path, keys, rates, np.ones(path.horizon, np.bool_), FAR)
-        soon = motion.contacts(path, keys, rates, np.ones(path.horizon, np.bool_), -path.horizon)
+        arms = motion.contacts(path, keys, rates, keys + ASIDE, FAR)
+        soon = motion.contacts(path, keys, rates, keys + ASIDE, -path.horizon)
         for k, arm in enumerate(arms):
             gap = looked_at_closely(path, keys, rates, k)
             assert (arm >= 0) == (gap < 4e-4) or abs(gap - 4e-4) < 2e-4
@@ -100,11 +102,25 @@ def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
     assert near > 5 or wild
 
 
-def test_what_was_looked_at_is_known_again_and_only_chosen_intervals_are_told() -> None:
+def test_what_was_looked_at_is_known_again_and_natural_intervals_are_not_looked_at() -> None:
     path, keys, rates = swung(3)
-    motion, every = OwnMotion(MODEL, PAIRS), np.ones(path.horizon, np.bool_)
-    first = motion.contacts(path, keys, rates, every, FAR)
-    assert np.array_equal(motion.contacts(path, keys, rates, every, FAR), first)
-    assert np.all(motion.contacts(path, keys, rates, ~every, FAR) == -1)
+    motion, goals = OwnMotion(MODEL, PAIRS), keys + ASIDE
+    first = motion.contacts(path, keys, rates, goals, FAR)
+    assert np.array_equal(motion.contacts(path, keys, rates, goals, FAR), first)
+    assert np.all(motion.contacts(path, keys, rates, keys, FAR) == -1)
     later = RootPath(0.0, T, path.states[3:])
-    assert np.array_equal(motion.contacts(later, keys[3:], rates[3:], every[3:], FAR), first[3:])
+    assert np.array_equal(motion.contacts(later, keys[3:], rates[3:], goals[3:], FAR), first[3:])
+    touching = int(np.flatnonzero(first >= 0)[-1])
+    goals = keys.copy()
+    goals[touching + 1, -1] += ASIDE
+    beside = np.isin(np.arange(path.horizon), [touching, touching + 1])
+    assert np.array_equal(motion.contacts(path, keys, rates, goals, FAR), np.where(beside, first, -1))
+
+
+def test_a_full_memory_forgets_and_finds_the_same_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    path, keys, rates = swung(4)
+    expected = OwnMotion(MODEL, PAIRS).contacts(path, keys, rates, keys + ASIDE, FAR)
+    monkeypatch.setattr(own_motion, "ROOM", 5)
+    motion = OwnMotion(MODEL, PAIRS)
+    for _ in range(2):
+        assert np.array_equal(motion.contacts(path, keys, rates, keys + ASIDE, FAR), expected)

@@ -21,7 +21,6 @@ from elbowroom.planning.exact.together import Guide
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_NATURAL = 1e-6  # radians from the goal
 _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
 _ARMS = LOCAL_GROUPS[1:]
 
@@ -106,8 +105,8 @@ class Arms:
         problem, made = self._problem, self._shelves.group(_ARMS[side])
         own, needed, _ = own_postures(made, task)
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
-        natural = np.abs(around - problem.goals[:, : around.shape[1]]).max(axis=1) < _NATURAL
-        prices = self._own_body.folded_prices(side, made.postures, own, needed, natural, around, problem.path.states)
+        states = problem.path.states
+        prices = self._own_body.folded_prices(side, made.postures, own, needed, problem.goals, around, states)
         for t, contact in self._contacts.of(side, problem.path.times):
             if t > 0 and contact.happens(around[t]):
                 rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
@@ -121,14 +120,9 @@ class Arms:
 
     def _self_contact(self, found: Ways) -> tuple[int, int] | None:
         """The arm and the first interval in which the shown motion runs into the body, or None."""
-        keys = found.keys
-        natural = np.abs(keys - self._problem.goals).max(axis=1) < _NATURAL
-        if natural.all():
-            return None
-        chosen = ~(natural[:-1] & natural[1:])
-        arms = self._own_motion.contacts(self._problem.path, keys, found.velocities, chosen, self._problem.begins.ahead)
-        first = int(np.argmax(arms >= 0))
-        return None if arms[first] < 0 else (int(arms[first]), first)
+        problem, keys, rates = self._problem, found.keys, found.velocities
+        arms = self._own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        return next(((arm, k) for k, arm in enumerate(arms.tolist()) if arm >= 0), None)
 
     def _asked(self, ways: list[GroupWay]) -> Asked:
         """The clearances that were asked for: less where the start has less."""

@@ -12,6 +12,8 @@ from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
+from elbowroom.planning.exact.content import contents_of, is_natural
+from elbowroom.planning.exact.known import Known, admit, forget
 from elbowroom.planning.exact.postures import BLOCK
 
 Floats = NDArray[np.float64]
@@ -37,6 +39,7 @@ class Folding(NamedTuple):
     lanes: Floats32  # (B, C, 7, 16) as in `Postures`
     balls: Floats  # (B, C, 4)
     resting: Bools  # (W,) which of them touch the walking body
+    known: Known  # the surroundings, by their content
     axes: Floats32  # (H, P, 6) the parts in the chest frame
     marks: Bools  # (H, W) which postures come too near to them
 
@@ -95,25 +98,21 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 @exact_kernel
 def folded_prices(
-    folding: Held[Folding],
-    own: Floats,
-    natural: Bools,
-    uppers: Floats,
-    states: Floats,
-    rows: Indices,
-    places: Indices,
-    fresh: Indices,
+    folding: Held[Folding], own: Floats, needed: Bools, goals: Floats, uppers: Floats, states: Floats
 ) -> Floats32:
     """What an arm's nodes (n+1, W + E) cost for the body's sake: nothing, or infinity.
 
-    `own` (n+1, E, d) are each key time's own postures, the first of them the goal's. The groups before it are at
-    `uppers` (n+1, waist and, for the right arm, the left one), the root at `states` (n+1, 7); `natural` (n+1,) is where
-    they are as the goals have them: there the goal's posture is free. `rows` (R,) are the key times that are looked at,
-    `places` (R,) of the surroundings where they are kept, `fresh` (F,) those rows of which nothing is kept yet.
+    `own` (n+1, E, d) are each key time's own postures as far as they are `needed` (n+1, E), the first of them the
+    goal's. The groups before the arm are at `uppers` (n+1, waist and, for the right arm, the left one), the root at
+    `states` (n+1, 7). Where they are as the `goals` (n+1, 11) have them the goal's posture is free.
     """
     it = folding.value
     width = it.resting.shape[0]
-    _look_around(it, uppers, states, rows, places, fresh)
+    natural = np.empty(own.shape[0], np.bool_)
+    for t in range(natural.shape[0]):
+        natural[t] = is_natural(uppers[t], goals[t])
+    rows = _to_look_at(natural, needed)
+    places = _look_around(it, uppers, states, rows)
     prices = np.empty((own.shape[0], width + own.shape[1]), np.float32)
     for t in range(prices.shape[0]):
         for v in range(prices.shape[1]):
@@ -132,10 +131,37 @@ def folded_prices(
 
 
 @exact_inner_kernel
-def _look_around(it: Folding, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
+def _to_look_at(natural: Bools, needed: Bools) -> Indices:
+    """The key times (R,) at which something beside the goal's posture in a natural walk is asked for."""
+    rows, count = np.empty(natural.shape[0], np.int64), 0
+    for t in range(natural.shape[0]):
+        if not natural[t] or needed[t, 1:].any():
+            rows[count] = t
+            count += 1
+    return rows[:count]
+
+
+@exact_inner_kernel
+def _look_around(it: Folding, uppers: Floats, states: Floats, rows: Indices) -> Indices:
+    """The places (R,) of what surrounds the arm at `rows` (R,); of what was not known, also which postures touch it."""
+    contents = contents_of(states, uppers, uppers[:, :0])
+    places, fresh, count = np.empty_like(rows), np.empty_like(rows), 0
+    if it.known.taken[0] + rows.shape[0] > it.known.rows.shape[0]:
+        forget(it.known)
+    for i in range(rows.shape[0]):
+        before = it.known.taken[0]
+        places[i] = admit(it.known, contents[rows[i]])
+        if places[i] == before:
+            fresh[count] = i
+            count += 1
+    if count:
+        _look_at(it, uppers, states, rows, places, fresh[:count])
+    return places
+
+
+@exact_inner_kernel
+def _look_at(it: Folding, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
     """Keep what surrounds the arm at `fresh` rows, and which postures come too near to it."""
-    if not fresh.shape[0]:
-        return
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
     for n in range(fresh.shape[0]):
         t = rows[fresh[n]]

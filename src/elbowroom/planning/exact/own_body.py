@@ -11,13 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
-from elbowroom.planning.exact.content import names_of
+from elbowroom.planning.exact.content import CONTENT
 from elbowroom.planning.exact.folding import SPARE, Folding, folded, folded_prices
+from elbowroom.planning.exact.known import new_known
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.goal import GoalFunction
@@ -51,7 +52,7 @@ class OwnBody:
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
         self._prices: dict[tuple[int, int], Floats32] = {}
-        self._foldings: dict[int, tuple[Floats, Held[Folding], dict[bytes, int]]] = {}
+        self._foldings: dict[int, tuple[Floats, Held[Folding]]] = {}
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -89,33 +90,16 @@ class OwnBody:
         return self._prices[side, count]
 
     def folded_prices(
-        self,
-        side: int,
-        postures: Postures,
-        own: Floats,
-        needed: Bools,
-        natural: Bools,
-        uppers: Floats,
-        states: Floats,
+        self, side: int, postures: Postures, own: Floats, needed: Bools, goals: Floats, uppers: Floats, states: Floats
     ) -> Floats32:
         """What an arm's nodes cost for the body's sake along a root path, (n+1, W + E): nothing, or infinity.
 
-        `own` (n+1, E, d) are each key time's own postures as far as they are `needed` (n+1, E), the first of them the
-        goal's. The groups before the arm are at `uppers` (n+1, waist and, for the right arm, the left one), the root at
-        `states` (n+1, 7); `natural` (n+1,) is where they are as the goals have them.
+        Arguments as those of the kernel of this name; surroundings that were looked at before are known again.
         """
-        held, places = self._folding_of(side, postures)
-        rows = np.flatnonzero(~natural | needed[:, 1:].any(axis=1))
-        names = names_of(states, uppers, None, rows.tolist(), 1)
-        if len(places) + len(rows) > _REMEMBERED:
-            places.clear()
-        known = len(places)
-        at = [places.setdefault(name, len(places)) for name in names]
-        fresh = _first_at(at, known)
-        return folded_prices(held, own, natural, uppers, states, rows, np.array(at, np.int64), fresh)
+        return folded_prices(self._folding_of(side, postures), own, needed, goals, uppers, states)
 
-    def _folding_of(self, side: int, postures: Postures) -> tuple[Held[Folding], dict[bytes, int]]:
-        """What arm `side` is held against, and the places of the surroundings that were looked at, by their content."""
+    def _folding_of(self, side: int, postures: Postures) -> Held[Folding]:
+        """What arm `side` is held against, and the surroundings that were looked at."""
         known = self._foldings.get(side)
         if known is None or known[0] is not postures.configurations:
             pairs, model, arm = self.pairs, self.model, postures.limb
@@ -127,17 +111,9 @@ class OwnBody:
             folding = Folding(
                 whole_body(model), arm.order, arm.arm_joints, arm.mirror, arm.joints, arm.ends, wanted,
                 np.ascontiguousarray(allowed), postures.lanes, postures.balls, resting,
+                new_known(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
                 np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
             )  # fmt: skip
-            known = postures.configurations, hold(folding), {}
+            known = postures.configurations, hold(folding)
             self._foldings[side] = known
-        return known[1], known[2]
-
-
-def _first_at(places: list[int], known: int) -> Indices:
-    """The rows that are the first at their place among places from `known` on."""
-    found: list[int] = []
-    for row, place in enumerate(places):
-        if place == known + len(found):
-            found.append(row)
-    return np.array(found, np.int64)
+        return known[1]

@@ -69,9 +69,9 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     body, count = OwnBody(model, natural_walk()), len(path.states)
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
     own, bent = np.zeros((count, OWN, arm.size)), np.full((count, LOCAL), 0.1)
-    natural, needed = np.zeros(count, np.bool_), np.ones(own.shape[:2], np.bool_)
-    body.folded_prices(0, postures, own, needed, natural, bent[:, : DofGroup.WAIST.size].copy(), path.states)
-    OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), ~natural[1:], 0)
+    goals, needed = np.zeros_like(bent), np.ones(own.shape[:2], np.bool_)
+    body.folded_prices(0, postures, own, needed, goals, bent[:, : DofGroup.WAIST.size].copy(), path.states)
+    OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
