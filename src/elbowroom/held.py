@@ -17,9 +17,9 @@ from numba.experimental import structref
 
 from elbowroom.jit import exact_kernel, forgotten_with
 
-Value = TypeVar("Value", bound=tuple[Any, ...])
-
 _structref = cast(Any, structref)  # which has no types
+
+Value = TypeVar("Value", bound=tuple[Any, ...])
 
 
 @structref.register
@@ -32,6 +32,7 @@ class Held(structref.StructRefProxy, Generic[Value]):
 
     __slots__ = ("value",)
     value: Value
+    _numba_type_ = _structref.StructRefProxy._type  # asked for at each call: the slot itself, not a function around it
 
 
 _structref.define_proxy(Held, HeldType, ["value"])

@@ -20,7 +20,7 @@ AVATAR = Humanoid.default()
 BODY = TurnedBody(AVATAR)
 GRID = Grid(0.1, 0.08, 7, 0.06)
 ANGLES = np.array([-0.8, 0.0, 1.2])
-LINE = TravelLine((0.0,), 3.0, -2.0, 0.7, 0.7, True)
+LINE = TravelLine((0.0, 0.0), 3.0, -2.0, 0.7, 0.7, True)
 SPEEDS = (1.1, 0.45)
 NOTHING = np.empty((8, 0, 15))
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel, leaf
+from elbowroom.jit import exact_inner_kernel, exact_kernel, leaf
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -182,7 +182,30 @@ def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Gro
 
 
 @exact_kernel
-def strip_is_free(x: float, z: float, heading: float, length: float, half: float, ground: Ground) -> bool:
-    """Whether nothing stands on the strip of the ground that begins here, of half width `half`."""
-    low, high = np.array([-half, -half]), np.array([half, length + half])
-    return not _meets(x, z, heading, low, high, ground)
+def way_is_open(route: Floats, half: float, ground: Ground) -> bool:
+    """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z."""
+    low, high = np.array([-half, -half]), np.array([half, half])
+    for i in range(route.shape[0] - 1):
+        dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
+        high[1] = np.hypot(dx, dz) + half
+        if _meets(route[i, 0], route[i, 1], np.arctan2(dx, dz), low, high, ground):
+            return False
+    return True
+
+
+@exact_inner_kernel
+def ground_near(ground: Ground, x: float, z: float, reach: float) -> Ground:
+    """What of it may come within `reach` metres of a place."""
+    near, count = np.empty(ground.least.shape[0], np.int64), 0
+    for b in range(near.shape[0]):
+        least, most = ground.least[b], ground.most[b]
+        if least[0] <= x + reach and most[0] >= x - reach and least[1] <= z + reach and most[1] >= z - reach:
+            near[count] = b
+            count += 1
+    found = Ground(np.empty((count, ground.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)))
+    for n in range(count):
+        for i in range(2):
+            found.least[n, i], found.most[n, i] = ground.least[near[n], i], ground.most[near[n], i]
+            for c in range(ground.corners.shape[1]):
+                found.corners[n, c, i] = ground.corners[near[n], c, i]
+    return found

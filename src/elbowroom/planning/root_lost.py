@@ -1,5 +1,7 @@
 """What a root path costs: the seconds that it loses against a walk as commanded, all by itself."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,20 @@ Floats = NDArray[np.float64]
 SLOW = 0.1  # m/s: who wants to go no faster is in no hurry
 
 Figure = tuple[float, float]  # half the breadth of a body that stands with hanging arms, and its height, metres
+
+
+class Prices(NamedTuple):
+    """What costs seconds besides being behind."""
+
+    acceleration: float  # m/s^2: who starts slower than wanted is allowed the time that it takes to get faster
+    dead_end: float  # seconds, of a way that ends before something
+    aside: float  # seconds for each metre beside the line, and
+    turned: float  # for each radian that the body is turned, over the whole path
+
+
+def prices_of(settings: RootPlannerSettings) -> Prices:
+    """The prices that these settings name."""
+    return Prices(settings.motion.acceleration, settings.dead_end, settings.aside_cost, settings.turned_cost)
 
 
 def seconds_lost(
@@ -31,30 +47,31 @@ def seconds_lost(
 
     `ends` says that its way ends before something.
     """
-    if speed < SLOW:
-        return 0.0
-    s = settings
-    gained, aside, leftward, turned = _measured(states, line.x, line.z, line.heading, line.facing)
-    slower = max(speed - float(np.hypot(*states[0, 3:5])), 0.0)
-    behind = speed * duration - 0.5 * slower * slower / s.motion.acceleration - gained
-    behind += speed * s.dead_end * ends
-    lost = behind / speed + s.aside_cost * aside + s.turned_cost * turned
-    if not around:
+    lost = lost_on_line(prices_of(settings), line, speed, states, duration, ends)
+    if speed < SLOW or not around:
         return lost
-    crowd = s.crowded * max(s.polite - around.gap(states, *figure), 0.0)
-    return lost + s.wrong_side * leftward + crowd
+    crowd = settings.crowded * max(settings.polite - around.gap(states, *figure), 0.0)
+    return lost + settings.wrong_side * _leftward(line, states) + crowd
 
 
 @exact_kernel
-def _measured(states: Floats, x: float, z: float, heading: float, facing: float) -> tuple[float, float, float, float]:
-    """Metres gained along a line, mean distance from it, metres farther to its left than at first, mean turn."""
-    sine, cosine, count = np.sin(heading), np.cos(heading), states.shape[0]
-    aside, turned, leftmost = 0.0, 0.0, 0.0
+def lost_on_line(prices: Prices, line: TravelLine, speed: float, states: Floats, duration: float, ends: bool) -> float:
+    """`seconds_lost` where nothing moves."""
+    if speed < SLOW:
+        return 0.0
+    sine, cosine, count = np.sin(line.heading), np.cos(line.heading), states.shape[0]
+    aside, turned = 0.0, 0.0
     for k in range(count):
-        left = (states[k, 0] - x) * cosine - (states[k, 1] - z) * sine
-        aside += abs(left)
-        turned += abs(wrapped(states[k, 2] - facing))
-        leftmost = max(leftmost, left)
-    dx, dz = states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1]
-    first = (states[0, 0] - x) * cosine - (states[0, 1] - z) * sine
-    return dx * sine + dz * cosine, aside / count, max(leftmost - max(first, 0.0), 0.0), turned / count
+        aside += abs((states[k, 0] - line.x) * cosine - (states[k, 1] - line.z) * sine)
+        turned += abs(wrapped(states[k, 2] - line.facing))
+    gained = (states[-1, 0] - states[0, 0]) * sine + (states[-1, 1] - states[0, 1]) * cosine
+    slower = max(speed - np.hypot(states[0, 3], states[0, 4]), 0.0)
+    behind = speed * duration - 0.5 * slower * slower / prices.acceleration - gained
+    behind += speed * prices.dead_end * ends
+    return float(behind / speed + prices.aside * (aside / count) + prices.turned * (turned / count))
+
+
+def _leftward(line: TravelLine, states: Floats) -> float:
+    """How much farther to the left of a line a path gets than where it begins, metres."""
+    lefts = line.coordinates(states[:, 0], states[:, 1])[1]
+    return max(float(lefts.max()) - max(float(lefts[0]), 0.0), 0.0)

@@ -33,8 +33,8 @@ class RootMemory(NamedTuple):
         `widest` is the breadth in metres of a way round. Who was turned aside by an evasion still means the way that it
         led from.
         """
-        line, asked = self.line, asked_direction(command)
-        if line is not None and line.asked == asked and self._continues(start, line, widest):
+        line = self.line
+        if line is not None and line.asked == asked_direction(command) and self._continues(start, line, widest):
             return line
         if self.evading is not None and command.direction is None and self.still_turned(start, widest):
             start = start._replace(heading=self.evading[1].facing, turn=0.0)

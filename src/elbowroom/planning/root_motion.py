@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_inner_kernel, exact_kernel
-from elbowroom.planning.root_path import interpolate_root
+from elbowroom.planning.root_path import interpolate_between, interpolate_root, rates_at
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -26,6 +26,8 @@ _STILL = 1e-9  # lengths and speeds that are divided by are at least this
 _REST = 1e-6  # m/s and rad/s: what is slower stands
 _SIDLE = 0.6  # radians: the greatest angle between the way and the body's front when walking forward
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
+_AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
+_NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,6 @@ class Travel(NamedTuple):
     facing: float  # heading to hold; used unless `turns`
     turns: bool  # whether the body turns to where it goes
     stops: bool  # whether it must stand at the route's end
-    look_ahead: float  # metres along the route to the point that is aimed at
 
 
 @exact_inner_kernel
@@ -79,9 +80,9 @@ def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, inte
     sine, cosine = np.sin(b[2]), np.cos(b[2])
     b[3], b[4], b[5] = vx * sine + vz * cosine, vx * cosine - vz * sine, turn
     b[6] = a[6]
-    strides = 0.0
+    strides, rates, between = 0.0, rates_at(a, b), np.empty(ROOT_STATE)
     for i in range(_PHASE_STEPS):
-        between = interpolate_root(a, b, (i + 0.5) / _PHASE_STEPS, interval)
+        interpolate_between(a, b, rates, (i + 0.5) / _PHASE_STEPS, interval, between)
         strides += phase_rate(between[3], between[4], between[5])
     b[6] = a[6] + quickness * strides * interval / _PHASE_STEPS
 
@@ -162,9 +163,10 @@ def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, f
 @exact_kernel
 def follow(states: Floats, route: Floats, travel: Travel, interval: float, bounds: MotionBounds) -> None:
     """Fill the states by walking along `route` (m, 2), corner points x, z on the ground."""
+    look_ahead = _AIM + _AIM_LATER * travel.speed
     for k in range(states.shape[0] - 1):
         x, z, heading = states[k, 0], states[k, 1], states[k, 2]
-        aim_x, aim_z, left = _aim(route, x, z, travel.look_ahead)
+        aim_x, aim_z, left = _aim(route, x, z, look_ahead)
         speed = travel.speed
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
@@ -236,3 +238,13 @@ def dense_states(states: Floats, interval: float, spacing: float, wanted: Bools)
             owner[used] = k + 1
             used += 1
     return out[:used], owner[:used]
+
+
+@exact_kernel
+def gets_nowhere(states: Floats) -> bool:
+    """Whether a path (n+1, 7) ends where it begins, and keeps its heading on the way."""
+    least, most = states[0, 2], states[0, 2]
+    for k in range(states.shape[0]):
+        least, most = min(least, states[k, 2]), max(most, states[k, 2])
+    gone = np.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
+    return bool(gone < _NOWHERE and most - least < _AWAY)

@@ -14,18 +14,21 @@ from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.held import hold
 from elbowroom.planning.command import Command
 from elbowroom.planning.root_body import LowerBody
 from elbowroom.planning.root_evasion import EvasionFinder
 from elbowroom.planning.root_free import LegCheck
 from elbowroom.planning.root_line import TravelLine, wanted_speed, wanted_velocities
-from elbowroom.planning.root_lost import Figure, seconds_lost
+from elbowroom.planning.root_lost import Figure, prices_of, seconds_lost
 from elbowroom.planning.root_motion import MotionBounds
 from elbowroom.planning.root_moving import MovingAround
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root_profile import Profile
 from elbowroom.planning.root_query import Answer, RootQuery
+from elbowroom.planning.root_straight import Stretch, Walker, straight_walk
+from elbowroom.planning.root_way import WayFinder
 from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 
@@ -52,32 +55,49 @@ class RootPaths:
         self.bounds = MotionBounds(
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
         )
-        self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
+        self._check, self._ways = (
+            LegCheck(body, self.bounds, settings.skin, settings.spacing),
+            WayFinder(settings, body),
+        )
+        self._walker = hold(
+            Walker(self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings))
+        )
         self.evasions = tuple(
             EvasionFinder(humanoid, scene.boxes.table, grid) for grid in (settings.evasion, settings.wide)
         )
         self._figure = _figure(body.model)
-        self._moving = scene.moving
-        self.others = MovingBoxes()  # that move besides the scene's own
+        self._scenes = scene.moving
+        self.others = MovingBoxes()
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
 
     @property
-    def moving(self) -> MovingBoxes:
-        """All that moves."""
-        return self._moving + self.others if len(self.others) else self._moving
+    def others(self) -> MovingBoxes:
+        """What moves besides the scene's own."""
+        return self._others
+
+    @others.setter
+    def others(self, others: MovingBoxes) -> None:
+        self._others, self.moving = others, self._scenes + others if len(others) else self._scenes
 
     def _query(self, asked: Asked) -> RootQuery:
         """The paths from one start; the same while the same is asked for."""
-        key = (asked.start, *asked[2:], self.others)
+        key = (asked.start, *asked[2:], self._others)
         if self._last is None or self._last[0] != key:
             start, _, horizon, interval, start_time = asked
             around = MovingAround(self._check.body, self.moving, start_time, horizon, interval)
-            self._last = key, RootQuery(self.settings, self._check, start, horizon, interval, around)
+            reach = self._reach(horizon * interval)
+            self._last = key, RootQuery(self.settings, self._check, self._ways, start, horizon, interval, reach, around)
         return self._last[1]
 
     def _sight(self, asked: Asked, speed: float) -> float:
         """How far ahead the way is looked at, metres."""
         return max(self.settings.sight, speed * asked.horizon * asked.interval + self.settings.beyond)
+
+    def _reach(self, duration: float) -> float:
+        """Nothing farther from a start is met by a path of `duration` seconds, or by a way round; metres."""
+        s = self.settings
+        run = s.motion.run_speed * (duration + 1.0)
+        return max(s.sight + s.widest_detour, run + s.beyond) + 1.0
 
     def stopped(self, asked: Asked) -> RootPlan:
         """To a stand, or out of the way of what comes."""
@@ -95,9 +115,18 @@ class RootPaths:
 
     def travelled(self, asked: Asked, line: TravelLine, pace: float) -> RootPlan:
         """Along a line of travel."""
-        began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(asked.command, self.settings.motion)
+        began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
+        sight = self._sight(asked, speed)
+        if not self.moving.tracks:
+            stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
+            start = asked.start.as_array()
+            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)
+            if free:
+                kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
+                return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
+        query = self._query(asked)
         looks = query.checks
-        answer = query.travelled(line, pace * speed, self._sight(asked, speed))
+        answer = query.travelled(line, pace * speed, sight)
         return _plan(asked, answer, query.checks - looks, began, self._lost(asked, line, speed, answer))
 
     def evaded(

@@ -85,15 +85,16 @@ class RootPlanner:
         return self._commanded(Asked(start, command, horizon, interval, start_time), pace)
 
     def _commanded(self, asked: Asked, pace: float) -> RootPlan:
-        command, memory, paths = asked.command, self.memory, self._paths
+        command, memory, evading = asked.command, self.memory, self.memory.evading
+        line: TravelLine | None = None
         if command.idle:
-            plan, memory = paths.stopped(asked), memory._replace(line=None)
+            plan = self._paths.stopped(asked)
         elif _turns(command):
-            plan, memory = paths.steered(asked, pace), memory._replace(line=None, evading=None)
+            plan, evading = self._paths.steered(asked, pace), None
         else:
             line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
-            plan, memory = paths.travelled(asked, line, pace), memory._replace(line=line)
-        self.memory = memory._replace(last=plan.path.states)
+            plan = self._paths.travelled(asked, line, pace)
+        self.memory = RootMemory(line, plan.path.states, evading)
         return plan
 
     def candidates(
@@ -124,7 +125,7 @@ class RootPlanner:
 
     def _candidates(self, asked: Asked, paces: Sequence[float]) -> Iterator[RootPlan]:
         commanded = self._commanded(asked, 1.0)
-        known, line = self.memory.evading, self._line_to_leave(asked.command)
+        known, line = self.memory.evading, self.memory.line
         direct = known if self.memory.still_turned(asked.start, self.settings.widest_detour) else None
         offers: list[_Offer] = []
         if commanded.lost < self.settings.untroubled:
@@ -133,6 +134,8 @@ class RootPlanner:
             offers.append(_Offer(commanded.lost, (commanded, direct)))
         duration = asked.horizon * asked.interval
         offers += [_Offer(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
+        if wanted_speed(asked.command, self.settings.motion) < SLOW:
+            line = None  # who is in no hurry leaves no line
         grids = [] if line is None else list(self._paths.evasions)
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
             yield from self._steps_aside(asked, direct)
@@ -150,18 +153,13 @@ class RootPlanner:
         if len(self.moving):
             yield from self._steps_aside(asked, direct)
 
-    def _line_to_leave(self, command: Command) -> TravelLine | None:
-        """The line from which an evasion may lead; None for who stands, turns by hand or is in no hurry."""
-        slow = wanted_speed(command, self.settings.motion) < SLOW
-        return None if command.idle or _turns(command) or slow else self.memory.line
-
     def _steps_aside(self, asked: Asked, evading: Evading) -> Iterator[RootPlan]:
         """Short ways out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
             yield self._taken(plan, evading)
 
     def _taken(self, plan: RootPlan, evading: Evading) -> RootPlan:
-        self.memory = self.memory._replace(last=plan.path.states, evading=evading)
+        self.memory = RootMemory(self.memory.line, plan.path.states, evading)
         return plan
 
     def _evaded(self, asked: Asked, line: TravelLine, known: Evading, finder: EvasionFinder) -> list[_Offer]:

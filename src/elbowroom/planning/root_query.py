@@ -13,7 +13,7 @@ from elbowroom.planning.root_body import Neighbours
 from elbowroom.planning.root_evasion import Evasion
 from elbowroom.planning.root_free import FreeLegs, LegCheck
 from elbowroom.planning.root_line import TravelLine
-from elbowroom.planning.root_motion import Travel, brake, follow, steer
+from elbowroom.planning.root_motion import Travel, brake, follow, gets_nowhere, steer
 from elbowroom.planning.root_moving import MovingAround
 from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root_profile import Course, follow_profile
@@ -41,17 +41,18 @@ class RootQuery:
         self,
         settings: RootPlannerSettings,
         check: LegCheck,
+        ways: WayFinder,
         start: RootState,
         horizon: int,
         interval: float,
+        reach: float,
         around: MovingAround,
     ) -> None:
+        """`reach` is the metres from the start beyond which nothing is met."""
         self.settings, self.bounds, self.around = settings, check.bounds, around
         self.start, self.horizon, self.interval = start, horizon, interval
-        run = settings.motion.run_speed * (horizon * interval + 1.0)
-        reach = max(settings.sight + settings.widest_detour, run + settings.beyond)
-        self._boxes = check.body.near(start.x, start.z, reach + 1.0)
-        self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), WayFinder(settings, check.body)
+        self._boxes = check.body.near(start.x, start.z, reach)
+        self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), ways
         self._way: tuple[TravelLine, float, Way] | None = None
         self._looks = 0
 
@@ -148,8 +149,8 @@ class RootQuery:
         way = self._way_along(line, sight)
 
         def candidate(share: float) -> Floats:
-            states, wanted = self._blank(), share * speed
-            travel = Travel(wanted, line.facing, line.turns, way.ends, 0.3 + 0.3 * wanted)
+            states = self._blank()
+            travel = Travel(share * speed, line.facing, line.turns, way.ends)
             follow(states, way.route, travel, self.interval, self.bounds)
             return states
 
@@ -183,7 +184,7 @@ class RootQuery:
         return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole, number >= 0)
 
     def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
-        if _length(states) < 0.02 and np.ptp(states[:, 2]) < 0.05:
+        if gets_nowhere(states):
             return RootPlanKind.STOPPED
         if not whole:
             return RootPlanKind.SHORTENED

@@ -1,7 +1,6 @@
 """The way that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +8,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
 from elbowroom.planning.root_body import LowerBody, Neighbours
-from elbowroom.planning.root_hull import strip_is_free
-from elbowroom.planning.root_line import TravelLine
+from elbowroom.planning.root_hull import way_is_open
+from elbowroom.planning.root_line import TravelLine, straight_route
 from elbowroom.planning.root_plan import RootPlannerSettings
 from elbowroom.planning.root_route import find_route, route_points, shortened_route
 from elbowroom.world.walkable import WalkableMap, walkable_window
@@ -36,31 +35,17 @@ class WayFinder:
 
     def __init__(self, settings: RootPlannerSettings, body: LowerBody) -> None:
         self._settings, self._body = settings, body
+        self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
     def ahead(self, start: RootState, line: TravelLine, boxes: Neighbours, sight: float) -> Way:
         """The way from a start along a line of travel among `boxes`, `sight` metres of it."""
-        ahead, left = line.coordinates(start.x, start.z)
-        back = ahead + max(0.6, 1.5 * abs(left))
-        end = max(ahead + sight, back + 0.1)
-        straight = np.array([(start.x, start.z), line.point(back), line.point(end)])
-        if self._is_open(straight, boxes):
+        straight = straight_route(float(start.x), float(start.z), line, sight)
+        if way_is_open(straight, self.half, boxes.ground):
             return Way(straight, detour=False, ends=False, checks=0)
         free, checks = self._free_length(straight, boxes)
         if free >= sight:
             return Way(straight, detour=False, ends=False, checks=checks)
-        return self._round(straight, free, line, (ahead, left), boxes, sight, checks)
-
-    def _is_open(self, route: Floats, boxes: Neighbours) -> bool:
-        """Whether nothing at all stands on a strip along the route as broad as the standing figure."""
-        if not len(boxes.table):
-            return True
-        half = self._body.stance.radius + self._settings.margin + _MORE
-        places = route.tolist()
-        for (x, z), (next_x, next_z) in pairwise(places):
-            dx, dz = next_x - x, next_z - z
-            if not strip_is_free(x, z, math.atan2(dx, dz), math.hypot(dx, dz), half, boxes.ground):
-                return False
-        return True
+        return self._round(straight, free, line, boxes, sight, checks)
 
     def _free_length(self, route: Floats, boxes: Neighbours) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
@@ -75,13 +60,12 @@ class WayFinder:
         straight: Floats,
         free: float,
         line: TravelLine,
-        at: tuple[float, float],
         boxes: Neighbours,
         sight: float,
         checks: int,
     ) -> Way:
-        """The way round what stands `free` metres on in the straight way from `at`, metres ahead and to the left."""
-        s, (ahead, left) = self._settings, at
+        """The way round what stands `free` metres on in the straight way."""
+        s, (ahead, left) = self._settings, line.coordinates(*straight[0].tolist())
         windows: dict[float, WalkableMap] = {}
         for margin, cell in s.searches:
             if cell not in windows:
