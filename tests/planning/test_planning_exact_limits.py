@@ -145,7 +145,7 @@ def test_a_plan_that_does_not_go_on_from_the_earlier_one_is_not_joined_to_it() -
     earlier, last = planned()
     moved = last.local.configurations.copy()
     moved[0, 4] += 1e-3
-    elsewhere = last._replace(local=replace(last.local, configurations=moved))
+    elsewhere = last._replace(local=last.local._replace(configurations=moved))
     assert after(earlier, elsewhere) is elsewhere
     off_time = last._replace(root=replace(last.root, path=replace(last.root.path, start_time=0.7 * T)))
     assert after(earlier, off_time) is off_time

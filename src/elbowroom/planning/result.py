@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +31,7 @@ class SearchResult:
     nanoseconds: int  # wall time of the search, its validity tables included
 
 
-@dataclass(frozen=True)
-class GroupEvidence:
+class GroupEvidence(NamedTuple):
     """What the search for one group cost."""
 
     group: DofGroup
@@ -42,8 +42,7 @@ class GroupEvidence:
     nanoseconds: int
 
 
-@dataclass(frozen=True)
-class JointEvidence:
+class JointEvidence(NamedTuple):
     """What searching all groups together cost, and how it ended.
 
     FOUND: the cheapest way through the product of all postures that the searches had, by steps that had not been found
@@ -78,8 +77,7 @@ class Blockade:
     boxes: tuple[int, ...]  # numbers of obstacles in the scene; none for MOTION
 
 
-@dataclass(frozen=True, eq=False)
-class LocalPlan:
+class LocalPlan(NamedTuple):
     """Upper-body motion for a root path, or the status of the first group that found none."""
 
     status: PlanStatus

@@ -63,6 +63,10 @@ class RootPlan:
     nanoseconds: int
     lost: float = 0.0  # seconds that it costs against a walk as commanded, ways aside and turns included
 
+    def along(self, path: RootPath) -> "RootPlan":
+        """The same plan on another path."""
+        return RootPlan(path, self.kind, self.goal, self.checks, self.nanoseconds, self.lost)
+
     def going_on(self, path: RootPath) -> "RootPlan":
         """The same plan on a path for which nothing was searched any more."""
         return RootPlan(path, self.kind, self.goal, 0, 0, self.lost)

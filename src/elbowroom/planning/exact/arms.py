@@ -1,14 +1,12 @@
 """The ways of the arms under the waist's: clear of the obstacles, of the body, and the right arm of the left one."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
 from elbowroom.planning.exact.group import GroupTask, GroupWay, own_postures
-from elbowroom.planning.exact.kept import Asked
 from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
@@ -23,26 +21,24 @@ Floats32 = NDArray[np.float32]
 
 _ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
 _ARMS = LOCAL_GROUPS[1:]
+_NO_KEYS = np.zeros((0, LOCAL))
 
 
-@dataclass(frozen=True, eq=False)
-class Ways:
+class Ways(NamedTuple):
     """The ways of the groups, in order, as far as they were found; and the one that ended it."""
 
     ways: tuple[GroupWay, ...]
     failed: GroupWay | None
     reached: int  # the key time that all groups reached
-    asked: Asked | None = None  # what clearances were asked for; None if a group failed
+    keys: Floats = _NO_KEYS  # the key postures of the groups side by side, (n+1, 11) if none failed, and
+    velocities: Floats = _NO_KEYS  # the velocities there
 
-    @cached_property
-    def keys(self) -> Floats:
-        """The key postures of the groups side by side, (n+1, 11) if none failed."""
-        return np.concatenate([way.keys for way in self.ways], axis=1)
-
-    @cached_property
-    def velocities(self) -> Floats:
-        """The velocities there, likewise."""
-        return np.concatenate([way.velocities for way in self.ways], axis=1)
+    @staticmethod
+    def joined(ways: list[GroupWay], reached: int) -> "Ways":
+        """The ways of all groups."""
+        keys = np.concatenate([way.keys for way in ways], axis=1)
+        velocities = np.concatenate([way.velocities for way in ways], axis=1)
+        return Ways(tuple(ways), None, reached, keys, velocities)
 
 
 class Arms:
@@ -76,7 +72,7 @@ class Arms:
                 if way.reached < horizon:
                     return Ways(tuple(ways), way, way.reached)
                 ways.append(way)
-            found = Ways(tuple(ways), None, horizon, self._asked(ways))
+            found = Ways.joined(ways, horizon)
             contact = self._self_contact(found)
             if contact is None:
                 return found
@@ -123,8 +119,3 @@ class Arms:
         problem, keys, rates = self._problem, found.keys, found.velocities
         arms = self._own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
         return next(((arm, k) for k, arm in enumerate(arms.tolist()) if arm >= 0), None)
-
-    def _asked(self, ways: list[GroupWay]) -> Asked:
-        """The clearances that were asked for: less where the start has less."""
-        most = np.array([[way.most] for way in ways])
-        return Asked(np.minimum(self._problem.asked_margins, most), np.minimum(self._problem.asked_skins, most))

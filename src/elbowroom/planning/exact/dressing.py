@@ -93,7 +93,7 @@ class Dressing:
             found = yield from self.together(rounds)
         if found.failed is not None:
             return None
-        self.asked = found.asked
+        self.asked = self.problem.asked.at_most([way.most for way in found.ways])
         evidence, joint = self.ledger.evidence(), self.ledger.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
@@ -171,7 +171,7 @@ class Dressing:
         waists = known[order[np.isfinite(prices[order])]]
         if depth < len(waist.keys):
             waists = np.concatenate([waist.keys[depth : depth + 1], waists])
-        margin = float(self.problem.margins[depth])
+        margin = float(self.problem.anew.margins[number, depth])
         return Blocked(depth, self._surroundings(), self.goals[depth, at], margin, waists)
 
     def waist_at(self, depth: int) -> Floats:

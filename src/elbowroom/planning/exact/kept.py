@@ -10,6 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import LOCAL_GROUPS
+from elbowroom.planning.exact.settings import ExactSettings
+
 Floats = NDArray[np.float64]
 
 
@@ -30,6 +33,15 @@ class Asked(NamedTuple):
         moved = self.skins[:, first:][:, :horizon]
         skins[:, : moved.shape[1]] = moved
         return Asked(margins, skins)
+
+    def beside(self, other: "Asked") -> "Asked":
+        """The lesser of two."""
+        return Asked(np.minimum(self.margins, other.margins), np.minimum(self.skins, other.skins))
+
+    def at_most(self, most: list[float]) -> "Asked":
+        """No more than so much for each group."""
+        rows = np.array(most)[:, None]
+        return Asked(np.minimum(self.margins, rows), np.minimum(self.skins, rows))
 
     def then(self, at: int, later: "Asked") -> "Asked":
         """These until the key time `at`, and `later` ones, which begin there."""
@@ -57,3 +69,10 @@ class Kept(NamedTuple):
     def freely(keys: Floats) -> "Kept":
         """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
         return Kept(keys, len(keys), Asked(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf)))
+
+
+def clearances(settings: ExactSettings, interval: float, count: int) -> Asked:
+    """What is asked for in the next key intervals, so many of `interval` seconds: less soon than later."""
+    shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
+    row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
+    return Asked(settings.margin * row, settings.skin * row[:, :-1])

@@ -135,7 +135,7 @@ class ExactPlanner:
             return None
         whole = yield from self._prolonged(left, root, query, Effort.QUICK)
         if whole is None:
-            shorter = replace(root, path=root.path.until(near))
+            shorter = root.along(root.path.until(near))
             whole = yield from self._prolonged(left, shorter, query, Effort.QUICK)
         return whole
 
@@ -214,7 +214,7 @@ class ExactPlanner:
         if whole is None and (last is None or len(root_planner.moving)):
             whole = self._braked(root, upper.reached, root_planner, query, harsh=True)
         whole = whole or last or Whole(root, upper.plan)
-        return whole._replace(local=replace(whole.local, blockade=why))
+        return whole._replace(local=whole.local._replace(blockade=why))
 
     def _braked(
         self, root: RootPlan, reached: int, root_planner: RootPlanner, query: MotionQuery, *, harsh: bool = False

@@ -72,12 +72,11 @@ def after(earlier: Whole, whole: Whole) -> Whole:
     there, here = (known.states[at], rows[at], velocities[at]), (path.states[0], local.configurations[0], speeds[0])
     if apart > _SAME_TIME * path.interval or any(np.abs(a - b).max() > _SAME for a, b in zip(there, here, strict=True)):
         return whole
-    joined = replace(
-        local,
+    joined = local._replace(
         configurations=np.concatenate([rows[:at], local.configurations]),
         goals=np.concatenate([earlier.local.goals[:at], local.goals]),
         velocities=np.concatenate([velocities[:at], speeds]),
     )
     states = np.concatenate([known.states[:at], path.states])
-    longer = replace(whole.root, path=replace(known, states=states))
+    longer = whole.root.along(RootPath(known.start_time, known.interval, states))
     return Whole(longer, joined, earlier.asked.then(at, whole.asked))

@@ -19,7 +19,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.exact.dressing import Dressing
 from elbowroom.planning.exact.group import Group, Weights
-from elbowroom.planning.exact.kept import Asked, Kept, Start
+from elbowroom.planning.exact.kept import Asked, Kept, Start, clearances
 from elbowroom.planning.exact.lattice import OWN, Work, new_work
 from elbowroom.planning.exact.masks import new_masks
 from elbowroom.planning.exact.near_boxes import NearBoxes, near_boxes
@@ -54,6 +54,8 @@ _SPARE = 0.05  # metres
 
 class Effort(Enum):
     """What is tried before it is said that there is no way."""
+
+    __hash__ = object.__hash__  # as `DofGroup` has it
 
     QUICK = "quick"  # the groups one after the other
     GLANCE = "glance"  # then all together, at first sight
@@ -91,6 +93,7 @@ class UpperBody:
         self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
         self._shelves: dict[float, Shelves] = {}
+        self._clearances: dict[float, Asked] = {}
         self.own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
         self._own_motion = OwnMotion(self._model, self.own_body.pairs)
         self._refinement = RefinementSettings()
@@ -166,19 +169,11 @@ class UpperBody:
         shelves = self._shelves_for(path)
         goals = goal_configurations(self.goals, path)
         roots = root_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
-        margins, skins = self._margins(path, begins.ahead)
         self._contacts.begin(path.start_time)
-        problem = PathProblem(path, goals, kept, begins, roots, near, margins, skins)
-        return Dressing(
-            shelves,
-            weights,
-            self.settings,
-            self.own_body,
-            self._own_motion,
-            self._contacts,
-            legs,
-            problem,
-        )
+        asked = self._asked(path, begins.ahead)
+        problem = PathProblem.of(path, goals, kept, begins, roots, near, asked)
+        parts = self.own_body, self._own_motion, self._contacts
+        return Dressing(shelves, weights, self.settings, *parts, legs, problem)
 
     def _refine(self, dressing: Dressing) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""
@@ -219,11 +214,12 @@ class UpperBody:
         made = Group(postures, levers, limits(group), speed, acceleration, tables, ways, masks)
         return made, new_work(horizon + 1, width + OWN)
 
-    def _margins(self, path: RootPath, ahead: int) -> tuple[Floats, Floats]:
-        """Clearances of nodes (n+1,) and of the motion in each interval (n,): less is asked for soon than later."""
-        settings, times = self.settings, path.interval * np.arange(ahead, ahead + len(path.states))
-        shares = np.minimum(settings.soon_share + (1.0 - settings.soon_share) * times / settings.soon, 1.0)
-        return settings.margin * shares, settings.skin * shares[:-1]
+    def _asked(self, path: RootPath, ahead: int) -> Asked:
+        """Clearances of nodes and motion along a path that begins so many key intervals ahead."""
+        until, known = ahead + path.horizon, self._clearances.get(path.interval)
+        if known is None or known.skins.shape[1] < until:
+            known = self._clearances[path.interval] = clearances(self.settings, path.interval, 2 * until)
+        return known.since(ahead, path.horizon)
 
     def _shelves_for(self, path: RootPath) -> Shelves:
         known = self._shelves.get(path.interval)

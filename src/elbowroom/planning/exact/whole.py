@@ -40,15 +40,13 @@ def kept_of(whole: Whole, path: RootPath) -> Kept | None:
         hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
         for k in rows
     ]
-    both = Asked(np.minimum(asked.margins, later.margins), np.minimum(asked.skins, later.skins))
-    return Kept(np.array(between), last - first, both)
+    return Kept(np.array(between), last - first, asked.beside(later))
 
 
 def first_part(whole: Whole, horizon: int) -> Motion:
     """The first `horizon` key intervals."""
     root, local = whole.root, whole.local
-    shown = replace(root, path=root.path.until(horizon))
-    return Motion(shown, part(local, slice(horizon + 1), local.evidence, local.joint))
+    return Motion(root.along(root.path.until(horizon)), part(local, slice(horizon + 1), local.evidence, local.joint))
 
 
 def part(
@@ -75,9 +73,9 @@ def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
         return whole
     spent = {row.group: row for row in rows}
     evidence = tuple(
-        row if row.group not in spent else replace(spent[row.group], status=row.status) for row in whole.local.evidence
+        row if row.group not in spent else spent[row.group]._replace(status=row.status) for row in whole.local.evidence
     )
-    return whole._replace(local=replace(whole.local, evidence=evidence))
+    return whole._replace(local=whole.local._replace(evidence=evidence))
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
@@ -109,7 +107,7 @@ class Stand(NamedTuple):
         path = replace(root.path, start_time=time)
         return Whole(
             root.going_on(path),
-            replace(local, evidence=_free_of_charge(local), joint=None, blockade=why),
+            local._replace(evidence=_free_of_charge(local), joint=None, blockade=why),
             self.whole.asked,
         )
 
