@@ -21,7 +21,6 @@ from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody
-from elbowroom.planning.goal import goal_configurations
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.scene import Scene
@@ -43,7 +42,7 @@ def walk(horizon: int, begin: float) -> RootPath:
 
 def dressing_of(body: UpperBody, path: RootPath) -> Dressing:
     """A plan's dressing along a path that begins in the natural walk; nothing searched yet."""
-    start = goal_configurations(body.goals, path)[0]
+    start = body.goals(path)[0]
     return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
 
 

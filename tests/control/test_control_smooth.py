@@ -13,7 +13,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_motion import RootMotionSettings
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.scene import Scene
@@ -112,7 +112,7 @@ def test_half_a_second_after_the_last_obstacle_the_walk_is_natural(scene: str) -
     keys = [frame for frame in later if abs(frame.time / LIMITS.interval - round(frame.time / LIMITS.interval)) < 1e-6]
     assert len(keys) > 1
     shown = np.array([frame.q[DofGroup.ROOT.size :] for frame in keys])
-    natural = goal_configurations(natural_walk(), RootPath(0.0, DT, np.array([frame.root for frame in keys])))
+    natural = natural_walk()(RootPath(0.0, DT, np.array([frame.root for frame in keys])))
     assert np.abs(shown - natural).max() < 0.05
     for plan in {frame.plan.number: frame.plan for frame in later if frame.plan is not None}.values():
         at = plan.root.path.times >= frames[passed].time + 0.5

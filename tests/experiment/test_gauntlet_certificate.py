@@ -13,7 +13,7 @@ from elbowroom.experiment.gauntlet.motion import LEFT, RIGHT, WAIST
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED, HumanSpeeds
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.clearance import clearance, pairwise_clearance
 from gauntlet_courses import SAMPLE, course, stock
@@ -53,7 +53,7 @@ def natural_gaps(made: Course, phase: float) -> np.ndarray:
     """The least gap to each obstacle of the walk that begins in this phase."""
     way = np.arange(0.5, made.line.length, 0.02)
     states = walk_along(made.line, way, WALK_SPEED, phase + phase_rate(WALK_SPEED, 0.0, 0.0) / WALK_SPEED * way)
-    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))
+    uppers = natural_walk()(RootPath(0.0, 1.0, states))
     return np.asarray(gaps_of(made, states, uppers).min(axis=(0, 2)))
 
 

@@ -11,7 +11,7 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.verdict import BodyVerdict, JudgeSettings, judge
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_pairs import SKIN, self_clearances, self_pairs
 from elbowroom.world.boxes import Boxes
@@ -26,7 +26,7 @@ def walking(seconds: float) -> tuple[Floats, Floats]:
     count = round(60 * seconds)
     roots = np.zeros((count, 7))
     roots[:, 1], roots[:, 3], roots[:, 6] = np.arange(count) * 1.1 / 60, 1.1, np.arange(count) * 0.9 / 60
-    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1 / 60, roots))
+    uppers = natural_walk()(RootPath(0.0, 1 / 60, roots))
     return np.concatenate([roots[:, :3], uppers], axis=1), roots
 
 

@@ -13,7 +13,7 @@ from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root_path import RootPath
@@ -75,7 +75,7 @@ def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, floa
 
 
 def planned(made: Scene, body: UpperBody) -> tuple[float, float] | None:
-    start = goal_configurations(natural_walk(), walk(speed=0.0))[0]
+    start = natural_walk()(walk(speed=0.0))[0]
     plan = body.plan(walk(), Start(start, np.zeros(LOCAL))).plan
     return shown_legs(made, walk(), plan.configurations) if plan.status is PlanStatus.FOUND else None
 

@@ -18,7 +18,7 @@ from elbowroom.planning.exact.kept import Kept, Start
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.boxes import Boxes
@@ -57,7 +57,7 @@ def course(seed: int, count: int = 5) -> Scene:
 
 
 def hanging() -> Floats:
-    start: Floats = goal_configurations(natural_walk(), walk(speed=0.0))[0]
+    start: Floats = natural_walk()(walk(speed=0.0))[0]
     return start
 
 
@@ -97,7 +97,7 @@ def test_what_is_found_is_free_as_shown_and_within_the_speed_limits(humanoid: Hu
 
 def test_in_the_open_the_walk_is_natural(humanoid: Humanoid) -> None:
     path = walk()
-    start = goal_configurations(natural_walk(), path)[0]
+    start = natural_walk()(path)[0]
     plan = ExactPlanner(humanoid, Scene.load("empty")).plan(path, start, np.random.default_rng(0))
     assert np.allclose(plan.configurations, plan.goals)
     assert plan.checks < 3 * 200

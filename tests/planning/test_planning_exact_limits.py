@@ -17,7 +17,7 @@ from elbowroom.planning.exact.recent import Recent, after
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
 from elbowroom.planning.exact.whole import Whole
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root_path import RootPath
@@ -79,7 +79,7 @@ def asked(plan: UpperPlan) -> tuple[float, float]:
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
 def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(body: UpperBody, share: float) -> None:
-    rng, start = np.random.default_rng(7), goal_configurations(natural_walk(), walk())[0]
+    rng, start = np.random.default_rng(7), natural_walk()(walk())[0]
     found = harder = 0
     for _ in range(8):
         velocity = at_speed(rng, share)
@@ -101,7 +101,7 @@ def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(bod
 def planned() -> tuple[Whole, Whole]:
     """A plan, and one that goes on from its first key time."""
     planner, roots, wholes = ExactPlanner(HUMANOID, beside()), RootPlanner(HUMANOID, beside()), []
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     for _ in range(2):
         motion = planner.plan_motion(roots, query)

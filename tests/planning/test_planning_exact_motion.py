@@ -18,7 +18,7 @@ from elbowroom.planning.exact.kept import Kept, Start
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -56,7 +56,7 @@ def posts() -> Scene:
 def played(humanoid: Humanoid, scene: Scene, count: int) -> tuple[Floats, Floats, Floats, Floats]:
     """Key frames, velocities, goals and places of a walk that is planned anew at every key frame."""
     planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     keys, velocities, goals, places = [], [], [], []
     for _ in range(count):
@@ -79,7 +79,7 @@ def played(humanoid: Humanoid, scene: Scene, count: int) -> tuple[Floats, Floats
 
 def test_what_was_computed_before_changes_no_plan(humanoid: Humanoid) -> None:
     body = UpperBody(humanoid, posts(), ExactSettings())
-    start = goal_configurations(natural_walk(), walk(1, speed=0.0))[0]
+    start = natural_walk()(walk(1, speed=0.0))[0]
     kept, velocity, checks = None, np.zeros(LOCAL), []
     for first in range(6):
         path = walk(16, first)
@@ -121,7 +121,7 @@ def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> 
 def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoid: Humanoid) -> None:
     wall = scene_of([[0.0, 1.25, 1.6]], [[3.0, 0.1, 0.6]])  # legs pass, nobody else does
     planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     checks = []
     for _ in range(40):
@@ -150,7 +150,7 @@ def test_a_reset_leaves_no_trace(humanoid: Humanoid) -> None:
     """Also of what was thought through: after it, a blocked way is planned as it was the first time."""
     wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
     planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     first = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
 
     def walked() -> list[tuple[Floats, Floats, tuple[float, float] | None]]:
@@ -237,7 +237,7 @@ def test_a_lone_step_is_within_the_limits_however_it_goes_on() -> None:
 def test_a_plan_in_a_hurry_takes_what_the_groups_find_one_after_the_other(humanoid: Humanoid) -> None:
     """Where a plan that has the time searches them all together."""
     scene = Scene.load("d")
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
 
     def planned(ahead: float, *, hurry: bool) -> LocalPlan:
         planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
@@ -255,7 +255,7 @@ def test_a_plan_in_a_hurry_takes_what_the_groups_find_one_after_the_other(humano
 def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_trace(humanoid: Humanoid) -> None:
     wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
     planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     asked: list[None] = []
 
     def superseded() -> bool:

@@ -15,7 +15,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.exact import farther
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.root_path import RootPath
@@ -48,7 +48,7 @@ def posts() -> Scene:
 
 
 def first_query(command: Command = FORWARD) -> MotionQuery:
-    upper = goal_configurations(natural_walk(), RootPath(0.0, T, np.zeros((2, 7))))[0]
+    upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     return MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), command, LONG, T)
 
 

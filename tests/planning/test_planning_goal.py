@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, within_limits
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, within_limits
 from elbowroom.body.stock_clips import arm_swing_goal
-from elbowroom.planning.goal import fixed_goal, goal_configurations, natural_walk, periodic_goal
+from elbowroom.planning.goal import fixed_goal, natural_walk, periodic_goal, side_by_side
 from elbowroom.planning.root_path import RootPath
 
 
@@ -35,19 +35,24 @@ def test_a_periodic_goal_follows_phase_and_speed_of_the_path() -> None:
 
 
 def test_arms_hang_still_when_the_body_stands() -> None:
-    goals = goal_configurations(natural_walk(), walk(0.0, rate=0.0))
+    goals = natural_walk()(walk(0.0, rate=0.0))
     np.testing.assert_array_equal(goals, np.tile(goals[0], (31, 1)))
     np.testing.assert_allclose(goals[0, 3:7], goals[0, 7:])
 
 
 def test_arms_swing_against_each_other_at_full_speed() -> None:
-    goals = goal_configurations(natural_walk(), walk(1.3))
+    goals = natural_walk()(walk(1.3))
     left, right = goals[:, 3], goals[:, 7]
     assert np.corrcoef(left, right)[0, 1] < -0.8
 
 
 def test_the_natural_walk_has_a_goal_for_every_group_and_stays_within_limits() -> None:
-    goals = natural_walk()
-    assert set(goals) == set(LOCAL_GROUPS)
-    q = np.concatenate([np.zeros((31, 3)), goal_configurations(goals, walk(2.2, rate=1.2))], axis=1)
-    assert within_limits(q)
+    uppers = natural_walk()(walk(2.2, rate=1.2))
+    assert uppers.shape == (31, LOCAL)
+    assert within_limits(np.concatenate([np.zeros((31, 3)), uppers], axis=1))
+
+
+def test_the_natural_walk_is_the_goals_of_each_group_side_by_side() -> None:
+    path = RootPath(0.0, 0.15, np.random.default_rng(5).normal(size=(200, 7)))
+    groups = {group: periodic_goal(group) for group in LOCAL_GROUPS}
+    np.testing.assert_array_equal(natural_walk()(path), side_by_side(groups)(path))

@@ -17,7 +17,7 @@ from elbowroom.planning.exact.kept import Start
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import Effort, UpperBody
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import BlockadeKind, PlanStatus
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_pairs import self_clearances, self_pairs
@@ -58,7 +58,7 @@ def walk(horizon: int = 8) -> RootPath:
 
 def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> Dressing:
     body = UpperBody(humanoid, scene, SETTINGS)
-    start = goal_configurations(natural_walk(), path)[0]
+    start = natural_walk()(path)[0]
     return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
 
 
@@ -164,7 +164,7 @@ def test_the_named_obstacles_close_the_slice_and_each_is_needed(humanoid: Humano
 def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid) -> None:
     """A beam that a few waists of the clips do not pass, and more waists do."""
     scene, path = scene_of((((0.0, 1.72, 1.3), (1.0, 0.22, 0.05)),)), walk(12)
-    start = goal_configurations(natural_walk(), path)[0]
+    start = natural_walk()(path)[0]
     plans = []
     for _ in range(2):
         body = UpperBody(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))

@@ -11,7 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.errors import InputError
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.local_planner import GroupSettings, LocalPlanner, LocalPlannerSettings
 from elbowroom.planning.names import PLANNER_NAMES
 from elbowroom.planning.planner import PLANNERS, make_planner
@@ -46,7 +46,7 @@ def course(seed: int, count: int = 8) -> Scene:
 
 
 def hanging() -> Floats:
-    start: Floats = goal_configurations(natural_walk(), walk(speed=0.0))[0]
+    start: Floats = natural_walk()(walk(speed=0.0))[0]
     return start
 
 
@@ -110,7 +110,7 @@ def test_in_free_space_the_natural_walk_is_tracked(humanoid: Humanoid) -> None:
     planner = LocalPlanner(humanoid, Scene.load("empty"))
     for speed in (0.0, 0.4, 0.8, 1.1, 1.4):
         path = walk(speed=speed, horizon=20, phase=0.13)
-        start = goal_configurations(natural_walk(), path)[0]
+        start = natural_walk()(path)[0]
         plan = planner.plan(path, start, np.random.default_rng(0))
         assert plan.status is PlanStatus.FOUND
         assert np.linalg.norm(plan.configurations[:, 3:7] - plan.goals[:, 3:7], axis=1).max() < 0.15

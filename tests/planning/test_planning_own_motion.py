@@ -13,7 +13,7 @@ from elbowroom.planning.exact import own_motion
 from elbowroom.planning.exact.curve import smooth_tangents
 from elbowroom.planning.exact.own_looks import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
 from elbowroom.planning.exact.own_motion import OwnMotion
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_pairs import self_clearances, self_pairs
@@ -32,7 +32,7 @@ def swung(seed: int, horizon: int = 12) -> tuple[RootPath, Floats, Floats]:
     states, times = np.zeros((horizon + 1, 7)), T * np.arange(horizon + 1)
     states[:, 1], states[:, 3], states[:, 6] = 1.1 * times, 1.1, 0.9 * times
     path = RootPath(0.0, T, states)
-    keys = goal_configurations(natural_walk(), path) + rng.uniform(-0.5, 0.5, (1, LOCAL))
+    keys = natural_walk()(path) + rng.uniform(-0.5, 0.5, (1, LOCAL))
     keys[:, columns_of(DofGroup.WAIST)] = 0.3 * rng.uniform(-1.0, 1.0, 3) * [1.0, 1.0, 0.0]
     keys += rng.uniform(-0.08, 0.08, keys.shape)
     rates = [

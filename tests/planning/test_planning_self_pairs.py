@@ -13,7 +13,7 @@ from elbowroom.body.kinematics import arm_capsules, body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.axis_gaps import arm_clearances, clear_pairs, lower_to_body
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import axis_distance
 from elbowroom.planning.self_pairs import EXEMPT, SKIN, body_from_chest, self_clearances, self_pairs
@@ -106,7 +106,7 @@ def natural_clearance(humanoid: Humanoid) -> float:
     rng = np.random.default_rng(2)
     states = np.zeros((200, 7))
     states[:, 3], states[:, 6] = rng.uniform(0.0, 2.2, 200), rng.uniform(0.0, 1.0, 200)
-    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))
+    uppers = natural_walk()(RootPath(0.0, 1.0, states))
     model = body_model(humanoid)
     return float(self_clearances(model, self_pairs(model), states, uppers).min())
 
@@ -133,7 +133,7 @@ def test_arms_through_body_and_through_each_other_are_found() -> None:
     uppers = np.zeros((3, sum(group.size for group in LOCAL_GROUPS)))
     start = DofGroup.LEFT_ARM.value.start - DofGroup.WAIST.value.start
     arm = DofGroup.LEFT_ARM.size
-    hanging = goal_configurations(natural_walk(), RootPath(0.0, 1.0, np.zeros((2, 7))))[0]
+    hanging = natural_walk()(RootPath(0.0, 1.0, np.zeros((2, 7))))[0]
     uppers[:] = hanging
     uppers[0, start : start + arm] = np.deg2rad([20.0, -30.0, 70.0, 120.0])  # forearm through the belly
     uppers[1, start : start + 2 * arm] = np.deg2rad([80.0, -35.0, 0.0, 10.0] * 2)  # arms crossed straight ahead
@@ -151,5 +151,5 @@ def test_hands_keep_off_the_legs_of_who_steps_sideways(forward: float) -> None:
     for lateral in (-0.6, -0.3, 0.15, 0.45, 0.8):
         roots = np.zeros((len(phases), 7))
         roots[:, 3], roots[:, 4], roots[:, 6] = forward, lateral, phases
-        uppers = goal_configurations(goals, RootPath(0.0, 1.0, roots))
+        uppers = goals(RootPath(0.0, 1.0, roots))
         assert self_clearances(model, pairs, roots, uppers).min() > 0.0

@@ -9,14 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.clip_data import ClipData, parse_clips
 from elbowroom.body.dof import DofGroup
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 
 _ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 _FILES = ("waist.json", "arm.json")
 _SWING = "arm_swing"
-_HANGING = np.deg2rad([-2.0, 6.0, 3.0, 10.0])  # the relaxed arm of a body that stands
+HANGING = np.deg2rad([-2.0, 6.0, 3.0, 10.0])  # the relaxed arm of a body that stands
 
 # Where two swings a stride (each arm with every step) give way to one (each arm with the other leg): some 0.8 m/s.
 # D. Webb, R. H. Tuttle & M. Baksh, Am. J. Phys. Anthropol. 93 (1994); R. C. Wagenaar & R. E. A. van Emmerik,
@@ -75,8 +75,8 @@ def arm_swing_goal(group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Flo
         phase, speed = np.broadcast_arrays(phase, speed)
     starts, cubics = arm_swing(DofGroup.LEFT_ARM).cubics
     ahead = 0.0 if group is DofGroup.LEFT_ARM else 0.5
-    goal = _swings(starts, cubics, _HANGING, phase.ravel() + ahead, speed.ravel())
-    return goal.reshape(*phase.shape, len(_HANGING))
+    goal = _swings(starts, cubics, HANGING, phase.ravel() + ahead, speed.ravel())
+    return goal.reshape(*phase.shape, len(HANGING))
 
 
 @exact_kernel
@@ -84,19 +84,26 @@ def _swings(starts: Floats, cubics: Floats, hanging: Floats, phases: Floats, spe
     """`arm_swing_goal` (n, 4) at phases and speeds (n,): curves `cubics` (4, K, 4) from `starts` (K+1,) on."""
     out = np.empty((phases.shape[0], hanging.shape[0]))
     for n in range(phases.shape[0]):
-        pace = abs(speeds[n])
-        phase = phases[n] + (0.5 if speeds[n] < 0.0 else 0.0)
-        t = min(max((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0), 1.0)
-        single, width = t * t * (3.0 - 2.0 * t), _FULL * (1.0 - np.exp(-pace / _GROWTH))
-        for once in range(2):
-            time = phase if once == 1 else 2.0 * phase
-            share = width * (single if once == 1 else 1.0 - single)
-            time -= np.floor(time)
-            k = 0
-            while k < cubics.shape[1] - 1 and starts[k + 1] <= time:
-                k += 1
-            u = time - starts[k]
-            for i in range(hanging.shape[0]):
-                value = ((cubics[0, k, i] * u + cubics[1, k, i]) * u + cubics[2, k, i]) * u + cubics[3, k, i]
-                out[n, i] = share * (value - hanging[i]) + (out[n, i] if once == 1 else hanging[i])
+        swing_into(starts, cubics, hanging, phases[n], speeds[n], out[n])
     return out
+
+
+@exact_lean_kernel
+def swing_into(starts: Floats, cubics: Floats, hanging: Floats, phase: float, speed: float, out: Floats) -> None:
+    """One row of `arm_swing_goal`, written to the first of `out`; the left arm's `cubics` are the right one's half a
+    stride on."""
+    pace = abs(speed)
+    phase += 0.5 if speed < 0.0 else 0.0
+    t = min(max((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0), 1.0)
+    single, width = t * t * (3.0 - 2.0 * t), _FULL * (1.0 - np.exp(-pace / _GROWTH))
+    for once in range(2):
+        time = phase if once == 1 else 2.0 * phase
+        share = width * (single if once == 1 else 1.0 - single)
+        time -= np.floor(time)
+        k = 0
+        while k < cubics.shape[1] - 1 and starts[k + 1] <= time:
+            k += 1
+        u = time - starts[k]
+        for i in range(hanging.shape[0]):
+            value = ((cubics[0, k, i] * u + cubics[1, k, i]) * u + cubics[2, k, i]) * u + cubics[3, k, i]
+            out[i] = share * (value - hanging[i]) + (out[i] if once == 1 else hanging[i])

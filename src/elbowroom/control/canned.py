@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
 
@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 def canned_walk(path: RootPath, start: Floats, motions: MotionSet = STOCK) -> LocalPlan:
     """The goal functions' upper-body motion along a root path, from `start` (LOCAL,) on, whatever it touches."""
-    goals = goal_configurations(natural_walk(motions), path)
+    goals = natural_walk(motions)(path)
     configurations = goals.copy()
     configurations[0] = start
     return LocalPlan(PlanStatus.FOUND, configurations, goals, ())
@@ -21,5 +21,5 @@ def canned_walk(path: RootPath, start: Floats, motions: MotionSet = STOCK) -> Lo
 
 def standing_posture(root: Floats) -> Floats:
     """The relaxed upper body (LOCAL,) of somebody who stands at root state (7,)."""
-    posture: Floats = goal_configurations(natural_walk(), RootPath(0.0, 1.0, np.stack([root, root])))[0]
+    posture: Floats = natural_walk()(RootPath(0.0, 1.0, np.stack([root, root])))[0]
     return posture

@@ -10,20 +10,22 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.stock_clips import HANGING, arm_swing, swing_into
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
 
-
 _ABDUCTION = 1  # component of an arm
 _LIFT = 0.25  # radians for each m/s to the side
 _SLIGHT = 0.05  # m/s: below, it sets in gently
+_LEFT_ARM, _RIGHT_ARM = (columns_of(arm).start for arm in LOCAL_GROUPS[1:])
 
 
 class GoalFunction(Protocol):
-    """Gives a group's goal configurations along a root path."""
+    """Gives the goal configurations of a group, or of all local groups, along a root path."""
 
     def __call__(self, path: RootPath) -> Floats:
         """Goal configurations (n+1, d) at the path's key times, radians."""
@@ -54,16 +56,36 @@ def periodic_goal(group: DofGroup, motions: MotionSet = STOCK) -> GoalFunction:
     return goals
 
 
-def natural_walk(motions: MotionSet = STOCK) -> Mapping[DofGroup, GoalFunction]:
-    """The goal functions of the paper's system: waist upright, arms swinging; or both as a recorded walk has them."""
-    return {
-        group: fixed_goal(np.zeros(group.size))
-        if group is DofGroup.WAIST and motions.swing is None
-        else periodic_goal(group, motions)
-        for group in LOCAL_GROUPS
-    }
+def side_by_side(goals: Mapping[DofGroup, GoalFunction]) -> GoalFunction:
+    """The goals of all local groups, as one function of configurations (n+1, 11): waist, left arm, right arm."""
+
+    def together(path: RootPath) -> Floats:
+        return np.concatenate([goals[group](path) for group in LOCAL_GROUPS], axis=1)
+
+    return together
 
 
-def goal_configurations(goals: Mapping[DofGroup, GoalFunction], path: RootPath) -> Floats:
-    """The goals of all local groups side by side: (n+1, 11) waist, left arm, right arm."""
-    return np.concatenate([goals[group](path) for group in LOCAL_GROUPS], axis=1)
+def natural_walk(motions: MotionSet = STOCK) -> GoalFunction:
+    """The goals of all local groups (n+1, 11) in the paper's system: waist upright, arms swinging; or both as a
+    recorded walk has them."""
+    if motions.swing is not None:
+        return side_by_side({group: periodic_goal(group, motions) for group in LOCAL_GROUPS})
+    starts, cubics = arm_swing(DofGroup.LEFT_ARM).cubics
+
+    def together(path: RootPath) -> Floats:
+        return _stock_walk(starts, cubics, HANGING, path.states)
+
+    return together
+
+
+@exact_kernel
+def _stock_walk(starts: Floats, cubics: Floats, hanging: Floats, states: Floats) -> Floats:
+    """An upright waist and the `periodic_goal` of both arms in the stock swing, (n+1, 11) at root states (n+1, 7)."""
+    out = np.zeros((states.shape[0], LOCAL))
+    for n in range(states.shape[0]):
+        forward, lateral, phase = states[n, 3], states[n, 4], states[n, 6]
+        lift = _LIFT * (np.hypot(lateral, _SLIGHT) - _SLIGHT)
+        for arm, ahead in ((_LEFT_ARM, 0.0), (_RIGHT_ARM, 0.5)):
+            swing_into(starts, cubics, hanging, phase + ahead, forward, out[n, arm:])
+            out[n, arm + _ABDUCTION] += lift
+    return out

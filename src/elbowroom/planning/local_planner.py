@@ -13,7 +13,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning import figure6
 from elbowroom.planning.activity_graph import ActivityGraph
 from elbowroom.planning.frames import compose
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.limb import limb_of, pose
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus, SearchResult
 from elbowroom.planning.roadmap import PosedGraph, Roadmap
@@ -97,7 +97,7 @@ class LocalPlanner:
 
         `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all boxes.
         """
-        goals = goal_configurations(self.goals, path)
+        goals = self.goals(path)
         configurations = np.empty_like(goals)
         evidence: list[GroupEvidence] = []
         positions, rotations = pelvis_frames(self._model, path.states)

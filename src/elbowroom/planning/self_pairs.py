@@ -6,7 +6,6 @@ So the natural walk is free for every avatar. Not looked at is what a joint hold
 parts of the trunk, and an upper arm against the trunk below the neck, where its shoulder is rooted.
 """
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +17,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
 from elbowroom.planning.axis_gaps import clear_pairs, pair_clearances
 from elbowroom.planning.frames import compose
-from elbowroom.planning.goal import GoalFunction, goal_configurations, natural_walk
+from elbowroom.planning.goal import GoalFunction, natural_walk
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -44,7 +43,7 @@ class SelfPairs(NamedTuple):
     limits: Floats32  # (P,) metres
 
 
-def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None = None) -> SelfPairs:
+def self_pairs(model: BodyModel, goals: GoalFunction | None = None) -> SelfPairs:
     """Measure the natural walk of a body, or what `goals` make of it."""
     rest = np.concatenate([model.roots.indices, model.trunk.indices])
     joints = np.concatenate([model.roots.joints, model.trunk.joints])
@@ -75,12 +74,12 @@ def self_pairs(model: BodyModel, goals: Mapping[DofGroup, GoalFunction] | None =
     )  # fmt: skip
 
 
-def _natural_walk(model: BodyModel, goals: Mapping[DofGroup, GoalFunction]) -> Floats32:
+def _natural_walk(model: BodyModel, goals: GoalFunction) -> Floats32:
     """All capsules (C, 6, N) over strides at several speeds."""
     states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
     states[:, 3] = np.repeat(_SPEEDS, _PHASES)
     states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
-    return posture_capsules(model, _postures(goal_configurations(goals, RootPath(0.0, 1.0, states))), states)
+    return posture_capsules(model, _postures(goals(RootPath(0.0, 1.0, states))), states)
 
 
 def _postures(uppers: Floats) -> Floats:

@@ -17,7 +17,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanner
 from elbowroom.world.boxes import Boxes
@@ -78,7 +78,7 @@ class CrossingProblem:
 def crossing_problem(humanoid: Humanoid, scene: Scene) -> CrossingProblem:
     """The problem of crossing a scene."""
     path = _straight_walk(humanoid, scene)
-    goals = goal_configurations(natural_walk(), path)
+    goals = natural_walk()(path)
     settings = ExactSettings()
     speeds = []
     for group in LOCAL_GROUPS:

@@ -13,7 +13,7 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_planner import RootPlanner
@@ -58,7 +58,7 @@ def crossing_calls(humanoid: Humanoid, scene: Scene, key_frames: int, most: int 
 def _first_query(scene: Scene) -> MotionQuery:
     root = scene.start
     path = RootPath(0.0, INTERVAL, np.tile(root.as_array(), (2, 1)))
-    upper = goal_configurations(natural_walk(), path)[0]
+    upper = natural_walk()(path)[0]
     return MotionQuery(0.0, root, upper, np.zeros_like(upper), _FORWARD, _QUEUE, INTERVAL)
 
 

@@ -17,7 +17,7 @@ from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 from elbowroom.planning.command import Command
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root_path import RootPath
 from elbowroom.world.scene import Scene
@@ -163,7 +163,7 @@ def _judged(
 ) -> Run:
     verdict = judge(motion, humanoid, scene, JudgeSettings(mesh=False))
     upper = motion.q[:, DofGroup.ROOT.size :]
-    goals = goal_configurations(natural_walk(), RootPath(0.0, DT, motion.roots))
+    goals = natural_walk()(RootPath(0.0, DT, motion.roots))
     away = float(np.sqrt(np.mean((upper - goals) ** 2)))
     swing = float(np.linalg.norm(np.diff(upper, axis=0), axis=1).mean() / DT)
     return Run(*about, through, *costs, verdict.capsules.touching, away, swing)

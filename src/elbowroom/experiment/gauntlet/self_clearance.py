@@ -7,7 +7,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_contact import axis_distance
 
@@ -52,7 +52,7 @@ def _natural_walk() -> tuple[Floats, Floats]:
     states = np.zeros((2 * _PHASES, ROOT_STATE))
     states[_PHASES:, 3] = 1.1
     states[_PHASES:, 6] = np.arange(_PHASES) / _PHASES
-    return states, goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))
+    return states, natural_walk()(RootPath(0.0, 1.0, states))
 
 
 def _pairs(names: tuple[str, ...]) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
 from elbowroom.experiment.gauntlet.certificate import Certificate
 from elbowroom.experiment.gauntlet.line import CourseLine, walk_along
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -65,7 +65,7 @@ class SweptBody:
 
     def _natural_walk(self, line: CourseLine, way: Floats, phases: Floats) -> BodyRows:
         states = walk_along(line, way, WALK_SPEED, phases)
-        uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, states))
+        uppers = natural_walk()(RootPath(0.0, 1.0, states))
         q = np.concatenate([states[:, :3], uppers], axis=1)
         segments = posture_capsules(self._model, q, states)[self._upper]
         return rows_of(segments, self._radii[self._upper], way)

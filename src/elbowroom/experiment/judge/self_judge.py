@@ -17,7 +17,7 @@ from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Posed, Poser
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root_path import RootPath
 
 Floats = NDArray[np.float64]
@@ -95,7 +95,7 @@ def _natural_poses(humanoid: Humanoid) -> Posed:
     roots = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
     roots[:, 3] = np.repeat(_SPEEDS, _PHASES)
     roots[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
-    uppers = goal_configurations(natural_walk(), RootPath(0.0, 1.0, roots))
+    uppers = natural_walk()(RootPath(0.0, 1.0, roots))
     q = np.concatenate([np.zeros((len(roots), DOF - uppers.shape[1])), uppers], axis=1)
     poser = Poser(humanoid)
     return poser.world(*poser.local(q, roots), roots[:, :3])

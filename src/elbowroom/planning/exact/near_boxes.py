@@ -25,10 +25,9 @@ class NearBoxes(NamedTuple):
 
 def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float) -> NearBoxes:
     """What of `table` (B, 15) and of what moves comes within `reach` metres of a path."""
-    rows = _near(table, path.states, reach)
-    slices, count = _repeated(table, rows, len(path.states)), path.horizon
-    intervals = slices[:-1]
-    if not len(moving):
+    rows, slices = _standing(table, path.states, reach)
+    intervals, count = slices[:-1], len(slices) - 1
+    if not moving.tracks:
         return NearBoxes(intervals, slices, np.zeros(count), rows)
     sweeps = moving.swept(path.times)
     near = np.unique(_near(sweeps.reshape(-1, BOX_ROW), path.states, reach) % sweeps.shape[1])
@@ -63,10 +62,12 @@ def _near(rows: Floats, states: Floats, reach: float) -> Longs:
 
 
 @exact_kernel
-def _repeated(table: Floats, rows: Longs, count: int) -> Floats:
-    """These rows of a table of boxes, `count` times."""
-    out = np.empty((count, rows.shape[0], table.shape[1]))
-    for n in range(count):
-        for b in range(rows.shape[0]):
-            out[n, b] = table[rows[b]]
-    return out
+def _standing(table: Floats, states: Floats, reach: float) -> tuple[Longs, Floats]:
+    """The numbers of the boxes that are `_near`, and their rows (N, B, 15) for each of the root states."""
+    near = _near(table, states, reach)
+    out = np.empty((states.shape[0], near.shape[0], table.shape[1]))
+    for n in range(out.shape[0]):
+        for b in range(near.shape[0]):
+            for c in range(table.shape[1]):
+                out[n, b, c] = table[near[b], c]
+    return near, out

@@ -5,7 +5,6 @@ that touch it then, at any phase of the stride, are ruled out once and for all. 
 their natural way, blocks of sixteen postures are held against each part; a block whose ball keeps away is passed over.
 """
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -46,7 +45,7 @@ class Parts(NamedTuple):
 class OwnBody:
     """One avatar's body as its arms see it."""
 
-    def __init__(self, model: BodyModel, goals: Mapping[DofGroup, GoalFunction]) -> None:
+    def __init__(self, model: BodyModel, goals: GoalFunction) -> None:
         self.model = model
         self.pairs: SelfPairs = self_pairs(model, goals)
         self._goals = goals
@@ -72,7 +71,8 @@ class OwnBody:
             states = np.zeros((_PHASES + 1, ROOT_STATE))
             states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
             path = RootPath(0.0, 1.0, states)
-            waists, other = self._goals[DofGroup.WAIST](path), self._goals[ARMS[1 - side]](path)
+            natural, groups = self._goals(path), (DofGroup.WAIST, ARMS[1 - side])
+            waists, other = (np.ascontiguousarray(natural[:, columns_of(group)]) for group in groups)
             parts = self.parts(side, waists, states, other)
             found = [folded(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
             others = {known: kept for known, kept in self._resting.items() if known[0] != side}

@@ -26,7 +26,7 @@ from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.limb import limb_of
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
@@ -46,7 +46,7 @@ def rehearse(humanoid: Humanoid) -> None:
     path = _straight_on()
     for box in (_BESIDE, _WALL):
         body = UpperBody(humanoid, _scene_with(*box), ExactSettings())
-        start = goal_configurations(body.goals, path)[0]
+        start = body.goals(path)[0]
         dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
         finished(dressing.together(1))
         dressing.blockade()

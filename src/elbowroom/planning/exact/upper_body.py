@@ -35,7 +35,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.shelves import Shelves, root_ways
 from elbowroom.planning.exact.tables import new_tables
 from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways
-from elbowroom.planning.goal import goal_configurations, natural_walk
+from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.limb import Limb, limb_of, pose
 from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -167,7 +167,7 @@ class UpperBody:
         weights: Weights,
     ) -> Dressing:
         shelves = self._shelves_for(path)
-        goals = goal_configurations(self.goals, path)
+        goals = self.goals(path)
         roots = root_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
         self._contacts.begin(path.start_time)
         asked = self._asked(path, begins.ahead)
