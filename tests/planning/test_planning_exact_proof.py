@@ -24,7 +24,7 @@ from elbowroom.planning.exact.ways import (
     moves_between,
     new_limb_ways,
     new_root_ways,
-    root_way,
+    root_ways,
 )
 from elbowroom.planning.limb import limb_of
 from elbowroom.planning.root_path import interpolate_root
@@ -112,7 +112,7 @@ def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
     for _ in range(12):
         a, b = random_roots(rng)
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
-        root = root_way(body.roots, body.chain, a, b, T, 0.0)
+        root = root_ways(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
         begin_round(body.roots.slots)
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         trunk, limb = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
@@ -155,7 +155,7 @@ def test_what_is_proven_is_free_at_every_moment(humanoid: Humanoid) -> None:
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
         for slots in (body.roots.slots, body.waists.slots, body.arms.slots):
             begin_round(slots)
-        root = root_way(body.roots, body.chain, a, b, T, 0.0)
+        root = root_ways(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         _, points = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
         # A small box beside the hand's way, so that about half of the motions touch it.

@@ -12,7 +12,7 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group import Group
 from elbowroom.planning.exact.lattice import Work
 from elbowroom.planning.exact.slots import begin_round
-from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays, root_way
+from elbowroom.planning.exact.ways import Chain, LimbWays, RootWays, root_ways
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -65,11 +65,7 @@ class Shelves(NamedTuple):
 
 
 @exact_kernel
-def root_ways(shelf: Held[Shelf], states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The slots (n,) of the root ways between the key states (n+1, 7), each with its stamp (n,)."""
-    ways, chain = shelf.value.roots, shelf.value.chain
-    begin_round(ways.slots)
-    out = np.empty(states.shape[0] - 1, np.int64)
-    for k in range(out.shape[0]):
-        out[k] = root_way(ways, chain, states[k], states[k + 1], interval, stamps[k])
-    return out
+def begun_ways(shelf: Held[Shelf], states: Floats, interval: float, stamps: Floats) -> Longs:
+    """The `root_ways` of a new plan: the slots (n,) between key states (n+1, 7), each with its stamp (n,)."""
+    begin_round(shelf.value.roots.slots)
+    return root_ways(shelf.value.roots, shelf.value.chain, states, interval, stamps)

@@ -32,7 +32,7 @@ from elbowroom.planning.exact.reaching import arms_for, waists_for
 from elbowroom.planning.exact.refinement import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.self_contacts import SelfContacts
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.shelves import Shelves, root_ways
+from elbowroom.planning.exact.shelves import Shelves, begun_ways
 from elbowroom.planning.exact.tables import new_tables
 from elbowroom.planning.exact.ways import chain_of, levers_of, new_limb_ways, new_root_ways
 from elbowroom.planning.goal import natural_walk
@@ -168,7 +168,7 @@ class UpperBody:
     ) -> Dressing:
         shelves = self._shelves_for(path)
         goals = self.goals(path)
-        roots = root_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
+        roots = begun_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
         self._contacts.begin(path.start_time)
         asked = self._asked(path, begins.ahead)
         problem = PathProblem.of(path, goals, kept, begins, roots, near, asked)

@@ -153,25 +153,47 @@ def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
 
 
+class RootRoom(NamedTuple):
+    """Room to find the way of a root in."""
+
+    key: Floats  # (16,)
+    states: Floats  # (SWEEP+1, 7)
+    sinks: Floats  # (SWEEP+1, 2) as in `hips_sinks`
+    drops: Floats  # (SWEEP+1,)
+    foot: Floats  # (6,)
+    feet: Floats  # (0, 2, 6) nobody asks for them
+
+
 @exact_kernel
-def root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float, stamp: float) -> int:
-    """The slot of the root way from state `a` to `b`; `stamp` tells apart what moves meanwhile."""
-    key = np.empty(16)
+def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float, stamps: Floats) -> Longs:
+    """The slots (n,) of the root ways between states (n+1, 7); stamps (n,) tell apart what moves meanwhile."""
+    room = RootRoom(
+        np.empty(16), np.empty((SWEEP + 1, 7)), np.zeros((SWEEP + 1, 2)), np.empty(SWEEP + 1), np.empty(6),
+        np.empty((0, 2, 6)),
+    )  # fmt: skip
+    out = np.empty(stamps.shape[0], np.int64)
+    for k in range(out.shape[0]):
+        out[k] = _root_way(ways, chain, states[k], states[k + 1], interval, stamps[k], room)
+    return out
+
+
+@exact_lean_kernel
+def _root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float, stamp: float, room: RootRoom) -> int:
+    """The slot of the root way from state `a` to `b`."""
+    key, states = room.key, room.states
     key[0], key[15] = interval, stamp
     for i in range(7):
         key[1 + i], key[8 + i] = a[i], b[i]
     known = find(ways.slots, key)
     if known >= 0:
         return int(known)
-    at = admit(ways.slots, key)
-    states, rates = np.empty((SWEEP + 1, 7)), rates_at(a, b)
+    at, rates = admit(ways.slots, key), rates_at(a, b)
     for i in range(SWEEP + 1):
         interpolate_between(a, b, rates, i / SWEEP, interval, states[i])
-    sinks, drops = np.zeros((SWEEP + 1, 2)), np.empty(SWEEP + 1)
-    walk_into(chain.legs, chain.scale, states, np.empty((0, 2, 6)), drops, np.empty(6))
+    walk_into(chain.legs, chain.scale, states, room.feet, room.drops, room.foot)
     for i in range(SWEEP + 1):
-        sinks[i, 0] = drops[i]
-    place_pelvis_into(chain.hips, states, sinks, SWEEP + 1, ways.places[at], ways.turns[at])
+        room.sinks[i, 0] = room.drops[i]
+    place_pelvis_into(chain.hips, states, room.sinks, SWEEP + 1, ways.places[at], ways.turns[at])
     _root_sway(chain, states, ways.places[at], interval, ways.sway[at])
     return int(at)
 
@@ -182,12 +204,14 @@ def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sw
     part = interval / SWEEP
     ax, az, bx, bz, first, last = rates_at(a, b)
     jerk_x, jerk_z = _jerk(a[0], ax, b[0], bx, interval), _jerk(a[1], az, b[1], bz, interval)
-    jerk_turn = _jerk(a[2], a[5], b[2], b[5], interval)
+    jerk, jerk_turn = np.hypot(jerk_x, jerk_z), _jerk(a[2], a[5], b[2], b[5], interval)
     stride = quickness(chain.scale) * max(first, last)
     bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2
+    speed = np.hypot(a[3], a[4])
     for i in range(SWEEP):
         one, two = states[i], states[i + 1]
-        ground = max(np.hypot(one[3], one[4]), np.hypot(two[3], two[4])) + np.hypot(jerk_x, jerk_z) * part**2 / 8.0
+        before, speed = speed, np.hypot(two[3], two[4])
+        ground = max(before, speed) + jerk * part**2 / 8.0
         turn = max(abs(one[5]), abs(two[5])) + abs(jerk_turn) * part**2 / 8.0
         lift = abs(places[i + 1, 1] - places[i, 1]) / part + 0.5 * bob * part
         sway[i] = part * (ground + turn * chain.span + lift)
