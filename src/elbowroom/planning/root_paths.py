@@ -55,10 +55,8 @@ class RootPaths:
         self.bounds = MotionBounds(
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
         )
-        self._check, self._ways = (
-            LegCheck(body, self.bounds, settings.skin, settings.spacing),
-            WayFinder(settings, body),
-        )
+        self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
+        self._ways = WayFinder(settings, body)
         self._walker = hold(
             Walker(self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings))
         )
@@ -71,20 +69,25 @@ class RootPaths:
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
 
     @property
+    def moving(self) -> MovingBoxes:
+        """All that moves."""
+        return self._moving
+
+    @property
     def others(self) -> MovingBoxes:
         """What moves besides the scene's own."""
         return self._others
 
     @others.setter
     def others(self, others: MovingBoxes) -> None:
-        self._others, self.moving = others, self._scenes + others if len(others) else self._scenes
+        self._others, self._moving = others, self._scenes + others
 
     def _query(self, asked: Asked) -> RootQuery:
         """The paths from one start; the same while the same is asked for."""
         key = (asked.start, *asked[2:], self._others)
         if self._last is None or self._last[0] != key:
             start, _, horizon, interval, start_time = asked
-            around = MovingAround(self._check.body, self.moving, start_time, horizon, interval)
+            around = MovingAround(self._check.body, self._moving, start_time, horizon, interval)
             reach = self._reach(horizon * interval)
             self._last = key, RootQuery(self.settings, self._check, self._ways, start, horizon, interval, reach, around)
         return self._last[1]
@@ -117,7 +120,7 @@ class RootPaths:
         """Along a line of travel."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
-        if not self.moving.tracks:
+        if not self._moving.tracks:
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)
@@ -137,7 +140,7 @@ class RootPaths:
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(command, self.settings.motion)
         evasion, looks = finder.settings, query.checks
         speeds = (speed, min(speed, evasion.sideways))
-        grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self.moving, start_time)
+        grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self._moving, start_time)
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
             for care in evasion.cares:

@@ -74,8 +74,8 @@ class MovingBoxes:
         return len(self.tracks)
 
     def __add__(self, others: "MovingBoxes") -> "MovingBoxes":
-        """These and others."""
-        return MovingBoxes(self.tracks + others.tracks)
+        """These and others; the same object, which knows itself by now, where there are no others."""
+        return MovingBoxes(self.tracks + others.tracks) if others.tracks else self
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -1,0 +1,75 @@
+"""The walk in one piece against the same walk step by step."""
+
+import numpy as np
+import pytest
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.held import hold
+from elbowroom.planning.command import Command
+from elbowroom.planning.root_body import LowerBody
+from elbowroom.planning.root_free import LegCheck
+from elbowroom.planning.root_line import new_line, wanted_speed
+from elbowroom.planning.root_lost import prices_of, seconds_lost
+from elbowroom.planning.root_motion import MotionBounds
+from elbowroom.planning.root_moving import MovingAround
+from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root_query import RootQuery
+from elbowroom.planning.root_straight import Stretch, Walker, straight_walk
+from elbowroom.planning.root_way import WayFinder
+from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.scene import Scene
+
+HORIZON, INTERVAL, SIGHT, REACH = 12, 0.15, 4.5, 9.0
+SETTINGS, BOUNDS = RootPlannerSettings(), MotionBounds(2.5, 2.0, 3.0, 14.0)
+STILL = MovingBoxes()
+
+
+class Paths:
+    """One body in a scene, asked both ways."""
+
+    def __init__(self, scene: str) -> None:
+        self.body = LowerBody(Humanoid.default(), Scene.load(scene).boxes)
+        self.check = LegCheck(self.body, BOUNDS, SETTINGS.skin, SETTINGS.spacing)
+        self.ways = WayFinder(SETTINGS, self.body)
+        ground = self.body.boxes.ground
+        self.walker = hold(Walker(BOUNDS, self.ways.half, SETTINGS.skin, self.body.hull, ground, prices_of(SETTINGS)))
+
+    def agree(self, start: RootState, command: Command, pace: float) -> bool:
+        """Whether nothing is near; if so, the query must say the same."""
+        line, speed = new_line(start, command, SETTINGS.motion), wanted_speed(command, SETTINGS.motion)
+        stretch, around = (
+            Stretch(HORIZON, INTERVAL, SIGHT, REACH),
+            MovingAround(self.body, STILL, 0.0, HORIZON, INTERVAL),
+        )
+        found = straight_walk(self.walker, start.as_array(), line, speed, pace, stretch)
+        query = RootQuery(SETTINGS, self.check, self.ways, start, HORIZON, INTERVAL, REACH, around)
+        answer = query.travelled(line, pace * speed, SIGHT)
+        free, states, stands, lost, x, z = found
+        if not free:
+            return False
+        kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
+        assert states.tobytes() == answer.states.tobytes()
+        assert (kind, (x, z), False) == (answer.kind, answer.goal, answer.ends)
+        assert query.checks == 0
+        assert lost == seconds_lost(
+            SETTINGS, line, speed, states, HORIZON * INTERVAL, ends=False, around=around, figure=(0.3, 1.8)
+        )
+        return True
+
+
+@pytest.mark.parametrize("scene", ["a", "d", "empty"])
+def test_it_is_the_walk_that_a_query_finds(scene: str) -> None:
+    paths, rng, free = Paths(scene), np.random.default_rng(3), 0
+    for _ in range(150):
+        start = RootState(*rng.uniform([-1.5, -3, -3, -0.7, -0.6, -2, 0], [1.5, 6, 3, 2, 0.6, 2, 1]).tolist())
+        forward, strafe, direction = rng.uniform([0.0, -0.3, -3.0], [1.0, 0.3, 3.0]).tolist()
+        command = Command(forward, strafe) if rng.random() < 0.5 else Command(forward, direction=direction)
+        free += paths.agree(start, command, float(rng.choice([1.0, 0.6])))
+    assert free > 20
+    assert scene == "empty" or free < 150
+
+
+def test_who_wants_to_go_nowhere_stands() -> None:
+    paths = Paths("empty")
+    assert paths.agree(RootState(), Command(forward=0.01), 1.0)
