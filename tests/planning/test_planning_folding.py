@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, clamp, columns_of, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.planning.exact.folding import SPARE, folded
+from elbowroom.planning.exact.alone import alone_at
+from elbowroom.planning.exact.folding import SPARE, folded, folded_prices
+from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.postures import BLOCK, Postures, postures_of
 from elbowroom.planning.goal import natural_walk
@@ -20,7 +22,7 @@ Bools = NDArray[np.bool_]
 
 MODEL = body_model(proportional_humanoid(1.72))
 BODY = OwnBody(MODEL, natural_walk())
-ROWS, OWN, UNSURE = 5, 3, 1e-4  # metres about the limit in which single precision may decide either way
+ROWS, UNSURE = 5, 1e-4  # metres about the limit in which single precision may decide either way
 
 
 def drawn(rng: np.random.Generator, group: DofGroup, count: int, share: float) -> Floats:
@@ -66,13 +68,20 @@ class Case:
         before = [drawn(rng, one, ROWS, 0.5) for one in LOCAL_GROUPS[: 1 + side]]
         self.uppers = np.concatenate(before, axis=1)
         self.states = rng.uniform(-1.0, 1.0, (ROWS, 7)) * [9.0, 9.0, 3.0, 1.2, 0.2, 0.5, 1.0]
-        self.own = np.stack([drawn(rng, group, OWN, 0.7) for _ in range(ROWS)])
-        self.natural = rng.uniform(size=ROWS) < 0.4
-        self.needed = rng.uniform(size=(ROWS, OWN)) < 0.4
+        self.natural, self.start = rng.uniform(size=ROWS) < 0.4, drawn(rng, group, 1, 0.7)[0]
+        around = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
+        mine, others = drawn(rng, group, ROWS, 0.7), np.zeros((ROWS, LOCAL - columns_of(group).stop))
+        self.goals = np.concatenate([around, mine, others], axis=1)
+        self.kept = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
+        self.settled = seed % 3 > 0
+        known, step = self.postures, self.postures.step
+        self.own, self.needed, _ = alone_at(
+            known.configurations, known.columns, step, mine, self.kept, self.start, self.settled
+        )
 
     def prices(self, body: OwnBody = BODY) -> Floats:
-        goals = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
-        prices = body.folded_prices(self.side, self.postures, self.own, self.needed, goals, self.uppers, self.states)
+        folding = body.folding(self.side, self.postures)
+        prices = folded_prices(folding, self.goals, self.kept, self.start, self.settled, self.uppers, self.states)
         return prices.astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
+from elbowroom.planning.exact.folding import folded_prices
 from elbowroom.planning.exact.group import GroupTask, GroupWay, own_postures
 from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
@@ -99,12 +100,12 @@ class Arms:
     def _folded(self, side: int, ways: list[GroupWay], task: GroupTask) -> Floats32:
         """Infinite where a node touches the body on its ways, or is near to one that did."""
         problem, made = self._problem, self._shelves.group(_ARMS[side])
-        own, needed, _ = own_postures(made, task)
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
-        states = problem.path.states
-        prices = self._own_body.folded_prices(side, made.postures, own, needed, problem.goals, around, states)
+        folding = self._own_body.folding(side, made.postures)
+        prices = folded_prices(folding, problem.goals, task.kept, task.start, task.settled, around, problem.path.states)
         for t, contact in self._contacts.of(side, problem.path.times):
             if t > 0 and contact.happens(around[t]):
+                own, _, _ = own_postures(made, task)
                 rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
         return prices
 

@@ -100,7 +100,7 @@ class Dressing:
     def _jolts(self, found: Ways, last: Kept) -> bool:
         """Whether the waist has left the last plan's way, and some joint by more than a little."""
         known = min(last.known, len(last.keys))
-        if np.array_equal(found.ways[0].keys[:known], last.keys[:known, columns_of(DofGroup.WAIST)]):
+        if (found.ways[0].keys[:known] == last.keys[:known, columns_of(DofGroup.WAIST)]).all():
             return False
         return bool(np.abs(found.keys[:known] - last.keys[:known]).max() > _LITTLE)
 

@@ -12,6 +12,7 @@ from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
+from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.content import contents_of, is_natural
 from elbowroom.planning.exact.known import Known, admit, forget
 from elbowroom.planning.exact.postures import BLOCK
@@ -36,7 +37,10 @@ class Folding(NamedTuple):
     ends: Floats
     wanted: Indices  # (P,) capsules that it must keep away from
     allowed: Floats32  # (C, P) metres: how near the axes may come
-    lanes: Floats32  # (B, C, 7, 16) as in `Postures`
+    configurations: Floats  # (V, d) as in `Postures`, also
+    columns: Floats32  # (d, W), and
+    step: float
+    lanes: Floats32  # (B, C, 7, 16)
     balls: Floats  # (B, C, 4)
     resting: Bools  # (W,) which of them touch the walking body
     known: Known  # the surroundings, by their content
@@ -98,16 +102,19 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 @exact_kernel
 def folded_prices(
-    folding: Held[Folding], own: Floats, needed: Bools, goals: Floats, uppers: Floats, states: Floats
+    folding: Held[Folding], goals: Floats, kept: Floats, start: Floats, settled: bool, uppers: Floats, states: Floats
 ) -> Floats32:
-    """What an arm's nodes (n+1, W + E) cost for the body's sake: nothing, or infinity.
+    """What an arm's nodes (n+1, W + OWN) cost for the body's sake: nothing, or infinity.
 
-    `own` (n+1, E, d) are each key time's own postures as far as they are `needed` (n+1, E), the first of them the
-    goal's. The groups before the arm are at `uppers` (n+1, waist and, for the right arm, the left one), the root at
-    `states` (n+1, 7). Where they are as the `goals` (n+1, 11) have them the goal's posture is free.
+    The arm's task has `goals` (n+1, 11, those of all groups), `kept` (n+1, d), a `start` (d,) and is `settled` or not.
+    The groups before it are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states`
+    (n+1, 7). Where they are as the goals have them the arm's goal is free.
     """
     it = folding.value
     width = it.resting.shape[0]
+    first = uppers.shape[1]
+    mine = np.ascontiguousarray(goals[:, first : first + start.shape[0]])
+    own, needed, _ = alone_at(it.configurations, it.columns, it.step, mine, kept, start, settled)
     natural = np.empty(own.shape[0], np.bool_)
     for t in range(natural.shape[0]):
         natural[t] = is_natural(uppers[t], goals[t])

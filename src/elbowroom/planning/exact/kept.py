@@ -24,15 +24,11 @@ class Asked(NamedTuple):
 
     def since(self, first: int, horizon: int) -> "Asked":
         """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
-        until = first + horizon
-        if until < self.margins.shape[1]:
-            return Asked(self.margins[:, first : until + 1], self.skins[:, first:until])
-        margins, skins = np.full((3, horizon + 1), np.inf), np.full((3, horizon), np.inf)
-        known = self.margins[:, first:][:, : horizon + 1]
-        margins[:, : known.shape[1]] = known
-        moved = self.skins[:, first:][:, :horizon]
-        skins[:, : moved.shape[1]] = moved
-        return Asked(margins, skins)
+        margins, skins = self.margins[:, first:], self.skins[:, first:]
+        if margins.shape[1] <= horizon:
+            beyond = np.full((3, horizon + 1), np.inf)
+            margins, skins = np.concatenate([margins, beyond], axis=1), np.concatenate([skins, beyond], axis=1)
+        return Asked(margins[:, : horizon + 1], skins[:, :horizon])
 
     def beside(self, other: "Asked") -> "Asked":
         """The lesser of two."""

@@ -16,7 +16,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
 from elbowroom.planning.exact.content import CONTENT
-from elbowroom.planning.exact.folding import SPARE, Folding, folded, folded_prices
+from elbowroom.planning.exact.folding import SPARE, Folding, folded
 from elbowroom.planning.exact.known import new_known
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.postures import Postures
@@ -89,17 +89,8 @@ class OwnBody:
             self._prices[side, count] = prices
         return self._prices[side, count]
 
-    def folded_prices(
-        self, side: int, postures: Postures, own: Floats, needed: Bools, goals: Floats, uppers: Floats, states: Floats
-    ) -> Floats32:
-        """What an arm's nodes cost for the body's sake along a root path, (n+1, W + E): nothing, or infinity.
-
-        Arguments as those of the kernel of this name; surroundings that were looked at before are known again.
-        """
-        return folded_prices(self._folding_of(side, postures), own, needed, goals, uppers, states)
-
-    def _folding_of(self, side: int, postures: Postures) -> Held[Folding]:
-        """What arm `side` is held against, and the surroundings that were looked at."""
+    def folding(self, side: int, postures: Postures) -> Held[Folding]:
+        """What arm `side` is held against with `postures`, for `folded_prices`, and what was looked at."""
         known = self._foldings.get(side)
         if known is None or known[0] is not postures.configurations:
             pairs, model, arm = self.pairs, self.model, postures.limb
@@ -110,7 +101,8 @@ class OwnBody:
             resting = self.resting(side, postures)
             folding = Folding(
                 whole_body(model), arm.order, arm.arm_joints, arm.mirror, arm.joints, arm.ends, wanted,
-                np.ascontiguousarray(allowed), postures.lanes, postures.balls, resting,
+                np.ascontiguousarray(allowed), postures.configurations, postures.columns, postures.step,
+                postures.lanes, postures.balls, resting,
                 new_known(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
                 np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
             )  # fmt: skip

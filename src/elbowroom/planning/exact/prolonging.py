@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.kept import Asked, Start
 from elbowroom.planning.exact.upper_body import UpperPlan
 from elbowroom.planning.exact.whole import Whole, later
@@ -44,7 +45,7 @@ def settled(left: Whole, path: RootPath, free: int) -> Settled | None:
     at, local = path.horizon - free, left.local
     if not 0 < at < len(local.configurations) or local.velocities is None or left.asked is None:
         return None
-    if not np.array_equal(left.root.path.states[: at + 1], path.states[: at + 1]):
+    if not (left.root.path.states[: at + 1] == path.states[: at + 1]).all():
         return None
     rows = slice(at + 1)
     return Settled(at, local.configurations[rows], local.velocities[rows], local.goals[rows], left.asked)
@@ -82,7 +83,21 @@ class Walk(NamedTuple):
             return None
         if not 0 <= at < len(local.configurations) or abs(query.time - whole.root.path.time_of(at)) > _SAME:
             return None
-        there = np.concatenate([whole.root.path.states[at], local.configurations[at], local.velocities[at]])
-        asked = np.concatenate([query.root, query.upper, query.velocity])
-        same = bool(np.abs(there - asked).max() <= _SAME)
-        return later(whole, at) if same else None
+        keys = whole.root.path.states, local.configurations, local.velocities
+        return later(whole, at) if leads_to(*keys, at, query.root.as_array(), query.upper, query.velocity) else None
+
+
+@exact_kernel
+def leads_to(
+    states: Floats, uppers: Floats, rates: Floats, at: int, state: Floats, upper: Floats, rate: Floats
+) -> bool:
+    """Whether a motion has the root `state` (7,), the `upper` body (11,) and its `rate` (11,) at its key time `at`.
+
+    It leads through root states (n+1, 7) and `uppers` (n+1, 11) with `rates` (n+1, 11).
+    """
+    apart = 0.0
+    for i in range(state.shape[0]):
+        apart = max(apart, abs(states[at, i] - state[i]))
+    for i in range(upper.shape[0]):
+        apart = max(apart, abs(uppers[at, i] - upper[i]), abs(rates[at, i] - rate[i]))
+    return apart <= _SAME

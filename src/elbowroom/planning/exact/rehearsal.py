@@ -13,15 +13,16 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.folding import folded_prices
 from elbowroom.planning.exact.joint import joint_way
 from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
 from elbowroom.planning.exact.kept import Start
-from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.postures import postures_of
+from elbowroom.planning.exact.prolonging import leads_to
 from elbowroom.planning.exact.proof import Carrier, limb_way
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
@@ -54,6 +55,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_detour(humanoid)
     rehearse_product()
     path.sample(path.times)
+    leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
 
 
 def _straight_on() -> RootPath:
@@ -68,9 +70,9 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     model, arm, path = body_model(humanoid), DofGroup.LEFT_ARM, _straight_on()
     body, count = OwnBody(model, natural_walk()), len(path.states)
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
-    own, bent = np.zeros((count, OWN, arm.size)), np.full((count, LOCAL), 0.1)
-    goals, needed = np.zeros_like(bent), np.ones(own.shape[:2], np.bool_)
-    body.folded_prices(0, postures, own, needed, goals, bent[:, : DofGroup.WAIST.size].copy(), path.states)
+    kept, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
+    goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
+    folded_prices(body.folding(0, postures), goals, kept, kept[0], True, waists, path.states)
     OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 

@@ -154,6 +154,7 @@ class UpperBody:
         interval = self.settings.interval
         horizon = round(self.settings.look_ahead / interval)
         self._shelves[interval] = self._new_shelves(interval, horizon)
+        self._clearances[interval] = clearances(self.settings, interval, 2 * horizon)
         for side, group in enumerate(LOCAL_GROUPS[1:]):
             self.own_body.resting_prices(side, self.postures(group, interval), horizon + 1)
 

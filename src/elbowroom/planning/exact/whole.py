@@ -32,9 +32,9 @@ def kept_of(whole: Whole, path: RootPath) -> Kept | None:
     if path.interval != known.interval or velocities is None or whole.asked is None or not 0 <= first <= last:
         return None
     asked, share = whole.asked.since(first, path.horizon), at - first
-    rows = first + np.arange(len(path.states))
+    rows = np.minimum(first + np.arange(len(path.states)), last)
     if share < _SAME:
-        return Kept(keys[np.minimum(rows, last)], len(keys) - first, asked)
+        return Kept(keys[rows], len(keys) - first, asked)
     span, later = np.array([0.0, known.interval]), whole.asked.since(first + 1, path.horizon)
     between = [
         hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
