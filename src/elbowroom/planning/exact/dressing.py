@@ -16,7 +16,7 @@ from elbowroom.planning.exact.arms import Arms, Ways
 from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.group import GroupTask, GroupWay, Weights, own_postures
 from elbowroom.planning.exact.joint_step import JointSettings, JointStep, Surroundings
-from elbowroom.planning.exact.kept import Asked, Kept
+from elbowroom.planning.exact.kept import Asked, jolts
 from elbowroom.planning.exact.lattice import KEPT, OWN
 from elbowroom.planning.exact.ledger import Ledger
 from elbowroom.planning.exact.own_body import OwnBody
@@ -41,7 +41,6 @@ Longs = NDArray[np.int64]
 
 _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
 _JOLT = 0.5  # squared radians that another motion must be better than one under the last plan's waist
-_LITTLE = 0.15  # radians
 
 
 @dataclass(eq=False)
@@ -84,8 +83,8 @@ class Dressing:
 
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
-        found = yield from self.apart()
-        if self.problem.last is not None and (found.failed is not None or self._jolts(found, self.problem.last)):
+        found, last = (yield from self.apart()), self.problem.last
+        if last is not None and (found.failed is not None or jolts(found.keys, last.keys, last.known)):
             kept = yield from self.with_kept_waist()
             if found.failed is not None or (kept.failed is None and self._cost(kept) <= self._cost(found) + _JOLT):
                 found = kept
@@ -93,16 +92,15 @@ class Dressing:
             found = yield from self.together(rounds)
         if found.failed is not None:
             return None
-        self.asked = self.problem.asked.at_most([way.most for way in found.ways])
+        self.asked = self._asked(found)
         evidence, joint = self.ledger.evidence(), self.ledger.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
-    def _jolts(self, found: Ways, last: Kept) -> bool:
-        """Whether the waist has left the last plan's way, and some joint by more than a little."""
-        known = min(last.known, len(last.keys))
-        if (found.ways[0].keys[:known] == last.keys[:known, columns_of(DofGroup.WAIST)]).all():
-            return False
-        return bool(np.abs(found.keys[:known] - last.keys[:known]).max() > _LITTLE)
+    def _asked(self, found: Ways) -> Asked:
+        """The clearances that were asked for: less where the start has less."""
+        most, settings = [way.most for way in found.ways], self.settings
+        enough = min(most) >= max(settings.margin, settings.skin)
+        return self.problem.asked if enough else self.problem.asked.at_most(most)
 
     def _cost(self, found: Ways) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""

@@ -10,10 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.settings import ExactSettings
 
 Floats = NDArray[np.float64]
+
+_LITTLE = 0.15  # radians
+_WAIST = DofGroup.WAIST.size  # components, the first of an upper body
 
 
 class Asked(NamedTuple):
@@ -72,3 +76,17 @@ def clearances(settings: ExactSettings, interval: float, count: int) -> Asked:
     shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
     row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
     return Asked(settings.margin * row, settings.skin * row[:, :-1])
+
+
+@exact_kernel
+def jolts(keys: Floats, last: Floats, known: int) -> bool:
+    """Whether the waist has left the last plan's way, and some joint by more than a little.
+
+    The last plan had `last` (n+1, 11) where these are the `keys` (n+1, 11), at the first `known` key times.
+    """
+    left, farthest = False, 0.0
+    for t in range(min(known, keys.shape[0])):
+        for j in range(keys.shape[1]):
+            left = left or (j < _WAIST and keys[t, j] != last[t, j])
+            farthest = max(farthest, abs(keys[t, j] - last[t, j]))
+    return left and farthest > _LITTLE

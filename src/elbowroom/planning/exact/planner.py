@@ -89,13 +89,13 @@ class ExactPlanner:
     def _answered(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
         """What is planned, or still known from when the avatar stood here; `alone`: nothing moves or is in a hurry."""
         stand = self._stand
-        again = alone and stand is not None and stand.answers(query, self._body.versions)
+        again = alone and stand is not None and stand.answers(query, self._body.version)
         if again and stand is not None and stand.left == 0:
             return stand.at(query.time)
-        before = self._body.versions
+        before = self._body.version
         whole = self._whole(left, root_planner, query)
         turns = stand.left - 1 if again and stand is not None else self._turns.left
-        known = alone and self._body.versions == before and stands(whole, query)
+        known = alone and self._body.version == before and stands(whole, query)
         self._stand = Stand(query, before, whole, turns) if known else None
         return whole
 

@@ -83,12 +83,10 @@ class Pool:
     def __init__(self, size: int, capacity: int) -> None:
         self._capacity = capacity
         self.postures: Floats = np.empty((0, size))
-        self.version = 0  # greater after every change
 
     def clear(self) -> bool:
         """Forget all; whether there were any."""
         held, self.postures = len(self.postures) > 0, self.postures[:0]
-        self.version += held
         return held
 
     def add(self, postures: Floats) -> bool:
@@ -96,5 +94,4 @@ class Pool:
         if not len(postures):
             return False
         self.postures = np.concatenate([self.postures, postures[: self._capacity]])[-self._capacity :]
-        self.version += 1
         return True

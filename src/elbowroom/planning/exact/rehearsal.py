@@ -17,7 +17,7 @@ from elbowroom.planning.exact.folding import folded_prices
 from elbowroom.planning.exact.joint import joint_way
 from elbowroom.planning.exact.joint_bounds import Problem
 from elbowroom.planning.exact.joint_reach import stepped_triples
-from elbowroom.planning.exact.kept import Start
+from elbowroom.planning.exact.kept import Start, jolts
 from elbowroom.planning.exact.own_body import OwnBody
 from elbowroom.planning.exact.own_motion import OwnMotion
 from elbowroom.planning.exact.pauses import finished
@@ -55,6 +55,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_detour(humanoid)
     rehearse_product()
     path.sample(path.times)
+    jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
 
 

@@ -83,6 +83,7 @@ class UpperBody:
         motions: MotionSet = STOCK,
     ) -> None:
         self.settings = settings
+        self.version = 0  # greater after every change of a group's posture set
         self.goals = natural_walk(motions)
         self._model = body_model(humanoid)
         self._limbs = {group: limb_of(self._model, group) for group in LOCAL_GROUPS}
@@ -103,11 +104,6 @@ class UpperBody:
         self._legs = LoweredLegs(self._model, scene.boxes)
         self._prepare()
 
-    @property
-    def versions(self) -> tuple[int, ...]:
-        """How often postures were added to each group; a number that is the same means the same posture sets."""
-        return tuple([pool.version for pool in self._pools.values()])
-
     def plan(
         self,
         path: RootPath,
@@ -123,7 +119,7 @@ class UpperBody:
         self, path: RootPath, begins: Start, kept: Kept | None, others: MovingBoxes | None, effort: Effort
     ) -> Pausing[UpperPlan]:
         """`plan`, with pauses, in which nothing else may be planned: who does calls the rest off."""
-        moving = self._moving if others is None else self._moving + others
+        moving = self._moving + others if others else self._moving
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
@@ -200,6 +196,7 @@ class UpperBody:
 
     def _take_in(self, group: DofGroup) -> None:
         """Link a group's postures anew; what was computed for its old set is forgotten."""
+        self.version += 1
         for key in [key for key in self._postures if key[0] is group]:
             del self._postures[key]
         for interval, shelves in self._shelves.items():

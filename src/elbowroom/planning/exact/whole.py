@@ -86,14 +86,14 @@ class Stand(NamedTuple):
     """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
 
     query: MotionQuery
-    versions: tuple[int, ...]  # of the posture sets
+    version: int  # of the posture sets
     whole: Whole
     left: int  # paths that have not had their turn to be thought through
 
-    def answers(self, query: MotionQuery, versions: tuple[int, ...]) -> bool:
+    def answers(self, query: MotionQuery, version: int) -> bool:
         """Whether this is the answer to `query` too."""
         known, asked = self.query, query
-        same = known.root == asked.root and known.command == asked.command and versions == self.versions
+        same = known.root == asked.root and known.command == asked.command and version == self.version
         same &= known.horizon == asked.horizon and known.interval == asked.interval
         return same and bool(
             np.array_equal(known.upper, asked.upper) and np.array_equal(known.velocity, asked.velocity)
