@@ -40,7 +40,7 @@ class Crouch:
     def rules_out(self, keys: Floats, velocities: Floats, extra: Floats32) -> bool:
         """Whether the legs touch on a waist's way (n+1, 3); then the prices `extra` (n+1, V) forbid what did it."""
         deep, rates = keys[:, _COLUMN], velocities[:, _COLUMN]
-        if deep.max() <= _UPRIGHT:
+        if max(deep.tolist()) <= _UPRIGHT:
             return False
         if self._margin is None:
             now = self._legs.clearances(self._path.states[:1], deep[:1])

@@ -50,7 +50,7 @@ class OwnBody:
         self.pairs: SelfPairs = self_pairs(model, goals)
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
-        self._prices: dict[tuple[int, int], Floats32] = {}
+        self._prices: dict[int, tuple[Floats, Floats32]] = {}
         self._foldings: dict[int, tuple[Floats, Held[Folding]]] = {}
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
@@ -77,17 +77,17 @@ class OwnBody:
             found = [folded(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
             others = {known: kept for known, kept in self._resting.items() if known[0] != side}
             self._resting = others | {key: (postures, np.any(found, axis=0))}
-            self._prices = {known: prices for known, prices in self._prices.items() if known[0] != side}
         return self._resting[key][1]
 
     def resting_prices(self, side: int, postures: Postures, count: int) -> Floats32:
         """What that adds to the prices (count, W + OWN) of an arm's nodes: nothing, or infinity."""
-        resting = self.resting(side, postures)
-        if (side, count) not in self._prices:
+        known = self._prices.get(side)
+        if known is None or known[0] is not postures.configurations or len(known[1]) != count:
+            resting = self.resting(side, postures)
             prices = np.zeros((count, len(resting) + OWN), np.float32)
             prices[:, : len(resting)][:, resting] = np.inf
-            self._prices[side, count] = prices
-        return self._prices[side, count]
+            known = self._prices[side] = postures.configurations, prices
+        return known[1]
 
     def folding(self, side: int, postures: Postures) -> Held[Folding]:
         """What arm `side` is held against with `postures`, for `folded_prices`, and what was looked at."""

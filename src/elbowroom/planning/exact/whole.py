@@ -5,13 +5,17 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.kept import Asked, Kept
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
+
+Floats = NDArray[np.float64]
 
 _SAME = 1e-6  # of a key interval
 
@@ -114,5 +118,19 @@ class Stand(NamedTuple):
 
 def stands(whole: Whole, query: MotionQuery) -> bool:
     """Whether a plan leaves all as it is."""
-    still = not whole.root.path.states[:, 3:6].any() and not query.velocity.any()
-    return still and bool((whole.local.configurations == query.upper).all())
+    return _stays(whole.root.path.states, whole.local.configurations, query.upper, query.velocity)
+
+
+@exact_kernel
+def _stays(states: Floats, uppers: Floats, upper: Floats, velocity: Floats) -> bool:
+    """Whether root states (n+1, 7) are at rest, and `uppers` (n+1, 11) where an `upper` body is at rest already."""
+    for t in range(states.shape[0]):
+        if states[t, 3] != 0.0 or states[t, 4] != 0.0 or states[t, 5] != 0.0:
+            return False
+    for j in range(upper.shape[0]):
+        if velocity[j] != 0.0:
+            return False
+        for t in range(uppers.shape[0]):
+            if uppers[t, j] != upper[j]:
+                return False
+    return True
