@@ -178,7 +178,7 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:
     """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7) and lowerings, one or (N,)."""
     m, c, states = model, model.roots, _rows(roots, ROOT_STATE)
-    legs, sinks = _lower_body(m, states, np.broadcast_to(np.asarray(lowerings, np.float64), len(states)).copy())
+    legs, sinks = _lower_body(m, states, np.full(len(states), lowerings, np.float64))
     return posing.pose_legs(m.base, m.parents, m.offsets, c.order, m.legs, c.joints, c.ends, states, legs, sinks)
 
 

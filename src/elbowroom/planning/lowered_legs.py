@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, leg_capsules
-from elbowroom.planning.root_path import RootPath, sample_states
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.root_path import RootPath, interpolate_between, rates_at, sample_states
 from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.moving import MovingBoxes
@@ -19,7 +21,7 @@ from elbowroom.world.moving import MovingBoxes
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
+Indices = NDArray[np.int64]
 
 _LEAST = 1e-3  # of a lowering that is looked at: less than a millimetre
 _SPEED = 2.2  # m/s: a run, in which legs reach farthest
@@ -37,7 +39,7 @@ class LoweredLegs:
         self._reach, height = _extent(model)
         corners = boxes.corners
         low = corners[:, :, 1].min(axis=1, initial=np.inf) < height
-        ground = corners[low][:, :, [0, 2]]
+        ground = np.ascontiguousarray(corners[low][:, :, [0, 2]])
         self._table = np.ascontiguousarray(boxes.table[low])
         self._least, self._most = ground.min(axis=1), ground.max(axis=1)
         self._sweeps, self._interval = np.empty((1, 0, BOX_ROW)), 1.0
@@ -57,33 +59,27 @@ class LoweredLegs:
         """
         out = np.full(len(roots), np.inf, np.float32)
         lowered = np.flatnonzero(lowerings > _LEAST)
-        if not len(lowered):
-            return out
-        self._lower_to_standing(out, roots, lowerings, lowered)
-        if self._sweeps.shape[1]:
+        if len(lowered):
             times = np.zeros(len(lowered)) if after is None else after[lowered]
-            spans = np.clip((times / self._interval).astype(np.int64), 0, len(self._sweeps) - 1)
-            for span in np.unique(spans):
-                self._lower_to(self._sweeps[span], out, roots, lowerings, lowered[spans == span])
+            out[lowered] = self._crouching(roots[lowered], lowerings[lowered], times)
         return out
 
-    def _lower_to_standing(self, out: Floats32, roots: Floats, lowerings: Floats, lowered: Indices) -> None:
-        """Lower `out` to the clearance of what stands near."""
-        places = roots[lowered, :2]
-        near = (self._least <= places.max(axis=0) + self._reach) & (self._most >= places.min(axis=0) - self._reach)
-        self._lower_to(self._table[near.all(axis=1)], out, roots, lowerings, lowered)
+    def _crouching(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
+        """`clearances` (N,) where all are lowered, N at least 1."""
+        out = self._clear(_near(self._table, self._least, self._most, roots, self._reach), roots, lowerings)
+        if self._sweeps.shape[1]:
+            spans = np.clip((after / self._interval).astype(np.int64), 0, len(self._sweeps) - 1)
+            for span in np.unique(spans):
+                at = spans == span
+                out[at] = np.minimum(out[at], self._clear(self._sweeps[span], roots[at], lowerings[at]))
+        return out
 
-    def _lower_to(self, rows: Floats, out: Floats32, roots: Floats, lowerings: Floats, lowered: Indices) -> None:
-        """Lower `out` to the clearance of boxes, rows (B, 15), where the body is lowered."""
+    def _clear(self, rows: Floats, roots: Floats, lowerings: Floats) -> Floats32:
+        """Clearance (N,) from boxes, rows (B, 15)."""
         if not len(rows):
-            return
-        # at the origin, so that single precision holds anywhere
-        table, states, origin = rows.copy(), roots[lowered].copy(), roots[lowered[0], :2].copy()
-        states[:, :2] -= origin
-        table[:, [0, 2]] -= origin
-        legs = leg_capsules(self._model, states, lowerings[lowered])
-        found = clearance(legs, self._model.roots.radii, table.astype(np.float32))
-        out[lowered] = np.minimum(out[lowered], found)
+            return np.full(len(roots), np.inf, np.float32)
+        table, states = _about_first(rows, roots)
+        return clearance(leg_capsules(self._model, states, lowerings), self._model.roots.radii, table)
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
         """Which of the lowerings (n+1, V) bring the legs within `margin` of a box around their key time: (n+1, V)."""
@@ -103,20 +99,62 @@ class LoweredLegs:
 
         It leads through `keys` (n+1,) with `velocities` (n+1,), as playback shows it.
         """
-        share = np.arange(_SHOWN) / _SHOWN
-        times = (np.arange(path.horizon)[:, None] + share) * path.interval
-        roots = sample_states(path.states, path.interval, times.ravel())
-        lowerings = np.clip(_curve(keys, path.interval * velocities, share), 0.0, None)
-        found = self.clearances(roots, lowerings.ravel(), times.ravel()).reshape(path.horizon, _SHOWN)
-        blocked: Bools = found.min(axis=1) < margin
+        curve = np.ascontiguousarray(keys), np.ascontiguousarray(velocities)
+        roots, lowerings, after, owner = _shown(path.states, path.interval, *curve)
+        blocked = np.zeros(path.horizon, np.bool_)
+        if len(owner):
+            blocked[owner[self._crouching(roots, lowerings, after) < margin]] = True
         return blocked
 
 
-def _curve(keys: Floats, slopes: Floats, u: Floats) -> Floats:
-    """Cubic Hermite curves (n, S) through `keys` (n+1,) with `slopes` (n+1,) for each interval, at shares `u` (S,)."""
-    a, b, m, n = keys[:-1, None], keys[1:, None], slopes[:-1, None], slopes[1:, None]
-    curve: Floats = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
-    return curve
+@exact_kernel
+def _near(table: Floats, least: Floats, most: Floats, roots: Floats, reach: float) -> Floats:
+    """The rows (B, 15) of the boxes, bounds (S, 2) on the ground, that legs within `reach` of the roots may touch."""
+    low_x, high_x = roots[:, 0].min() - reach, roots[:, 0].max() + reach
+    low_z, high_z = roots[:, 1].min() - reach, roots[:, 1].max() + reach
+    out, count = np.empty(table.shape), 0
+    for b in range(table.shape[0]):
+        if least[b, 0] <= high_x and most[b, 0] >= low_x and least[b, 1] <= high_z and most[b, 1] >= low_z:
+            for c in range(table.shape[1]):
+                out[count, c] = table[b, c]
+            count += 1
+    return out[:count]
+
+
+@exact_kernel
+def _about_first(rows: Floats, roots: Floats) -> tuple[Floats32, Floats]:
+    """Boxes (B, 15) and root states (N, 7) about the first root's place, so that single precision holds anywhere."""
+    x, z = roots[0, 0], roots[0, 1]
+    table, states = rows.copy(), roots.copy()
+    for b in range(table.shape[0]):
+        table[b, 0] -= x
+        table[b, 2] -= z
+    for n in range(states.shape[0]):
+        states[n, 0] -= x
+        states[n, 1] -= z
+    return table.astype(np.float32), states
+
+
+@exact_kernel
+def _shown(states: Floats, interval: float, keys: Floats, velocities: Floats) -> tuple[Floats, Floats, Floats, Indices]:
+    """The shown moments of a path (n+1, 7) that are lowered by the cubic Hermite curve through keys (n+1,).
+
+    Root states (N, 7), lowerings (N,), seconds on the path (N,) and key intervals (N,).
+    """
+    count = (states.shape[0] - 1) * _SHOWN
+    roots, lowerings, after = np.empty((count, ROOT_STATE)), np.empty(count), np.empty(count)
+    owner, used = np.empty(count, np.int64), 0
+    for k in range(states.shape[0] - 1):
+        a, b, m, n = keys[k], keys[k + 1], interval * velocities[k], interval * velocities[k + 1]
+        rates = rates_at(states[k], states[k + 1])
+        for i in range(_SHOWN):
+            u = i / _SHOWN
+            lowering = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
+            if lowering > _LEAST:
+                interpolate_between(states[k], states[k + 1], rates, u, interval, roots[used])
+                lowerings[used], after[used], owner[used] = lowering, (k + u) * interval, k
+                used += 1
+    return roots[:used], lowerings[:used], after[:used], owner[:used]
 
 
 def _extent(model: BodyModel) -> tuple[float, float]:

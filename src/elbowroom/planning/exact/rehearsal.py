@@ -29,6 +29,7 @@ from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.limb import limb_of
+from elbowroom.planning.lowered_legs import LoweredLegs
 from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.root_plan import RootPlan
 from elbowroom.planning.root_planner import RootPlanner
@@ -53,6 +54,7 @@ def rehearse(humanoid: Humanoid) -> None:
         dressing.blockade()
     rehearse_own_body(humanoid)
     rehearse_detour(humanoid)
+    rehearse_crouch(humanoid)
     rehearse_product()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
@@ -84,6 +86,13 @@ def rehearse_detour(humanoid: Humanoid) -> RootPlan:
     planner.plan(start, Command(turn=1.0), horizon, _INTERVAL)
     list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
     return planner.plan(start, Command(forward=1.0), horizon, _INTERVAL)
+
+
+def rehearse_crouch(humanoid: Humanoid) -> None:
+    """Hold the legs of a body that crouches on its way against a low box."""
+    path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).boxes)
+    keys = np.full(len(path.states), 0.1)
+    legs.blocked_intervals(path, keys, np.zeros_like(keys), 0.0)
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
