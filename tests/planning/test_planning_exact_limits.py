@@ -147,7 +147,7 @@ def test_a_plan_that_does_not_go_on_from_the_earlier_one_is_not_joined_to_it() -
     moved[0, 4] += 1e-3
     elsewhere = last._replace(local=last.local._replace(configurations=moved))
     assert after(earlier, elsewhere) is elsewhere
-    off_time = last._replace(root=replace(last.root, path=replace(last.root.path, start_time=0.7 * T)))
+    off_time = last._replace(root=last.root._replace(path=replace(last.root.path, start_time=0.7 * T)))
     assert after(earlier, off_time) is off_time
     assert after(last, earlier) is earlier
     assert after(earlier._replace(asked=None), last) is last

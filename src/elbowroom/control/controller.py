@@ -252,7 +252,7 @@ class Controller:
 
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1
-        root = replace(answer.root, path=replace(answer.root.path, start_time=start))
+        root = answer.root._replace(path=replace(answer.root.path, start_time=start))
         found, command = answer.uppers is not None, question.query.command
         self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
         self._halting = not found and (self._halting or steering.overturned(self._command, command))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 from elbowroom.planning.root_evasion import WIDE, EvasionSettings
 from elbowroom.planning.root_motion import RootMotionSettings
@@ -52,8 +53,7 @@ class RootPlannerSettings:
     slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
 
 
-@dataclass(frozen=True, eq=False)
-class RootPlan:
+class RootPlan(NamedTuple):
     """A root path and how it came about."""
 
     path: RootPath

@@ -229,7 +229,7 @@ class ExactPlanner:
             stopping = self._dress(path, query, effort, harsh=harsh)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                return Whole(replace(root, path=path, kind=kind), stopping.plan, stopping.asked)
+                return Whole(root._replace(path=path, kind=kind), stopping.plan, stopping.asked)
         return None
 
     def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:

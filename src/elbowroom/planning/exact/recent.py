@@ -1,7 +1,5 @@
 """The last plans: what the next one may keep to, or go on with."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from elbowroom.planning.exact.kept import Kept
@@ -55,7 +53,7 @@ class Recent:
         if not 0 <= at < len(path.states) - 1 or not np.allclose(path.states[at], query.root, atol=1e-9):
             return None
         left = later(last, at)
-        return left._replace(root=replace(left.root, kind=RootPlanKind.SHORTENED))
+        return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED))
 
 
 def after(earlier: Whole, whole: Whole) -> Whole:
