@@ -19,7 +19,7 @@ from elbowroom.planning.exact.lattice import (
     settle_backward,
     traced,
 )
-from elbowroom.planning.exact.postures import BLOCK
+from elbowroom.planning.exact.postures import BLOCK, spans_of
 
 STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
 INF = np.float32(np.inf)
@@ -42,6 +42,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
         postures=postures,
         columns=columns,
         moves=moves.astype(np.float32),
+        spans=spans_of(moves.astype(np.float32)),
         own=rng.uniform(-0.5, 0.5, (horizon + 1, OWN, width)),
         goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
         price=price,

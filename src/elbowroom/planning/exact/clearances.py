@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, lean_kernel
 from elbowroom.planning.exact.postures import BLOCK
-from elbowroom.world.capsule_tiles import BOX, PER_METRE, lower_squares, lower_to_squares
+from elbowroom.world.capsule_tiles import BOX, PER_METRE, TILE, lower_squares, lower_to_squares
 from elbowroom.world.clearance import fill_box_rows
 
 Floats = NDArray[np.float64]
@@ -57,24 +57,29 @@ def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
 
 
 class CheckRoom(NamedTuple):
-    """What checks of T tiles of capsules against B boxes work on."""
+    """What checks of T tiles of capsules against B boxes work on, and room for C capsules in sixteen places."""
 
     rows: Floats32  # (B * 15,) boxes as `lower_squares` takes them
     spread: Floats32  # (5, W) balls by components, W >= T a multiple of `BLOCK`
     squares: Floats32  # (T * 16,)
     pairs: Longs  # (_PAIRS + T, 2)
-    balls: Floats  # (C, 1, 4) around capsules
+    lanes: Floats32  # (C, 7, 16) capsules with radii
+    tiles: Floats32  # the same, flat
+    balls: Floats  # (C, 1, 4) around them
     apart: Floats32  # (16,)
 
 
 @exact_inner_kernel
 def check_room(tiles: int, capsules: int, boxes: int) -> CheckRoom:
     """Room for checks of so many tiles, or of single capsules, against so many boxes."""
+    flat = np.empty(capsules * TILE, np.float32)
     return CheckRoom(
         np.empty(boxes * BOX, np.float32),
         np.empty((5, (tiles + BLOCK - 1) // BLOCK * BLOCK), np.float32),
         np.empty(tiles * BLOCK, np.float32),
         np.empty((_PAIRS + tiles, 2), np.int64),
+        flat.reshape(capsules, TILE // BLOCK, BLOCK),
+        flat,
         np.empty((capsules, 1, 4)),
         np.empty(BLOCK, np.float32),
     )
@@ -99,43 +104,46 @@ def spread_balls(balls: Floats, out: Floats32) -> None:
 
 
 @lean_kernel
-def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> None:
-    """How far (W,) balls as `spread_balls` are out of reach of box b; negative where they are within."""
+def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int:
+    """How far (W,) balls as `spread_balls` are out of reach of box b, negative where they are within; how many are."""
     row = rows[b * BOX : (b + 1) * BOX]
     cx, cy, cz, hx, hy, hz = row[0], row[1], row[2], row[12], row[13], row[14]
     m = (row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])
+    within = 0
     for t in range(np.uint64(out.shape[0])):
         x, y, z = balls[0, t] - cx, balls[1, t] - cy, balls[2, t] - cz
         p = max(abs(m[0] * x + m[1] * y + m[2] * z) - hx, _ZERO)
         q = max(abs(m[3] * x + m[4] * y + m[5] * z) - hy, _ZERO)
         r = max(abs(m[6] * x + m[7] * y + m[8] * z) - hz, _ZERO)
         out[t] = p * p + q * q + r * r - balls[3, t]
+        within += out[t] < _ZERO
+    return within
 
 
 @exact_lean_kernel
 def lower_blocks_in(
-    room: CheckRoom, lanes: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
+    room: CheckRoom, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
 ) -> int:
-    """`lower_blocks` with room to work in, for balls as `spread_balls` leaves them."""
-    parts = lanes.shape[1]
-    total = lanes.shape[0] * parts
-    rows, tiles, squares, pairs = room.rows, lanes.reshape(lanes.size), room.squares, room.pairs
+    """`lower_blocks` with room to work in, for lanes that lie flat and balls as `spread_balls` leaves them."""
+    total = tiles.shape[0] // TILE
+    rows, squares, pairs, parts = room.rows, room.squares, room.pairs, total // out.shape[0]
     fill_box_rows(boxes, count, rows)
     for i in range(np.uint64(total * BLOCK)):
         squares[i] = _FAR
     found, checks, beyond = int(_NONE), 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
     for b in range(count):
-        _beyond_reach(spread, rows, b, beyond)
-        for t in range(total):
-            pairs[found, 0], pairs[found, 1] = t, b
-            found += beyond[t] < 0.0
+        if _beyond_reach(spread, rows, b, beyond) > 0:
+            for t in range(total):
+                pairs[found, 0], pairs[found, 1] = t, b
+                found += beyond[t] < 0.0
         if found >= _PAIRS or b == count - 1:
             lower_squares(tiles, rows, pairs, found, squares)
             checks, found = checks + found * BLOCK, int(_NONE)
-    for t in range(total):
-        if squares[t * BLOCK] < _FAR:
-            radius = lanes[t // parts, t % parts, 6, 0]
-            lower_to_squares(squares[t * BLOCK : (t + 1) * BLOCK], radius, out[t // parts])
+    if checks > 0:
+        for t in range(total):
+            if squares[t * BLOCK] < _FAR:
+                radius = tiles[t * TILE + (TILE - BLOCK)]
+                lower_to_squares(squares[t * BLOCK : (t + 1) * BLOCK], radius, out[t // parts])
     return checks
 
 
@@ -147,7 +155,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     """
     room = check_room(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
     spread_balls(balls, room.spread)
-    return int(lower_blocks_in(room, lanes, room.spread, boxes, count, out))
+    return int(lower_blocks_in(room, lanes.reshape(lanes.size), room.spread, boxes, count, out))
 
 
 @exact_lean_kernel
@@ -196,13 +204,12 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
 
 
 @exact_lean_kernel
-def capsule_clearances_in(room: CheckRoom, lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
-    """`capsule_clearances` with room to work in."""
-    for c in range(lanes.shape[0]):
-        _ball_around(lanes[c], room.apart, room.balls[c, 0])
-    tiles = lanes.reshape(lanes.shape[0], 1, lanes.shape[1], lanes.shape[2])
+def capsule_clearances_in(room: CheckRoom, boxes: Floats, count: int, out: Floats32) -> int:
+    """`capsule_clearances` of the capsules in the room."""
+    for c in range(room.lanes.shape[0]):
+        _ball_around(room.lanes[c], room.apart, room.balls[c, 0])
     spread_balls(room.balls, room.spread)
-    return int(lower_blocks_in(room, tiles, room.spread, boxes, count, out))
+    return int(lower_blocks_in(room, room.tiles, room.spread, boxes, count, out))
 
 
 @exact_kernel
@@ -212,7 +219,8 @@ def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32
     Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
     """
     room = check_room(lanes.shape[0], lanes.shape[0], count)
-    return int(capsule_clearances_in(room, lanes, boxes, count, out))
+    room.lanes[:] = lanes
+    return int(capsule_clearances_in(room, boxes, count, out))
 
 
 @exact_lean_kernel

@@ -142,7 +142,7 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
     most, checks = node_prices(room, group.tables, postures, carriers, task, weights, own, needed, kept, clear, price)
     named = mask_keys(carriers.ids, goals)
     lattice = Lattice(
-        configurations, columns, postures.moves, own, goals, price, known_masks(masks, named, kept),
+        configurations, columns, postures.moves, postures.spans, own, goals, price, known_masks(masks, named, kept),
         masks.closed, kept, postures.step, weights.step,
     )  # fmt: skip
     slots, skins = np.empty(horizon, np.int64), np.empty(horizon)

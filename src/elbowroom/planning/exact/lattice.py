@@ -31,6 +31,7 @@ GOAL, KEPT, HOLD, BACK = range(
 _ROUNDING = 1.0 + 1e-6
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
+_FIRST = 0  # lane
 
 
 class Lattice(NamedTuple):
@@ -39,6 +40,7 @@ class Lattice(NamedTuple):
     postures: Floats  # (V, d) radians
     columns: Floats32  # (d, W) the same by components, the last repeated
     moves: Floats32  # (V, W) squared length of each step, infinite where there is none
+    spans: Longs  # (V, 2) the lanes of `moves` beyond which all of a posture's steps are infinite
     own: Floats  # (n+1, OWN, d); in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
     price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
@@ -185,10 +187,19 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
         if base[node] == _INFINITE:
             continue
         row = lattice.moves[node] if node < size else work.squares[depth, node - width]
+        low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
         if mask >= 0:
-            _relax_open(targets, target_origins, base[node], row, lattice.weight, node, closed[node, :width])
+            _relax_open(
+                targets[low:high],
+                target_origins[low:high],
+                base[node],
+                row[low:high],
+                lattice.weight,
+                node,
+                closed[node, low:high],
+            )
         else:
-            _relax(targets, target_origins, base[node], row, lattice.weight, node)
+            _relax(targets[low:high], target_origins[low:high], base[node], row[low:high], lattice.weight, node)
     for f in range(OWN):
         if lattice.price[depth + 1, width + f] < _INFINITE:
             out[width + f], origins[width + f] = _settle_own(lattice, work, depth, f, base)
@@ -351,12 +362,14 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
             if base[node] == _INFINITE:
                 continue
             row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
+            low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
             if mask >= 0:
-                for source in range(width):
+                for source in range(low, high):
                     column[source] = closed[source, node]
-                _relax_open(targets, origins, base[node], row, weight, node, column)
+                near = column[low:high]
+                _relax_open(targets[low:high], origins[low:high], base[node], row[low:high], weight, node, near)
             else:
-                _relax(targets, origins, base[node], row, weight, node)
+                _relax(targets[low:high], origins[low:high], base[node], row[low:high], weight, node)
             for e in range(OWN):
                 if work.costs[depth, width + e] < _INFINITE and not (mask >= 0 and closed[width + e, node]):
                     move = work.squares[depth, e, node] if node < size else _own_move(lattice, depth, e, node - width)

@@ -16,6 +16,7 @@ from elbowroom.planning.self_contact import clear_of_trunk
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
 Ints = NDArray[np.int32]
 
 BLOCK = 16  # lanes of the widest vector register
@@ -35,6 +36,7 @@ class Postures(NamedTuple):
     lanes: Floats32  # (B, C, 7, 16) the same by blocks, with radii; the last block repeats the last posture
     balls: Floats  # (B, C, 4) centre and radius
     moves: Floats32  # (V, W) squared length of each step, infinite where there is none
+    spans: Longs  # (V, 2) the first lane of the first block that a step leads to, and the end of the last
     pairs: Ints  # (V, V) number of the pair that a step joins; -1 for none and for staying
     between: Floats32  # (P, BETWEEN, C, 6) capsules on the way from the lower number of a pair to the higher
     step: float  # radians
@@ -57,7 +59,9 @@ def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
     moves, pairs = _steps(points, low, high, len(lanes) * BLOCK)
     filled = np.minimum(np.arange(len(lanes) * BLOCK), len(points) - 1)
     columns = np.ascontiguousarray(points[filled].T, np.float32)
-    return Postures(limb, points, columns, segments, lanes, balls, moves, pairs, between, float(step), reach)
+    return Postures(
+        limb, points, columns, segments, lanes, balls, moves, spans_of(moves), pairs, between, float(step), reach
+    )
 
 
 def _neighbourly(segments: Floats32) -> NDArray[np.int64]:
@@ -112,3 +116,10 @@ def _steps(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32,
     moves[low, high], moves[high, low] = squares, squares
     pairs[low, high], pairs[high, low] = np.arange(len(low)), np.arange(len(low))
     return moves, pairs
+
+
+def spans_of(moves: Floats32) -> Longs:
+    """The `spans` (V, 2) of the steps `moves` (V, W): nothing outside of them has to be looked at."""
+    reached = np.isfinite(moves).reshape(len(moves), -1, BLOCK).any(axis=2)
+    ends = reached.shape[1] - np.argmax(reached[:, ::-1], axis=1)
+    return np.stack([np.argmax(reached, axis=1), ends], axis=1) * BLOCK

@@ -96,7 +96,7 @@ def _posed_between(
 
     The lanes beyond the `count` steps repeat the last.
     """
-    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], room.lanes
+    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], room.checks.lanes
     pairs, filled = postures.pairs, min(count - first, BLOCK)
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
@@ -149,7 +149,7 @@ def close_steps(
         for first in range(0, many, BLOCK):
             _posed_between(room, postures, lattice, depth, steps, many, first, part)
             out[:] = _INFINITE
-            checks += capsule_clearances_in(room.checks, room.lanes, room.framed, count, out)
+            checks += capsule_clearances_in(room.checks, room.framed, count, out)
             for k in range(first, min(first + BLOCK, many)):
                 for c in range(out.shape[0]):
                     if out[c, k - first] < skin:

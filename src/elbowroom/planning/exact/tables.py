@@ -5,7 +5,7 @@ postures of the key time before it an `early` row and those of the key time afte
 key time itself too. The goal's own posture at these two key times rides along.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
-_ONE, _FIRST = 1, 0  # posture; place
+_ONE, _BOTH, _FIRST = 1, 2, 0  # postures; place
 
 
 class Tables(NamedTuple):
@@ -68,9 +68,42 @@ def table_of(
     early, late = tables.early[at], tables.late[at]
     checks = _moments(room, postures, places, turns, boxes, early, late)
     width = early.shape[0] - 1
-    early[width], count = held_clearance_in(room, postures, goals[0], places, turns, boxes, int(HELD_EARLY))
-    late[width], more = held_clearance_in(room, postures, goals[1], places, turns, boxes, int(HELD_LATE))
-    return int(at), checks + count + more
+    early[width], late[width], count = _goals_held(room, postures, goals, places, turns, boxes)
+    return int(at), checks + count
+
+
+@exact_lean_kernel
+def _goals_held(
+    room: Workroom, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
+) -> tuple[Any, Any, int]:
+    """The clearances of an interval's goals (2, d), the first held early and the second late, and capsules checked."""
+    near, segments, found = boxes_around(boxes, places[0], postures.reach + 0.5, room.near), room.segments, room.found
+    if near == 0:
+        return _FAR, _FAR, 0
+    for i in range(goals.shape[1]):
+        room.configurations[0, i], room.configurations[1, i] = goals[0, i], goals[1, i]
+    pose_into(postures.limb, room.limb, room.configurations, int(_BOTH), int(_FIRST), segments)
+    total = _EARLY + _MOMENTS + 1 - _LATE
+    for n in range(total):
+        look = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
+        for i in range(3):
+            room.places[n, i] = places[look, i]
+        for i in range(4):
+            room.turns[n, i] = turns[look, i]
+    for c in range(segments.shape[0]):
+        for i in range(6):
+            first, second = segments[c, i, 0], segments[c, i, 1]
+            for n in range(total):
+                segments[c, i, n] = first if n < _EARLY else second
+        found[c, :] = _FAR
+    checks = held_against(room, postures.limb.radii, near, total, places[0], room.places, room.turns, found)
+    early, late = _FAR, _FAR
+    for c in range(found.shape[0]):
+        for n in range(_EARLY):
+            early = min(early, found[c, n])
+        for n in range(_EARLY, total):
+            late = min(late, found[c, n])
+    return early, late, checks
 
 
 @exact_lean_kernel
@@ -78,7 +111,7 @@ def _moments(
     room: Workroom, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
 ) -> int:
     """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
-    lanes, rows, checks = postures.lanes, room.blocks, 0
+    rows, checks = room.blocks, 0
     early[:], late[:] = _FAR, _FAR
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
@@ -88,7 +121,7 @@ def _moments(
         for b in range(count):
             box_in_frame(room.near[b], place, turn, room.framed[b])
         rows[:] = _FAR
-        checks += lower_blocks_in(room.checks, lanes, room.spread, room.framed, count, rows)
+        checks += lower_blocks_in(room.checks, room.tiles, room.spread, room.framed, count, rows)
         if moment <= _EARLY:
             _lower(early, rows)
         if moment >= _LATE:

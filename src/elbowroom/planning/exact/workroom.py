@@ -40,10 +40,10 @@ class Workroom(NamedTuple):
     stem: LimbRoom  # of the limb that carries it
     near: Floats  # (B, 15) boxes
     framed: Floats  # (B, 15) boxes in the limb's frame
+    tiles: Floats32  # blocks of all postures, flat
     spread: Floats32  # (5, W) balls around all postures, as `spread_balls` leaves them
     blocks: Floats32  # (W/16, 16) of all postures
     segments: Floats32  # (C, 6, 16) in the limb's frame
-    lanes: Floats32  # (C, 7, 16) outside of it, with radii
     coarse: Floats32  # (C, 16) clearances at the looks
     found: Floats32  # (C, 16) clearances between them
     configurations: Floats  # (16, d)
@@ -75,10 +75,10 @@ def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
         limb_room(stem, int(BLOCK)),
         np.empty((boxes, 15)),
         np.empty((boxes, 15)),
+        postures.lanes.reshape(postures.lanes.size),
         spread,
         np.empty((postures.lanes.shape[0], BLOCK), np.float32),
         np.empty((count, 6, BLOCK), np.float32),
-        np.empty((count, 7, BLOCK), np.float32),
         np.empty((count, BLOCK), np.float32),
         np.empty((count, BLOCK), np.float32),
         np.empty((BLOCK, size)),
@@ -113,5 +113,5 @@ def held_against(
     for b in range(near):
         for i in range(3):
             room.near[b, i] -= origin[i]
-    place_capsules(room.segments, count, radii, at, turns, room.lanes)
-    return int(capsule_clearances_in(room.checks, room.lanes, room.near, near, out))
+    place_capsules(room.segments, count, radii, at, turns, room.checks.lanes)
+    return int(capsule_clearances_in(room.checks, room.near, near, out))
