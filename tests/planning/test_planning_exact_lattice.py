@@ -8,36 +8,49 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice import (
-    BACK,
-    HOLD,
-    OWN,
-    Lattice,
-    Work,
-    cheapest_way,
-    new_work,
-    settle_backward,
-    traced,
-)
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact import lattice as kernels
+from elbowroom.planning.exact.lattice import BACK, HOLD, OWN, Lattice, Work, new_work
 from elbowroom.planning.exact.postures import BLOCK, spans_of
 
 STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
+
+
+@exact_kernel
+def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
+    reached, nodes = kernels.cheapest_way(lattice, work, begin)
+    return reached, nodes
+
+
+@exact_kernel
+def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
+    kernels.settle_backward(lattice, work, until, most)
+
+
+@exact_kernel
+def traced(lattice: Lattice, work: Work, reached: int) -> NDArray[np.int64]:
+    way = np.empty(reached + 1, np.int64)
+    kernels.trace(lattice, work, reached, way)
+    return way
+
+
 INF = np.float32(np.inf)
 
 
 def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZON) -> Lattice:
-    """`size` postures in one block of lanes and, at most, `own` more at each key time."""
+    """`size` postures and, at most, `own` more at each key time."""
     rng = np.random.default_rng(seed)
-    width = int(rng.integers(2, 5))
+    width, lanes = int(rng.integers(2, 5)), -(-size // BLOCK) * BLOCK
     postures = rng.uniform(-0.5, 0.5, (size, width))
+    postures = postures[np.argsort(postures[:, 0])]
     squares = np.sum((postures[:, None] - postures) ** 2, axis=2)
-    moves = np.full((size, BLOCK), INF)
+    moves = np.full((size, lanes), INF)
     moves[:, :size] = np.where(squares <= STEP**2, squares, np.inf)
-    price = rng.uniform(0.0, 1.0, (horizon + 1, BLOCK + OWN)).astype(np.float32)
+    price = rng.uniform(0.0, 1.0, (horizon + 1, lanes + OWN)).astype(np.float32)
     price[rng.random(price.shape) < rng.uniform(0.0, 0.6)] = INF
-    price[:, size:BLOCK], price[:, BLOCK + own :] = INF, INF
-    closed = rng.random((horizon, BLOCK + OWN, BLOCK + OWN)) < rng.choice([0.0, 0.4])
-    columns = np.ascontiguousarray(postures[np.minimum(np.arange(BLOCK), size - 1)].T, np.float32)
+    price[:, size:lanes], price[:, lanes + own :] = INF, INF
+    closed = rng.random((horizon, lanes + OWN, lanes + OWN)) < rng.choice([0.0, 0.4])
+    columns = np.ascontiguousarray(postures[np.minimum(np.arange(lanes), size - 1)].T, np.float32)
     return Lattice(
         postures=postures,
         columns=columns,
@@ -112,7 +125,7 @@ def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
 def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> None:
-    lattice = random_lattice(seed, size=12)
+    lattice = random_lattice(seed, size=40)
     work = work_for(lattice)
     if cheapest_way(lattice, work, 0)[0] < HORIZON:
         return
@@ -128,8 +141,25 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
 
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
+def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
+    lattice = random_lattice(seed, size=70, own=OWN, horizon=6)
+    near = np.where(lattice.moves <= 0.1, lattice.moves, INF)
+    lattice = lattice._replace(moves=near, spans=spans_of(near))
+    assert np.ptp(lattice.spans, axis=1).min() < near.shape[1]
+    found = []
+    for spans in (lattice.spans, np.tile([0, near.shape[1]], (len(near), 1))):
+        work, everywhere = work_for(lattice), lattice._replace(spans=spans)
+        reached, _ = cheapest_way(everywhere, work, 0)
+        settle_backward(everywhere, work, 0, np.inf if reached < 6 else float(work.costs[6].min()) + 0.5)
+        found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.left))
+    for one, other in zip(*found, strict=True):
+        assert np.array_equal(one, other)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(0, 10_000))
 def test_costs_from_both_ends_meet(seed: int) -> None:
-    lattice = random_lattice(seed, size=12, own=OWN, horizon=6)
+    lattice = random_lattice(seed, size=40, own=OWN, horizon=6)
     work = work_for(lattice)
     reached, _ = cheapest_way(lattice, work, 0)
     if reached < 6:

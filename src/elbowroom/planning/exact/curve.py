@@ -12,7 +12,7 @@ SIAM J. Sci. Stat. Comput. 5, 1984): they pass nothing.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel, leaf
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -21,15 +21,14 @@ _LOOKS = 16  # parts of an interval at whose ends its speed is looked at
 _PAST = 8.0 / 27.0  # of velocity times interval: with this much room at both its ends a segment leaves no range
 
 
-@exact_kernel
-def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools) -> Floats:
-    """Velocities (m, d) at key values (m, d), `interval` seconds apart, within the joints' `limits` (d, 2).
-
-    The first is `first` (d,), the last zero: the curve ends at rest. Where `stiff` (m,), nothing is swung past.
-    """
+@exact_lean_kernel
+def tangents_into(
+    values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools, tangents: Floats
+) -> None:
+    """`smooth_tangents`, written to `tangents` (m, d)."""
     count, size = values.shape
-    tangents = np.zeros((count, size))
     for i in range(size):
+        tangents[count - 1, i] = 0.0
         tangents[0, i] = first[i]
     for k in range(1, count - 1):
         for i in range(size):
@@ -44,6 +43,16 @@ def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floa
             ):
                 mean = 2.0 * rise * next_rise / (rise + next_rise) if rise * next_rise > 0.0 else 0.0
             tangents[k, i] = mean
+
+
+@exact_kernel
+def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools) -> Floats:
+    """Velocities (m, d) at key values (m, d), `interval` seconds apart, within the joints' `limits` (d, 2).
+
+    The first is `first` (d,), the last zero: the curve ends at rest. Where `stiff` (m,), nothing is swung past.
+    """
+    tangents = np.empty(values.shape)
+    tangents_into(values, interval, first, limits, stiff, tangents)
     return tangents
 
 
@@ -58,23 +67,27 @@ def peak_acceleration(a: Floats, velocity: Floats, b: Floats, next_velocity: Flo
     return float(np.sqrt(max(first, last)))
 
 
+@leaf
+def _middle(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, interval: float, i: int) -> float:
+    """The second of three Bezier points of a component's velocity."""
+    return float(3.0 * (b[i] - a[i]) / interval - velocity[i] - next_velocity[i])
+
+
 @exact_kernel
 def peak_speed(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, interval: float) -> float:
     """A speed, over all components together, that a segment nowhere exceeds; from rest to rest 0.4 % more than it has.
 
     Its velocity is a parabola: between two looks it leaves the chord of its ends by at most |second derivative| h^2/8.
     """
-    size = a.shape[0]
-    middle, bend = np.empty(size), 0.0
-    for i in range(size):
-        middle[i] = 3.0 * (b[i] - a[i]) / interval - velocity[i] - next_velocity[i]  # of three Bezier points
-        bend += (velocity[i] - 2.0 * middle[i] + next_velocity[i]) ** 2
-    most = 0.0
+    most, bend = 0.0, 0.0
+    for i in range(a.shape[0]):
+        bend += (velocity[i] - 2.0 * _middle(a, velocity, b, next_velocity, interval, i) + next_velocity[i]) ** 2
     for look in range(_LOOKS + 1):
         late = look / _LOOKS
         early, square = 1.0 - late, 0.0
-        for i in range(size):
-            rate = early * early * velocity[i] + 2.0 * early * late * middle[i] + late * late * next_velocity[i]
+        for i in range(a.shape[0]):
+            middle = _middle(a, velocity, b, next_velocity, interval, i)
+            rate = early * early * velocity[i] + 2.0 * early * late * middle + late * late * next_velocity[i]
             square += rate * rate
         most = max(most, square)
     return float(np.sqrt(most) + np.sqrt(bend) / (4.0 * _LOOKS * _LOOKS))
