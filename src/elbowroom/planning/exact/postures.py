@@ -120,6 +120,6 @@ def _steps(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32,
 
 def spans_of(moves: Floats32) -> Longs:
     """The `spans` (V, 2) of the steps `moves` (V, W): nothing outside of them has to be looked at."""
-    reached = np.isfinite(moves).reshape(len(moves), -1, BLOCK).any(axis=2)
+    reached = np.any(np.isfinite(moves).reshape(len(moves), -1, BLOCK), axis=2)
     ends = reached.shape[1] - np.argmax(reached[:, ::-1], axis=1)
     return np.stack([np.argmax(reached, axis=1), ends], axis=1) * BLOCK
