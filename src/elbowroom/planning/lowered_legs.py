@@ -46,7 +46,7 @@ class LoweredLegs:
 
     def among(self, moving: MovingBoxes, path: RootPath) -> "LoweredLegs":
         """The same legs where something moves besides, along a path."""
-        if not len(moving):
+        if not moving.tracks:
             return self
         made = copy(self)
         made._sweeps, made._interval = moving.swept(path.times), path.interval
