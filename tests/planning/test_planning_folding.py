@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, clamp, columns_of, limits
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.alone import alone_at
@@ -69,9 +69,8 @@ class Case:
         self.uppers = np.concatenate(before, axis=1)
         self.states = rng.uniform(-1.0, 1.0, (ROWS, 7)) * [9.0, 9.0, 3.0, 1.2, 0.2, 0.5, 1.0]
         self.natural, self.start = rng.uniform(size=ROWS) < 0.4, drawn(rng, group, 1, 0.7)[0]
-        around = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
-        mine, others = drawn(rng, group, ROWS, 0.7), np.zeros((ROWS, LOCAL - columns_of(group).stop))
-        self.goals = np.concatenate([around, mine, others], axis=1)
+        self.walk = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
+        self.mine = mine = drawn(rng, group, ROWS, 0.7)
         self.kept = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
         self.settled = seed % 3 > 0
         known, step = self.postures, self.postures.step
@@ -81,7 +80,9 @@ class Case:
 
     def prices(self, body: OwnBody = BODY) -> Floats:
         folding = body.folding(self.side, self.postures)
-        prices = folded_prices(folding, self.goals, self.kept, self.start, self.settled, self.uppers, self.states)
+        prices = folded_prices(
+            folding, self.mine, self.kept, self.start, self.settled, self.walk, self.uppers, self.states
+        )
         return prices.astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:

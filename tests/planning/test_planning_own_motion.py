@@ -8,7 +8,8 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.whole_body import whole_body
-from elbowroom.held import hold
+from elbowroom.held import Held, hold
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact import own_motion
 from elbowroom.planning.exact.curve import smooth_tangents
 from elbowroom.planning.exact.own_looks import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
@@ -19,6 +20,8 @@ from elbowroom.planning.root_path import RootPath
 from elbowroom.planning.self_pairs import self_clearances, self_pairs
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
 T, LOOKS, FAR = 0.15, 500, 99  # seconds, of a key interval; so many key intervals ahead
 ASIDE = 1.0  # radians: goals that no key posture is at
 
@@ -57,6 +60,11 @@ def looked_at_closely(path: RootPath, keys: Floats, rates: Floats, k: int) -> fl
     return float(least_of_looks(path, keys, rates, k, np.linspace(0.0, T, LOOKS)).min())
 
 
+@exact_kernel
+def looked_at(parts: Held[OwnParts], states: Floats, keys: Floats, rates: Floats, chosen: Indices) -> Floats32:
+    return least_gaps(parts, states, keys, rates, T, chosen)
+
+
 @pytest.mark.parametrize("first", [0, 6])
 def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
     motion, found, near = OwnMotion(MODEL, PAIRS), [0, 0], 0
@@ -85,7 +93,7 @@ def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
         path, keys, rates = swung(seed)
         keys = keys + rng.uniform(-wild, wild, keys.shape)
         rates = rates + 10.0 * rng.uniform(-wild, wild, rates.shape)
-        found = least_gaps(parts, path.states, keys, rates, T, np.arange(path.horizon))
+        found = looked_at(parts, path.states, keys, rates, np.arange(path.horizon))
         for k in range(path.horizon):
             for step, room in zip(STEPS, ROOMS, strict=True):
                 looks = np.arange(step, MOMENTS + 1, step) / MOMENTS * T

@@ -102,7 +102,9 @@ class Arms:
         problem, made = self._problem, self._shelves.group(_ARMS[side])
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
         folding = self._own_body.folding(side, made.postures)
-        prices = folded_prices(folding, problem.goals, task.kept, task.start, task.settled, around, problem.path.states)
+        prices = folded_prices(
+            folding, task.goals, task.kept, task.start, task.settled, problem.goals, around, problem.path.states
+        )
         for t, contact in self._contacts.of(side, problem.path.times):
             if t > 0 and contact.happens(around[t]):
                 own, _, _ = own_postures(made, task)

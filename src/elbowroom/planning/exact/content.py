@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.jit import exact_lean_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -14,19 +14,22 @@ _NATURAL = 1e-6  # radians from the goal
 CONTENT = ROOT_STATE - _FIRST  # numbers of a row beside those of the upper body
 
 
-@exact_inner_kernel
-def contents_of(states: Floats, uppers: Floats, rates: Floats) -> Longs:
-    """Rows of whole millionths (n+1, ...): root states (n+1, 7) without place and heading, and two arrays."""
-    end = CONTENT + uppers.shape[1]
-    out = np.empty((states.shape[0], end + rates.shape[1]), np.int64)
+@exact_lean_kernel
+def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
+    """Whole millionths of root states (n+1, 7) without place and heading, and beside them of `uppers` (n+1, K).
+
+    They begin the rows `out` (n+1, CONTENT + K or more).
+    """
     for t in range(out.shape[0]):
-        for j in range(CONTENT):
-            out[t, j] = np.int64(np.rint(1e6 * states[t, _FIRST + j]))
-        for j in range(uppers.shape[1]):
-            out[t, CONTENT + j] = np.int64(np.rint(1e6 * uppers[t, j]))
-        for j in range(rates.shape[1]):
-            out[t, end + j] = np.int64(np.rint(1e6 * rates[t, j]))
-    return out
+        set_millionths(states[t, _FIRST:], out[t])
+        set_millionths(uppers[t], out[t, CONTENT:])
+
+
+@exact_lean_kernel
+def set_millionths(values: Floats, out: Longs) -> None:
+    """Whole millionths of values (K,), to `out` (K or more,)."""
+    for j in range(values.shape[0]):
+        out[j] = np.int64(np.rint(1e6 * values[j]))
 
 
 @exact_lean_kernel

@@ -13,7 +13,7 @@ from elbowroom.held import Held
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
 from elbowroom.planning.exact.alone import alone_at
-from elbowroom.planning.exact.content import contents_of, is_natural
+from elbowroom.planning.exact.content import is_natural, set_contents
 from elbowroom.planning.exact.known import Known, admit, forget
 from elbowroom.planning.exact.postures import BLOCK
 
@@ -102,24 +102,28 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 @exact_kernel
 def folded_prices(
-    folding: Held[Folding], goals: Floats, kept: Floats, start: Floats, settled: bool, uppers: Floats, states: Floats
-) -> Floats32:
+    folding: Held[Folding], goals: Floats, kept: Floats, start: Floats, settled: bool, walk: Floats, uppers: Floats,
+    states: Floats,
+) -> Floats32:  # fmt: skip
     """What an arm's nodes (n+1, W + OWN) cost for the body's sake: nothing, or infinity.
 
-    The arm's task has `goals` (n+1, 11, those of all groups), `kept` (n+1, d), a `start` (d,) and is `settled` or not.
-    The groups before it are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states`
-    (n+1, 7). Where they are as the goals have them the arm's goal is free.
+    The arm's task has `goals` (n+1, d), `kept` (n+1, d), a `start` (d,) and is `settled` or not. The groups before it
+    are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states` (n+1, 7). Where they are as
+    the goals of all groups, `walk` (n+1, 11), have them the arm's goal is free.
     """
     it = folding.value
     width = it.resting.shape[0]
-    first = uppers.shape[1]
-    mine = np.ascontiguousarray(goals[:, first : first + start.shape[0]])
-    own, needed, _ = alone_at(it.configurations, it.columns, it.step, mine, kept, start, settled)
-    natural = np.empty(own.shape[0], np.bool_)
+    own, needed, _ = alone_at(it.configurations, it.columns, it.step, goals, kept, start, settled)
+    natural, contents = np.empty(own.shape[0], np.bool_), np.empty((own.shape[0], it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
-        natural[t] = is_natural(uppers[t], goals[t])
-    rows = _to_look_at(natural, needed)
-    places = _look_around(it, uppers, states, rows)
+        natural[t] = is_natural(uppers[t], walk[t])
+    set_contents(states, uppers, contents)
+    rows, fresh = np.empty(own.shape[0], np.int64), np.empty(own.shape[0], np.int64)
+    rows = rows[: _to_look_at(natural, needed, rows)]
+    places = np.empty_like(rows)
+    fresh = fresh[: _set_places(it.known, contents, rows, places, fresh)]
+    if fresh.shape[0]:
+        _look_at(it, uppers, states, rows, places, fresh)
     prices = np.empty((own.shape[0], width + own.shape[1]), np.float32)
     for t in range(prices.shape[0]):
         for v in range(prices.shape[1]):
@@ -137,33 +141,33 @@ def folded_prices(
     return prices
 
 
-@exact_inner_kernel
-def _to_look_at(natural: Bools, needed: Bools) -> Indices:
-    """The key times (R,) at which something beside the goal's posture in a natural walk is asked for."""
-    rows, count = np.empty(natural.shape[0], np.int64), 0
+@exact_lean_kernel
+def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
+    """Write down the key times `rows` at which more is asked for than the goal in a natural walk; their number."""
+    count = 0
     for t in range(natural.shape[0]):
-        if not natural[t] or needed[t, 1:].any():
+        asked = not natural[t]
+        for e in range(1, needed.shape[1]):
+            asked = asked or needed[t, e]
+        if asked:
             rows[count] = t
             count += 1
-    return rows[:count]
+    return count
 
 
-@exact_inner_kernel
-def _look_around(it: Folding, uppers: Floats, states: Floats, rows: Indices) -> Indices:
-    """The places (R,) of what surrounds the arm at `rows` (R,); of what was not known, also which postures touch it."""
-    contents = contents_of(states, uppers, uppers[:, :0])
-    places, fresh, count = np.empty_like(rows), np.empty_like(rows), 0
-    if it.known.taken[0] + rows.shape[0] > it.known.rows.shape[0]:
-        forget(it.known)
+@exact_lean_kernel
+def _set_places(known: Known, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
+    """Write down the `places` (R,) of what surrounds the arm at `rows` (R,), and the `fresh` ones; their number."""
+    if known.taken[0] + rows.shape[0] > known.rows.shape[0]:
+        forget(known)
+    count = 0
     for i in range(rows.shape[0]):
-        before = it.known.taken[0]
-        places[i] = admit(it.known, contents[rows[i]])
+        before = known.taken[0]
+        places[i] = admit(known, contents[rows[i]])
         if places[i] == before:
             fresh[count] = i
             count += 1
-    if count:
-        _look_at(it, uppers, states, rows, places, fresh[:count])
-    return places
+    return count
 
 
 @exact_inner_kernel

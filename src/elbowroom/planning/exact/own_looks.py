@@ -14,7 +14,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, leaf
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel, inlined, leaf
 from elbowroom.planning.axis_gaps import clear_pairs
 from elbowroom.planning.root_path import interpolate_root
 
@@ -44,7 +44,7 @@ class OwnParts(NamedTuple):
     limits: Floats32
 
 
-@exact_kernel
+@inlined
 def least_gaps(
     parts: Held[OwnParts], states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices
 ) -> Floats32:

@@ -14,7 +14,7 @@ from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
-from elbowroom.planning.exact.content import CONTENT, contents_of, is_natural
+from elbowroom.planning.exact.content import CONTENT, is_natural, set_contents, set_millionths
 from elbowroom.planning.exact.known import Known, admit, forget, new_known, place_of
 from elbowroom.planning.exact.own_looks import OwnParts, least_gaps
 from elbowroom.planning.root_path import RootPath
@@ -65,8 +65,12 @@ def _contacts(
     chosen = _beside(keys, goals)
     if not chosen.shape[0]:
         return out
-    contents = contents_of(states, keys, rates)
-    names, width = contents.reshape(contents.size), contents.shape[1]
+    width = CONTENT + 2 * LOCAL
+    names = np.empty(keys.shape[0] * width, np.int64)
+    contents = names.reshape(keys.shape[0], width)
+    set_contents(states, keys, contents)
+    for t in range(keys.shape[0]):
+        set_millionths(rates[t], contents[t, CONTENT + LOCAL :])
     if 2 * it.known.taken[0] > it.gaps.shape[0]:
         forget(it.known)
     missing, count = np.empty_like(chosen), 0

@@ -75,7 +75,7 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
     kept, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
     goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
-    folded_prices(body.folding(0, postures), goals, kept, kept[0], True, waists, path.states)
+    folded_prices(body.folding(0, postures), kept, kept, kept[0], True, goals, waists, path.states)
     OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
