@@ -1,7 +1,6 @@
 """The order of the flows: plan, play, reset as in the paper's Figure 4, against a naive twin of the figure."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -19,18 +18,12 @@ from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.planning.root_plan import RootPlan, RootPlanKind
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)
 INTERVAL, DT, SIZE = 0.25, 1 / 64, 3  # binary fractions: no rounding in the twin's sums
 WALK = Command(forward=1.0)
-
-
-@dataclass(frozen=True)
-class FakeRootPlan:
-    path: RootPath
-    kind: RootPlanKind = RootPlanKind.STRAIGHT
 
 
 class FakeRootPlanner:
@@ -44,13 +37,11 @@ class FakeRootPlanner:
     def reset(self) -> None:
         pass
 
-    def plan(
-        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float
-    ) -> FakeRootPlan:
+    def plan(self, start: RootState, command: Command, horizon: int, interval: float, start_time: float) -> RootPlan:
         states = np.tile(start.as_array(), (horizon + 1, 1))
         states[:, 3] = command.forward
         states[:, 1] += command.forward * interval * np.arange(horizon + 1)
-        return FakeRootPlan(RootPath(start_time, interval, states))
+        return RootPlan(RootPath(start_time, interval, states), RootPlanKind.STRAIGHT, (0.0, 0.0), 0, 0)
 
 
 class FakePlanner:
