@@ -8,32 +8,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact import lattice as kernels
-from elbowroom.planning.exact.lattice import BACK, HOLD, OWN, Lattice, Work, new_work
+from elbowroom.planning.exact.lattice import (
+    BACK,
+    HOLD,
+    OWN,
+    Lattice,
+    Work,
+    cheapest_way,
+    new_work,
+    settle_backward,
+    traced,
+)
 from elbowroom.planning.exact.postures import BLOCK, spans_of
 
 STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
-
-
-@exact_kernel
-def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
-    reached, nodes = kernels.cheapest_way(lattice, work, begin)
-    return reached, nodes
-
-
-@exact_kernel
-def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
-    kernels.settle_backward(lattice, work, until, most)
-
-
-@exact_kernel
-def traced(lattice: Lattice, work: Work, reached: int) -> NDArray[np.int64]:
-    way = np.empty(reached + 1, np.int64)
-    kernels.trace(lattice, work, reached, way)
-    return way
-
-
 INF = np.float32(np.inf)
 
 

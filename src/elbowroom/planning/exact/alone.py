@@ -1,11 +1,9 @@
 """The postures of a key time alone: its goal, what the last plan had there, the start, and the way back from it."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.lattice import BACK, GOAL, HOLD, KEPT, OWN, squares_from
 
@@ -18,41 +16,6 @@ _BACK_STEP = 0.8  # of the longest step
 _SAME = 1e-9  # radians
 
 
-class Alone(NamedTuple):
-    """The postures of each key time alone."""
-
-    own: Floats  # (n+1, OWN, d)
-    needed: Bools  # (n+1, OWN) which of them are
-    kept: Longs  # (n+1,) the last plan's nodes
-    squares: Floats32  # (W,) scratch
-
-
-@exact_lean_kernel
-def alone_into(
-    known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats, settled: bool, out: Alone
-) -> None:
-    """`alone_at`, written to `out`."""
-    own, needed, kept, squares = out
-    width, size = columns.shape[1], goals.shape[1]
-    length, pace = _distance(goals[0], start), _BACK_STEP * step
-    start_is_known = _known(known, columns, start, squares) >= 0
-    for t in range(goals.shape[0]):
-        goal = goals[t]
-        part = min(pace * t / max(_distance(goal, start), 1e-9), 1.0)
-        for i in range(size):
-            own[t, GOAL, i], own[t, KEPT, i], own[t, HOLD, i] = goal[i], last[t, i], start[i]
-            own[t, BACK, i] = start[i] + part * (goal[i] - start[i])
-        if _near(last[t], goal):
-            kept[t] = width + GOAL
-        else:
-            at = _known(known, columns, last[t], squares)
-            kept[t] = at if at >= 0 else width + KEPT
-        needed[t, GOAL] = True
-        needed[t, KEPT] = kept[t] == width + KEPT
-        needed[t, BACK] = not settled and part < 1.0 and length > _SAME
-        needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
-
-
 @exact_kernel
 def alone_at(
     known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats, settled: bool
@@ -63,20 +26,36 @@ def alone_at(
     `last` (n+1, d) what the last plan had, `start` (d,). A posture that is among the known needs no node of its own.
     A start that is `settled` is one of `last`, and nobody needs to stay there or to find a way back from it.
     """
+    width = columns.shape[1]
     count, size = goals.shape
-    own, needed, kept = np.empty((count, OWN, size)), np.empty((count, OWN), np.bool_), np.empty(count, np.int64)
-    out = Alone(own, needed, kept, np.empty(columns.shape[1], np.float32))
-    alone_into(known, columns, step, goals, last, start, settled, out)
+    own, needed = np.empty((count, OWN, size)), np.ones((count, OWN), np.bool_)
+    kept, squares = np.empty(count, np.int64), np.empty(width, np.float32)
+    length, pace = _distance(goals[0], start), _BACK_STEP * step
+    start_is_known = _known(known, columns, start, squares) >= 0
+    for t in range(count):
+        goal = goals[t]
+        part = min(pace * t / max(_distance(goal, start), 1e-9), 1.0)
+        for i in range(size):
+            own[t, GOAL, i], own[t, KEPT, i], own[t, HOLD, i] = goal[i], last[t, i], start[i]
+            own[t, BACK, i] = start[i] + part * (goal[i] - start[i])
+        if _near(last[t], goal):
+            kept[t] = width + GOAL
+        else:
+            at = _known(known, columns, last[t], squares)
+            kept[t] = at if at >= 0 else width + KEPT
+        needed[t, KEPT] = kept[t] == width + KEPT
+        needed[t, BACK] = not settled and part < 1.0 and length > _SAME
+        needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
     return own, needed, kept
 
 
-@exact_lean_kernel
+@exact_inner_kernel
 def _distance(a: Floats, b: Floats) -> float:
     """How far two postures (d,) are apart, radians."""
     return float(np.sqrt(squared_distance(a, b)))
 
 
-@exact_lean_kernel
+@exact_inner_kernel
 def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32) -> int:
     """The number of a posture (d,), or -1; `squares` (W,) is scratch."""
     squares_from(columns, posture, squares)
@@ -84,7 +63,7 @@ def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32)
     return int(at) if at < known.shape[0] and _near(posture, known[at]) else -1
 
 
-@exact_lean_kernel
+@exact_inner_kernel
 def _near(a: Floats, b: Floats) -> bool:
     apart = 0.0
     for i in range(a.shape[0]):

@@ -12,7 +12,7 @@ SIAM J. Sci. Stat. Comput. 5, 1984): they pass nothing.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel, leaf
+from elbowroom.jit import exact_kernel, leaf
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -21,14 +21,15 @@ _LOOKS = 16  # parts of an interval at whose ends its speed is looked at
 _PAST = 8.0 / 27.0  # of velocity times interval: with this much room at both its ends a segment leaves no range
 
 
-@exact_lean_kernel
-def tangents_into(
-    values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools, tangents: Floats
-) -> None:
-    """`smooth_tangents`, written to `tangents` (m, d)."""
+@exact_kernel
+def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools) -> Floats:
+    """Velocities (m, d) at key values (m, d), `interval` seconds apart, within the joints' `limits` (d, 2).
+
+    The first is `first` (d,), the last zero: the curve ends at rest. Where `stiff` (m,), nothing is swung past.
+    """
     count, size = values.shape
+    tangents = np.zeros((count, size))
     for i in range(size):
-        tangents[count - 1, i] = 0.0
         tangents[0, i] = first[i]
     for k in range(1, count - 1):
         for i in range(size):
@@ -43,16 +44,6 @@ def tangents_into(
             ):
                 mean = 2.0 * rise * next_rise / (rise + next_rise) if rise * next_rise > 0.0 else 0.0
             tangents[k, i] = mean
-
-
-@exact_kernel
-def smooth_tangents(values: Floats, interval: float, first: Floats, limits: Floats, stiff: Bools) -> Floats:
-    """Velocities (m, d) at key values (m, d), `interval` seconds apart, within the joints' `limits` (d, 2).
-
-    The first is `first` (d,), the last zero: the curve ends at rest. Where `stiff` (m,), nothing is swung past.
-    """
-    tangents = np.empty(values.shape)
-    tangents_into(values, interval, first, limits, stiff, tangents)
     return tangents
 
 

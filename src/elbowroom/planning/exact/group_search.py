@@ -10,15 +10,14 @@ from numpy.typing import NDArray
 
 from elbowroom.held import Held
 from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
-from elbowroom.planning.exact.alone import alone_into
-from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, tangents_into
+from elbowroom.planning.exact.alone import alone_at
+from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
-from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, least_in, set_keys, settle_backward, trace
-from elbowroom.planning.exact.masks import Masks, find_masks, new_mask, reopen, set_mask_keys
+from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, least_in, set_keys, settle_backward, traced
+from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
 from elbowroom.planning.exact.postures import Postures
-from elbowroom.planning.exact.prices import Carriers, node_prices, set_carriers
+from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way_in
-from elbowroom.planning.exact.search_room import SearchRoom, search_room
 from elbowroom.planning.exact.shelves import Shelf
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
@@ -122,99 +121,63 @@ def _close_promising(
     return checks
 
 
-@exact_lean_kernel
-def _begun(it: Shelf, task: GroupTask, weights: Weights, room: Workroom, made: SearchRoom) -> tuple[float, int]:
-    """Find what the nodes cost, and what is asked of the motion between them.
-
-    Returns the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
-    """
-    group, postures, alone = it.group, it.group.postures, made.alone
-    begin_round(group.tables.slots)
-    alone_into(
-        postures.configurations, postures.columns, postures.step, task.goals, task.kept, task.start, task.settled, alone
-    )
-    if postures.limb.is_waist:
-        set_carriers(it.roots.slots.ids, it.roots.places, it.roots.turns, task.roots, made.carriers)
-    else:
-        set_carriers(it.waists.slots.ids, it.waists.places, it.waists.turns, task.carriers, made.carriers)
-    most, checks = node_prices(
-        room, group.tables, postures, made.carriers, task, weights, alone.own, alone.needed, alone.kept, made.clear,
-        made.price,
-    )  # fmt: skip
-    set_mask_keys(made.carriers.ids, task.goals, made.named)
-    find_masks(group.masks, made.named, alone.kept, made.masks)
-    for k in range(made.skins.shape[0]):
-        made.skins[k] = min(task.skins[k], most)
-    return most, checks
-
-
-@exact_lean_kernel
-def _curved(it: Shelf, task: GroupTask, room: Workroom, made: SearchRoom, gentle: bool) -> tuple[int, bool]:
-    """Lay the curve through a way's key postures and prove it, once more where it touches and could be stiffer.
-
-    Returns the capsules checked, and whether the beginning asks for much.
-    """
-    checks, harsh = 0, False
-    made.stiff[:] = False
-    for attempt in range(2):
-        tangents_into(made.keys, task.interval, task.velocity, it.group.limits, made.stiff, made.tangents)
-        count, asks_much = _proven(
-            room, it.group, it.roots, it.waists, it.chain, task, made.keys, made.tangents, made.skins, made.slots,
-            made.touches, gentle,
-        )  # fmt: skip
-        checks, harsh = checks + count, harsh or asks_much
-        if attempt == 1 or not _stiffened(made.stiff, made.touches):
-            break
-    return checks, harsh
-
-
-@exact_lean_kernel
-def _search(
-    it: Shelf, task: GroupTask, weights: Weights, room: Workroom, made: SearchRoom
-) -> tuple[int, int, float, int, int, int]:
-    """`search_group`, with room to work in: what it reached, keys that hold, and the last of a `GroupWay`."""
-    postures, masks, horizon = it.group.postures, it.group.masks, task.goals.shape[0] - 1
-    most, checks = _begun(it, task, weights, room, made)
-    lattice = Lattice(
-        postures.configurations, postures.columns, postures.moves, postures.spans, made.alone.own, task.goals,
-        made.price, made.masks, masks.closed, made.alone.kept, postures.step, weights.step,
-    )  # fmt: skip
-    first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
-    for rounds in range(weights.rounds):
-        reached, count = cheapest_way(lattice, it.work, first)
-        nodes += count
-        trace(lattice, it.work, reached, made.way)
-        set_keys(lattice, made.way, reached, made.keys)
-        if reached < horizon and gentle and harsh and task.harsh:
-            gentle, first = False, int(_BEGIN)
-            reopen(masks, made.masks[0])
-            continue
-        if reached < horizon:
-            return reached, reached + 1, most, checks, nodes, rounds
-        count, asks_much = _curved(it, task, room, made, bool(gentle))
-        checks, harsh = checks + count, harsh or asks_much
-        first, farthest = _closed(lattice, it.work, masks, made.named, made.way, made.touches)
-        if first == horizon:
-            return horizon, horizon + 1, most, checks, nodes, rounds + 1
-        deepest = max(deepest, first)
-        best = least_in(it.work.costs[horizon])
-        settle_backward(lattice, it.work, first, best + farthest)
-        checks += _close_promising(
-            room, postures, made.carriers, task.boxes, made.skins, lattice, it.work, masks, made.steps, first, best
-        )
-    return deepest, deepest + 1, most, checks, nodes, weights.rounds
-
-
 @exact_kernel
 def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> GroupWay:
     """The cheapest way whose motion is free as shown, at every moment.
 
     It begins gently; if there is no such way, only who is told so begins as hard as it takes.
     """
-    it = shelf.value
-    room = workroom(it.group.postures, it.chain.waist, task.boxes.shape[1])
-    made = search_room(task.goals.shape[0] - 1, task.goals.shape[1], task.extra.shape[1])
-    reached, until, most, checks, nodes, rounds = _search(it, task, weights, room, made)
-    return GroupWay(
-        reached, made.keys[:until], made.tangents[:until], made.slots, made.price, most, checks, nodes, rounds
-    )
+    group, roots, waists, chain, work = shelf.value
+    postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
+    configurations, columns = postures.configurations, postures.columns
+    interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
+    room, steps = workroom(postures, chain.waist, boxes.shape[1]), np.empty((MOST_STEPS, 2), np.int64)
+    begin_round(group.tables.slots)
+    own, needed, kept = alone_at(configurations, columns, postures.step, goals, task.kept, task.start, task.settled)
+    if postures.limb.is_waist:
+        carriers = carriers_at(roots.slots.ids, roots.places, roots.turns, task.roots)
+    else:
+        carriers = carriers_at(waists.slots.ids, waists.places, waists.turns, task.carriers)
+    price, clear = np.empty_like(task.extra), np.empty_like(task.extra)
+    most, checks = node_prices(room, group.tables, postures, carriers, task, weights, own, needed, kept, clear, price)
+    named = mask_keys(carriers.ids, goals)
+    lattice = Lattice(
+        configurations, columns, postures.moves, postures.spans, own, goals, price, known_masks(masks, named, kept),
+        masks.closed, kept, postures.step, weights.step,
+    )  # fmt: skip
+    slots, skins = np.empty(horizon, np.int64), np.empty(horizon)
+    touches, stiff = np.zeros(horizon, np.bool_), np.zeros(horizon + 1, np.bool_)
+    for k in range(horizon):
+        skins[k] = min(task.skins[k], most)
+    first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
+    keys, tangents = np.empty_like(goals), np.empty_like(goals)
+    for rounds in range(weights.rounds):
+        reached, count = cheapest_way(lattice, work, first)
+        nodes += count
+        way = traced(lattice, work, reached)
+        set_keys(lattice, way, keys)
+        if reached < horizon and gentle and harsh and task.harsh:
+            gentle, first = False, int(_BEGIN)
+            reopen(masks, lattice.masks[0])
+            continue
+        if reached < horizon:
+            until = reached + 1
+            return GroupWay(reached, keys[:until], tangents[:until], slots, price, most, checks, nodes, rounds)
+        stiff[:] = False
+        for attempt in range(2):
+            tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
+            count, asks_much = _proven(
+                room, group, roots, waists, chain, task, keys, tangents, skins, slots, touches, bool(gentle)
+            )
+            checks, harsh = checks + count, harsh or asks_much
+            if attempt == 1 or not _stiffened(stiff, touches):
+                break
+        first, farthest = _closed(lattice, work, masks, named, way, touches)
+        if first == horizon:
+            return GroupWay(horizon, keys, tangents, slots, price, most, checks, nodes, rounds + 1)
+        deepest = max(deepest, first)
+        best = least_in(work.costs[horizon])
+        settle_backward(lattice, work, first, best + farthest)
+        checks += _close_promising(room, postures, carriers, boxes, skins, lattice, work, masks, steps, first, best)
+    until = deepest + 1
+    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, weights.rounds)

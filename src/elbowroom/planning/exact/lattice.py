@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -291,7 +291,7 @@ def least_in(row: Floats32) -> Any:
     return least
 
 
-@exact_lean_kernel
+@exact_kernel
 def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
     """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
 
@@ -321,24 +321,26 @@ def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
     return reached, nodes
 
 
-@exact_lean_kernel
-def trace(lattice: Lattice, work: Work, reached: int, way: Longs) -> None:
-    """Write down the nodes of the cheapest way to the depth `reached` in `way` (n+1,); the first is HOLD, the start."""
+@exact_kernel
+def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
+    """The nodes (reached+1,) of the cheapest way to that depth; the first is HOLD, the start."""
+    way = np.empty(reached + 1, np.int64)
     way[reached] = np.argmin(work.costs[reached])
     for depth in range(reached, 0, -1):
         way[depth - 1] = work.parents[depth, way[depth]]
     way[0] = lattice.moves.shape[1] + HOLD
+    return way
 
 
 @exact_lean_kernel
-def set_keys(lattice: Lattice, way: Longs, reached: int, keys: Floats) -> None:
-    """The postures of a way's nodes down to the depth `reached` into the first rows of `keys` (n+1, d)."""
-    for t in range(reached + 1):
+def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
+    """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
+    for t in range(way.shape[0]):
         for i in range(keys.shape[1]):
             keys[t, i] = component_of(lattice, t, way[t], i)
 
 
-@exact_lean_kernel
+@exact_kernel
 def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
     """The costs `left` of the nodes at the depths from the last down to `until`.
 

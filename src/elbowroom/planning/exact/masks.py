@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
 from elbowroom.planning.exact.lattice import OWN
 from elbowroom.planning.exact.slots import Slots, admit, begin_round, find, new_slots
 
@@ -31,14 +31,15 @@ def new_masks(count: int, size: int, nodes: int) -> Masks:
     )
 
 
-@exact_lean_kernel
-def find_masks(masks: Masks, keys: Floats, kept: Longs, out: Longs) -> None:
-    """Write down the masks (n,) of intervals with these keys (n, K), -1 where there is none.
+@exact_inner_kernel
+def known_masks(masks: Masks, keys: Floats, kept: Longs) -> Longs:
+    """The masks (n,) of intervals with these keys (n, K), -1 where there is none.
 
     What it says of postures that belonged to the last plan's key times alone is forgotten, and so is what it says of
     the steps between the nodes `kept` (n+1,) of the last plan: they may be closed for being near to others only.
     """
     begin_round(masks.slots)
+    out = np.empty(keys.shape[0], np.int64)
     for k in range(keys.shape[0]):
         at = find(masks.slots, keys[k])
         out[k] = at
@@ -50,6 +51,7 @@ def find_masks(masks: Masks, keys: Floats, kept: Longs, out: Longs) -> None:
                     closed[e, node], closed[node, e] = False, False
                     seen[e, node], seen[node, e] = False, False
             closed[kept[k], kept[k + 1]] = False
+    return out
 
 
 @exact_lean_kernel
@@ -67,11 +69,13 @@ def reopen(masks: Masks, at: int) -> None:
         masks.closed[at], masks.seen[at], masks.slack[at] = False, False, 0.0
 
 
-@exact_lean_kernel
-def set_mask_keys(ids: Longs, goals: Floats, keys: Floats) -> None:
-    """Write down the keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
-    size = goals.shape[1]
-    for k in range(keys.shape[0]):
+@exact_inner_kernel
+def mask_keys(ids: Longs, goals: Floats) -> Floats:
+    """The keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
+    horizon, size = goals.shape[0] - 1, goals.shape[1]
+    keys = np.empty((horizon, 1 + 2 * size))
+    for k in range(horizon):
         keys[k, 0] = ids[k]
         for i in range(size):
             keys[k, 1 + i], keys[k, 1 + size + i] = goals[k, i], goals[k + 1, i]
+    return keys

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.group import GroupTask, Weights
 from elbowroom.planning.exact.lattice import BACK, OWN, squares_from
@@ -33,10 +33,12 @@ class Carriers(NamedTuple):
     turns: Floats  # (n, SWEEP+1, 4)
 
 
-@exact_lean_kernel
-def set_carriers(ids: Longs, places: Floats, turns: Floats, slots: Longs, out: Carriers) -> None:
-    """Write down the ways at `slots` (n,), one after the other."""
-    for k in range(slots.shape[0]):
+@exact_inner_kernel
+def carriers_at(ids: Longs, places: Floats, turns: Floats, slots: Longs) -> Carriers:
+    """The ways at `slots` (n,), one after the other."""
+    count = slots.shape[0]
+    out = Carriers(np.empty(count, np.int64), np.empty((count, SWEEP + 1, 3)), np.empty((count, SWEEP + 1, 4)))
+    for k in range(count):
         at = slots[k]
         out.ids[k] = ids[at]
         for look in range(SWEEP + 1):
@@ -44,6 +46,7 @@ def set_carriers(ids: Longs, places: Floats, turns: Floats, slots: Longs, out: C
                 out.places[k, look, i] = places[at, look, i]
             for i in range(4):
                 out.turns[k, look, i] = turns[at, look, i]
+    return out
 
 
 @exact_lean_kernel
