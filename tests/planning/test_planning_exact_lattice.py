@@ -4,10 +4,11 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice import (
     BACK,
     HOLD,
@@ -18,6 +19,7 @@ from elbowroom.planning.exact.lattice import (
     new_work,
     settle_backward,
     traced,
+    widen,
 )
 from elbowroom.planning.exact.postures import BLOCK, spans_of
 
@@ -100,7 +102,7 @@ def every_way(lattice: Lattice) -> tuple[int, float]:
 def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
     lattice = random_lattice(seed)
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0)
+    reached, _ = cheapest_way(lattice, work, 0, False)
     expected, cost = every_way(lattice)
     assert reached == expected
     way = traced(lattice, work, reached)
@@ -115,13 +117,13 @@ def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
 def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> None:
     lattice = random_lattice(seed, size=40)
     work = work_for(lattice)
-    if cheapest_way(lattice, work, 0)[0] < HORIZON:
+    if cheapest_way(lattice, work, 0, False)[0] < HORIZON:
         return
     lattice.masks[1] = 1
     lattice.closed[1] = np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5
-    resumed, _ = cheapest_way(lattice, work, 1)
+    resumed, _ = cheapest_way(lattice, work, 1, False)
     fresh = work_for(lattice)
-    anew, _ = cheapest_way(lattice, fresh, 0)
+    anew, _ = cheapest_way(lattice, fresh, 0, False)
     assert resumed == anew
     assert np.array_equal(traced(lattice, work, anew), traced(lattice, fresh, anew))
     assert work.costs[anew].min() == fresh.costs[anew].min()
@@ -137,11 +139,30 @@ def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
     found = []
     for spans in (lattice.spans, np.tile([0, near.shape[1]], (len(near), 1))):
         work, everywhere = work_for(lattice), lattice._replace(spans=spans)
-        reached, _ = cheapest_way(everywhere, work, 0)
+        reached, _ = cheapest_way(everywhere, work, 0, False)
         settle_backward(everywhere, work, 0, np.inf if reached < 6 else float(work.costs[6].min()) + 0.5)
         found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.left))
     for one, other in zip(*found, strict=True):
         assert np.array_equal(one, other)
+
+
+@exact_kernel
+def widened(lattice: Lattice, work: Work) -> int:
+    return int(widen(lattice, work))
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 10_000), st.sampled_from([0.02, 0.3, 1.0]))
+def test_what_a_glance_finds_is_the_cheapest_way_and_can_be_made_whole(seed: int, dear: float) -> None:
+    lattice = random_lattice(seed, size=70, own=OWN, horizon=6)
+    lattice = lattice._replace(price=np.float32(dear) * lattice.price)
+    glanced, whole = work_for(lattice), work_for(lattice)
+    reached, _ = cheapest_way(lattice, glanced, 0, True)
+    assert reached == cheapest_way(lattice, whole, 0, False)[0]
+    assert np.array_equal(traced(lattice, glanced, reached), traced(lattice, whole, reached))
+    event(f"all was seen at a glance: {np.array_equal(glanced.costs[: reached + 1], whole.costs[: reached + 1])}")
+    widened(lattice, glanced)
+    assert np.array_equal(glanced.costs[: reached + 1], whole.costs[: reached + 1])
 
 
 @settings(deadline=None, max_examples=40)
@@ -149,7 +170,7 @@ def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
 def test_costs_from_both_ends_meet(seed: int) -> None:
     lattice = random_lattice(seed, size=40, own=OWN, horizon=6)
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0)
+    reached, _ = cheapest_way(lattice, work, 0, False)
     if reached < 6:
         return
     best = float(work.costs[6].min())
@@ -165,7 +186,7 @@ def test_who_follows_the_goal_pays_nothing() -> None:
     price[:, BLOCK + BACK] = 0.0
     lattice = lattice._replace(own=own, price=price, masks=np.full(HORIZON, -1))
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0)
+    reached, _ = cheapest_way(lattice, work, 0, False)
     assert reached == HORIZON
     assert work.costs[HORIZON].min() < 1e-6
     assert np.all(traced(lattice, work, reached)[1:] == BLOCK + BACK)

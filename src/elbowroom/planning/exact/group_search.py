@@ -13,7 +13,16 @@ from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
-from elbowroom.planning.exact.lattice import Lattice, Work, cheapest_way, least_in, set_keys, settle_backward, traced
+from elbowroom.planning.exact.lattice import (
+    Lattice,
+    Work,
+    cheapest_way,
+    least_in,
+    set_keys,
+    settle_backward,
+    traced,
+    widen,
+)
 from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
@@ -87,7 +96,7 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
 def _closed(lattice: Lattice, work: Work, masks: Masks, keys: Floats, way: Longs, touches: Bools) -> tuple[int, float]:
     """Close the steps of a way in the intervals where it touches, and those near to them.
 
-    Returns the first of these intervals, n if there is none, and how much dearer ways are to be looked at.
+    Returns the first of these intervals and how much dearer ways are to be looked at.
     """
     first, farthest = touches.shape[0], 0.0
     for k in range(touches.shape[0] - 1, -1, -1):
@@ -152,7 +161,7 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
     first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
     keys, tangents = np.empty_like(goals), np.empty_like(goals)
     for rounds in range(weights.rounds):
-        reached, count = cheapest_way(lattice, work, first)
+        reached, count = cheapest_way(lattice, work, first, rounds == 0)
         nodes += count
         way = traced(lattice, work, reached)
         set_keys(lattice, way, keys)
@@ -172,9 +181,10 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
             checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):
                 break
-        first, farthest = _closed(lattice, work, masks, named, way, touches)
-        if first == horizon:
+        if not touches.any():
             return GroupWay(horizon, keys, tangents, slots, price, most, checks, nodes, rounds + 1)
+        nodes += widen(lattice, work)
+        first, farthest = _closed(lattice, work, masks, named, way, touches)
         deepest = max(deepest, first)
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)

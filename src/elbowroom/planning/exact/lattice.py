@@ -31,7 +31,8 @@ GOAL, KEPT, HOLD, BACK = range(
 _ROUNDING = 1.0 + 1e-6
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
-_FIRST = 0  # lane
+_FIRST = 0  # lane, depth
+_GLANCE = 0.75  # squared radians: how much dearer than the least prices a way may be at a glance
 
 
 class Lattice(NamedTuple):
@@ -58,7 +59,7 @@ class Work(NamedTuple):
     parents: Ints  # (n+1, W+OWN) the node before it on that way
     left: Floats32  # (n+1, W+OWN) of the cheapest way from each node on to the end
     squares: Floats32  # (n+1, OWN, W) squared distances of a key time's own postures from the others
-    most: Floats  # (1,) dearer ways were left out
+    most: Floats  # (2,) dearer ways were left out; what it would be after more than a glance
     least: Floats  # (n+1,) what a way on from each depth costs at least
     base: Floats32  # (W+OWN,) scratch, as is what follows
     slopes: Floats32  # (W+OWN,)
@@ -74,7 +75,7 @@ def new_work(depths: int, nodes: int) -> Work:
         np.empty((depths, nodes), np.int32),
         np.empty((depths, nodes), np.float32),
         np.empty((depths, OWN, nodes - OWN), np.float32),
-        np.zeros(1),
+        np.zeros(2),
         np.zeros(depths),
         np.empty(nodes, np.float32),
         np.empty(nodes, np.float32),
@@ -291,34 +292,60 @@ def least_in(row: Floats32) -> Any:
     return least
 
 
-@exact_kernel
-def cheapest_way(lattice: Lattice, work: Work, begin: int) -> tuple[int, int]:
-    """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
+@exact_lean_kernel
+def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on, without nodes through which no way costs at most `most`.
 
-    Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
-    prices of the depths to come would cost more than a way that is known are left out.
+    Returns the greatest depth that has a way and the number of nodes that have one.
     """
-    depths, width = lattice.goals.shape[0], lattice.moves.shape[1]
-    if begin == 0:
-        _measure(lattice, work)
-    most = min(_own_way(lattice, work.few), _kept_way(lattice)) + _SLACK
-    if begin == 0 or most > work.most[0]:
-        begin = 0  # what was left out may be needed
-        work.costs[0] = _INFINITE
-        work.costs[0, width + HOLD] = 0.0
     work.most[0] = most
-    least = work.least
-    least[depths - 1] = 0.0
-    for depth in range(depths - 2, -1, -1):
-        price = least_in(lattice.price[depth + 1])
-        least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
+    if begin == 0:
+        work.costs[0] = _INFINITE
+        work.costs[0, lattice.moves.shape[1] + HOLD] = 0.0
     reached, nodes = begin, 0
-    for depth in range(begin, depths - 1):
-        count = _settle(lattice, work, depth, most - least[depth])
+    for depth in range(begin, lattice.goals.shape[0] - 1):
+        count = _settle(lattice, work, depth, most - work.least[depth])
         if count == 0:
             break
         reached, nodes = depth + 1, nodes + count
     return reached, nodes
+
+
+@exact_kernel
+def cheapest_way(lattice: Lattice, work: Work, begin: int, glance: bool) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
+
+    Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
+    prices of the depths to come would cost more than a way that is known are left out. At a `glance` ways are looked
+    for first that cost little more than these prices: what is found there is the cheapest, and most nodes are left out;
+    `widen` makes up for it.
+    """
+    depths, least, nodes = lattice.goals.shape[0], work.least, 0
+    if begin == 0:
+        _measure(lattice, work)
+    most = min(_own_way(lattice, work.few), _kept_way(lattice)) + _SLACK
+    least[depths - 1] = 0.0
+    for depth in range(depths - 2, -1, -1):
+        price = least_in(lattice.price[depth + 1])
+        least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
+    if most > work.most[0]:
+        begin = 0  # what was left out may be needed
+    work.most[1] = most
+    if glance and least[0] + _GLANCE < most:
+        reached, nodes = _settle_from(lattice, work, int(_FIRST), least[0] + _GLANCE)
+        if reached == depths - 1 and least_in(work.costs[reached]) + _SLACK < least[0] + _GLANCE:
+            return reached, nodes
+    reached, count = _settle_from(lattice, work, begin, most)
+    return reached, nodes + count
+
+
+@exact_lean_kernel
+def widen(lattice: Lattice, work: Work) -> int:
+    """Settle also what was left out at a glance, if it was one; the number of nodes that have a way."""
+    if work.most[0] == work.most[1]:
+        return 0
+    _, nodes = _settle_from(lattice, work, int(_FIRST), work.most[1])
+    return nodes
 
 
 @exact_kernel
