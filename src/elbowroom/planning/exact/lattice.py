@@ -32,7 +32,7 @@ _ROUNDING = 1.0 + 1e-6
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
 _FIRST = 0  # lane, depth
-_GLANCE = 0.75  # squared radians: how much dearer than the least prices a way may be at a glance
+_GLANCE = 0.25  # squared radians: how much dearer than the least prices a way may be at a glance
 
 
 class Lattice(NamedTuple):
