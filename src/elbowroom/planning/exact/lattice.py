@@ -64,7 +64,7 @@ class Work(NamedTuple):
     base: Floats32  # (W+OWN,) scratch, as is what follows
     slopes: Floats32  # (W+OWN,)
     closed: Bools  # (W,)
-    origins: Ints  # (W,)
+    origins: Ints  # (W+OWN,)
     few: Floats  # (2, OWN)
 
 
@@ -80,7 +80,7 @@ def new_work(depths: int, nodes: int) -> Work:
         np.empty(nodes, np.float32),
         np.empty(nodes, np.float32),
         np.empty(nodes - OWN, np.bool_),
-        np.empty(nodes - OWN, np.int32),
+        np.empty(nodes, np.int32),
         np.empty((2, OWN)),
     )
 

@@ -64,12 +64,20 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
         end[b] = work.left[depth + 1, b] + lattice.price[depth + 1, b] - end[b]
-    least, closed = least_in(end), lattice.closed[lattice.masks[depth]]
+    for a in range(np.uint64(nodes)):
+        base[a] = costs[a] + base[a] + square
+    least, first, likely, few = least_in(end), least_in(base), work.origins, 0
+    closed = lattice.closed[lattice.masks[depth]]
+    for b in range(nodes):
+        if first + end[b] <= limit:
+            likely[few] = b
+            few += 1
     for a in range(nodes):
-        start = costs[a] + base[a] + square
+        start = base[a]
         if not start + least <= limit:
             continue
-        for b in range(nodes):
+        for i in range(few):
+            b = likely[i]
             if not start + end[b] <= limit or seen[a, b] or closed[a, b] or a == b:
                 continue
             if b >= width:
