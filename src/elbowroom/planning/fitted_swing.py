@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
 from elbowroom.body.humanoid import Humanoid
@@ -62,6 +61,9 @@ def _clear(swing: Swing, model: BodyModel, pairs: SelfPairs, lifts: Floats, ease
 
 def _smooth(change: Floats) -> Floats:
     """The same and more, without jumps along the stride."""
+    # Takes a tenth of a start to import, and most walk with the stock swing.
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
     spread = maximum_filter1d(change, _SPREAD, axis=1, mode="wrap")
     smooth: Floats = gaussian_filter1d(spread, _SMOOTH, axis=1, mode="wrap")
     return smooth

@@ -27,7 +27,7 @@ class PlanSettings:
 
     scene: str = "d"
     key_frames: int = 12
-    rounds: int = 5  # crossings
+    rounds: int = 20  # crossings
     starts: int = 20  # further crossings, each from another start, as the trials of Table 1 have them
     horizons: tuple[int, ...] = (4, 8, 12, 16, 20, 24)
     obstacles: tuple[int, ...] = (0, 8, 16, 24, 32, 40)

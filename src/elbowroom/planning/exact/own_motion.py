@@ -26,7 +26,7 @@ Indices = NDArray[np.int64]
 _UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
 _AFAR = 2.0  # times as much room is left far ahead: what was free from afar stays free when it is near
 _SOON = 4  # key intervals ahead until which a motion is near
-ROOM = 8192  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
+ROOM = 2048  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
 
 
 class Seen(NamedTuple):
