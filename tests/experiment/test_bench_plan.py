@@ -43,7 +43,7 @@ def test_lane_has_its_posts_beside_the_way() -> None:
 
 def test_plots_are_svg_documents() -> None:
     costs = CallCosts(3, 2, 0.2, 0.4, 0.5, 0.2, 0.6, 0.3, 100.0, 300, 1.0)
-    settings = PlanSettings(horizons=(4, 8), obstacles=(0, 8))
+    settings = PlanSettings(rounds=5, horizons=(4, 8), obstacles=(0, 8))
     for picture in growth_plots(PlanReport(settings, costs, costs, (costs,) * 2, (costs,) * 2)).values():
         assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
     assert costs.worst_to_median_checks == 3.0
