@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel, leaf
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
@@ -72,6 +72,15 @@ def table_of(
     return int(at), checks + count
 
 
+@leaf
+def _set_frame(room: Workroom, n: int, places: Floats, turns: Floats, look: int) -> None:
+    """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` in the room."""
+    for i in range(3):
+        room.places[n, i] = places[look, i]
+    for i in range(4):
+        room.turns[n, i] = turns[look, i]
+
+
 @exact_lean_kernel
 def _goals_held(
     room: Workroom, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
@@ -86,10 +95,7 @@ def _goals_held(
     total = _EARLY + _MOMENTS + 1 - _LATE
     for n in range(total):
         look = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
-        for i in range(3):
-            room.places[n, i] = places[look, i]
-        for i in range(4):
-            room.turns[n, i] = turns[look, i]
+        _set_frame(room, n, places, turns, look)
     for c in range(segments.shape[0]):
         for i in range(6):
             first, second = segments[c, i, 0], segments[c, i, 1]
@@ -154,10 +160,7 @@ def held_clearance_in(
     total = end - begin
     for n in range(total):
         look = (begin + n) * _STRIDE
-        for i in range(3):
-            room.places[n, i] = places[look, i]
-        for i in range(4):
-            room.turns[n, i] = turns[look, i]
+        _set_frame(room, n, places, turns, look)
     for c in range(segments.shape[0]):
         for i in range(6):
             for n in range(1, total):
