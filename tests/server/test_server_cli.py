@@ -86,7 +86,9 @@ def test_doctor_measures_a_live_session() -> None:
     assert all(facts["packages"].values())
     session = facts["session"]
     assert session["cpu_percent"] > 0.0
-    assert 50.0 < session["resident_megabytes"] < session["resident_budget_megabytes"]
+    assert 50.0 < session["own_megabytes"] < session["resident_megabytes"]
+    told = any("more memory than its budget" in fault for fault in facts["faults"])
+    assert told is (session["own_megabytes"] > session["own_budget_megabytes"])
     assert session["frames_per_second"] > 1.0
 
 

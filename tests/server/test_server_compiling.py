@@ -2,6 +2,7 @@
 
 import gc
 import os
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -57,6 +58,36 @@ def test_the_parts_process_gets_the_environment(monkeypatch: pytest.MonkeyPatch)
     heard: list[str] = []
     compile_parts(lambda kernel, number: heard.append(kernel), os.environ | {"NUMBA_CACHE_DIR": "there"})
     assert heard == ["there"]
+
+
+_OPEN = """
+from elbowroom.server.library import Library
+from elbowroom.server.warmup import first_steps, listening, warm_up
+with listening(lambda kernel, number: print(kernel)):
+    library = Library.open("traffic")
+"""
+_START = f"""
+{_OPEN}
+    first_steps(library)
+    warm_up(library)
+"""
+
+
+def _compiles(program: str, cache: Path) -> list[str]:
+    """The kernels which a program must compile that keeps them in `cache`."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    run = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+    return run.stdout.split()
+
+
+def test_files_are_read_before_anything_is_compiled(tmp_path: Path) -> None:
+    assert _compiles(_OPEN, tmp_path) == []
+
+
+@pytest.mark.long
+def test_the_parts_leave_the_server_nothing_to_compile(tmp_path: Path) -> None:
+    assert compile_parts(lambda kernel, number: None, os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)})
+    assert _compiles(_START, tmp_path) == []
 
 
 def test_a_command_names_its_part() -> None:

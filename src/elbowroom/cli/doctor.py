@@ -133,7 +133,7 @@ def _faults(facts: dict[str, Any]) -> list[str]:
     cost = facts.get("session")
     if cost and cost["cpu_percent"] > cost["cpu_budget_percent"]:
         faults.append("a live session needs more processor time than its budget")
-    if cost and cost["resident_megabytes"] > cost["resident_budget_megabytes"]:
+    if cost and cost["own_megabytes"] > cost["own_budget_megabytes"]:
         faults.append("the server of these sessions needs more memory than its budget")
     start = facts.get("startup")
     if start and start["program_seconds"] > start["warm_budget_seconds"]:
@@ -163,7 +163,8 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
     if cost is None:
         return []
     cpu = f"{cost['cpu_percent']:.1f} % of one core (budget {cost['cpu_budget_percent']:g})"
-    memory = f"{cost['resident_megabytes']:.0f} MB (budget {cost['resident_budget_megabytes']:g})"
+    own = f"{cost['own_megabytes']:.0f} MB of its own (budget {cost['own_budget_megabytes']:g})"
+    memory = f"{own}, {cost['resident_megabytes']:.0f} with its libraries"
     rate = f"{cost['frames_per_second']:.1f} frames/s, computing one takes {cost['frame_ms_p50']:.2f} ms"
     frames = f"99 % of the frames within {cost['late_ms_p99']:.1f} ms of their time"
     answers = f"commands answered within {cost['answer_ms_p50']:.0f} ms (half), {cost['answer_ms_max']:.0f} ms (all"

@@ -82,6 +82,7 @@ class _Handlers:
                 "wallSeconds": usage.wall_seconds,
                 "cpuSeconds": usage.cpu_seconds,
                 "residentBytes": usage.resident_bytes,
+                "ownBytes": usage.own_bytes,
             }
         )
 

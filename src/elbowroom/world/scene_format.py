@@ -12,7 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance_of
+from elbowroom.world.closest_points import closest_points
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
 from elbowroom.world.moving import MovingBoxes
@@ -135,12 +135,12 @@ def _unit_quaternion(place: Place) -> NDArray[np.float64]:
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     x, z = scene.start.x, scene.start.z
-    legs, radius = np.array([[x, _STANCE_LOW, z, x, _STANCE_HIGH, z]]), np.array([_STANCE_RADIUS])
-    table = np.concatenate([scene.boxes.table, scene.moving.tables([0.0])[0]])
-    if clearance_of(legs, radius, table) >= 0.0:
+    legs = np.array([x, _STANCE_LOW, z, x, _STANCE_HIGH, z])
+    on_legs, on_boxes = closest_points(legs, np.concatenate([scene.boxes.table, scene.moving.tables([0.0])[0]]))
+    distances = np.linalg.norm(on_boxes - on_legs, axis=1)
+    if distances.min(initial=np.inf) >= _STANCE_RADIUS:
         return
-    each = [clearance_of(legs, radius, row[None]) for row in table]
-    name = (*scene.box_names, *scene.moving.names)[int(np.argmin(each))]
+    name = (*scene.box_names, *scene.moving.names)[int(np.argmin(distances))]
     Place(place.source, f"{place.path}.position", [x, z]).fail(f"it stands in the obstacle {name!r}; move one of them")
 
 

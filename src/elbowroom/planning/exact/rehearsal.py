@@ -24,6 +24,7 @@ from elbowroom.planning.exact.pauses import finished
 from elbowroom.planning.exact.postures import postures_of
 from elbowroom.planning.exact.prolonging import leads_to
 from elbowroom.planning.exact.proof import Carrier, limb_way
+from elbowroom.planning.exact.self_contacts import rule_out_near
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
@@ -75,6 +76,7 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
     kept, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
     goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
+    rule_out_near(np.zeros(2, np.float32), kept[:1], kept[1:2], kept[0], 0.0)
     folded_prices(body.folding(0, postures), kept, kept, kept[0], True, goals, waists, path.states)
     OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
