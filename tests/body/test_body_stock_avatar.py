@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pygltflib import GLTF2
 
 from elbowroom.body.bones import PARENTS, REQUIRED
-from elbowroom.body.stock import stock_avatar_path
+from elbowroom.body.stock import stock_avatar_path, stock_fit_path
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLID = ("Skin", "Shirt", "Trim", "Trousers", "Shoes", "Soles", "Hair")
@@ -204,3 +204,4 @@ def test_the_script_writes_the_same_bytes(tmp_path: Path) -> None:
     environment = {"PYTHONPATH": f"{ROOT / 'tools'}:{ROOT / 'src'}"}
     subprocess.run([sys.executable, "-m", "make_stock_avatar", str(out)], check=True, env=environment)
     assert out.read_bytes() == stock_avatar_path().read_bytes()
+    assert out.with_name(stock_fit_path().name).is_file()

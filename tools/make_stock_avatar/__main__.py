@@ -1,15 +1,27 @@
-"""Command line: write the stock avatar into the package, or to the path given."""
+"""Command line: write the stock avatar and its capsules into the package, or to the path given and beside it."""
 
+import json
 import sys
 from pathlib import Path
 
+from elbowroom.body.fitting import fit_capsules
+from elbowroom.body.loading import load_with_surface
+from elbowroom.body.stock import stock_avatar_path, stock_fit_path
+from elbowroom.body.stock_fit import fit_document
 from make_stock_avatar.assemble import stock_avatar
 
-TARGET = Path(__file__).resolve().parents[2] / "src" / "elbowroom" / "body" / "data" / "stock.vrm"
+
+def _fit(path: Path) -> str:
+    """The fit of an avatar file as JSON, made anew."""
+    humanoid, points = load_with_surface(path)
+    fit = fit_capsules(humanoid.skeleton, points)
+    return json.dumps(fit_document(path.read_bytes(), humanoid.skeleton, fit), indent=1) + "\n"
+
 
 if __name__ == "__main__":
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else TARGET
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else stock_avatar_path()
     path.parent.mkdir(parents=True, exist_ok=True)
-    data = stock_avatar()
-    path.write_bytes(data)
-    print(f"{path}: {len(data)} bytes")
+    path.write_bytes(stock_avatar())
+    fit_path = path.with_name(stock_fit_path().name)
+    fit_path.write_text(_fit(path), "utf-8")
+    print(f"{path}: {path.stat().st_size} bytes\n{fit_path}: {fit_path.stat().st_size} bytes")

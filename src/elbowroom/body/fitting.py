@@ -6,6 +6,7 @@ round the rest (a thumb, a nose, the front of a broad head).
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,10 +40,15 @@ class FitSettings:
     worth_it: float = 0.85  # two capsules are taken for one if they have less than this part of its volume
 
 
-def fit_capsules(
-    skeleton: Skeleton, points: BodyPoints, settings: FitSettings | None = None
-) -> tuple[Capsules, tuple[str, ...]]:
-    """Capsules for `skeleton` fitted to its surface, and the names of parts that had no surface to fit."""
+class Fit(NamedTuple):
+    """A collision body."""
+
+    capsules: Capsules
+    bare: tuple[str, ...]  # names of parts that had no surface to fit
+
+
+def fit_capsules(skeleton: Skeleton, points: BodyPoints, settings: FitSettings | None = None) -> Fit:
+    """Capsules for `skeleton` fitted to its surface."""
     settings = settings or FitSettings()
     average = proportional_capsules(skeleton)
     relaxed = with_relaxed_hands(skeleton, points)
@@ -63,7 +69,7 @@ def fit_capsules(
         spare -= len(slims[name]) - 1
     thickness = float(np.mean([slims[f"{side}UpperArm"][0].radius for side in SIDES]))
     slims[_SHOULDERS] = [slims[_SHOULDERS][0]._replace(radius=thickness)]
-    return _assembled(skeleton, average, slims), tuple(bare)
+    return Fit(_assembled(skeleton, average, slims), tuple(bare))
 
 
 def coverage(skeleton: Skeleton, capsules: Capsules, points: BodyPoints, margin: float = MARGIN) -> float:

@@ -9,7 +9,7 @@ from elbowroom.body.bone_mapping.override import override_beside, read_override
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.figure import figure_of, rig_of, skeleton_of
 from elbowroom.body.file_bones import file_bones
-from elbowroom.body.fitting import fit_capsules
+from elbowroom.body.fitting import Fit, fit_capsules
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading_hanim import HanimAsset, parse_hanim, read_hanim
@@ -17,6 +17,7 @@ from elbowroom.body.permissions import Permissions, of_vrm_0, of_vrm_1
 from elbowroom.body.proportions import proportional_capsules
 from elbowroom.body.size import sized
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.body.stock_fit import stock_fit
 from elbowroom.body.surface import body_points, loose_nodes
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf, parse_gltf, read_gltf
@@ -77,7 +78,9 @@ def _humanoid(
     rig = rig_of(figure, points)
     skeleton = skeleton_of(figure, rig)
     points = BodyPoints(rig.to_model(points.positions), points.joints)
-    capsules, capsule_notes = _capsules(skeleton, points)
+    as_it_is = not bones.told and not settings.include_hair
+    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, points)
+    capsules, capsule_notes = _capsules(skeleton, fit)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
     meta = replace(
@@ -107,10 +110,8 @@ def _permissions(vrm: Vrm) -> Permissions:
     return of_vrm_0(vrm.meta) if vrm.version == VRM_0 else of_vrm_1(vrm.meta)
 
 
-def _capsules(skeleton: Skeleton, points: BodyPoints) -> tuple[Capsules, tuple[str, ...]]:
+def _capsules(skeleton: Skeleton, fit: Fit) -> tuple[Capsules, tuple[str, ...]]:
     """The collision body, and notes on what of it has average proportions."""
-    average = proportional_capsules(skeleton)
-    capsules, bare = fit_capsules(skeleton, points)
-    if len(_CORE & set(bare)) > _CORE_BARE:
-        return average, (_NO_BODY,)
-    return capsules, (f"without mesh, of average proportions: {', '.join(bare)}",) if bare else ()
+    if len(_CORE & set(fit.bare)) > _CORE_BARE:
+        return proportional_capsules(skeleton), (_NO_BODY,)
+    return fit.capsules, (f"without mesh, of average proportions: {', '.join(fit.bare)}",) if fit.bare else ()

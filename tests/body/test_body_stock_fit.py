@@ -1,0 +1,107 @@
+"""The stock avatar's capsules lie beside it, fitted beforehand, and serve for that very file alone."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hatchling.builders.wheel import WheelBuilder
+
+from elbowroom.body import loading
+from elbowroom.body.capsules import Capsules
+from elbowroom.body.fitting import Fit, fit_capsules
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.load_settings import LoadSettings
+from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
+from elbowroom.body.stock import stock_avatar_path, stock_fit_path
+from elbowroom.body.stock_fit import fit_document, fit_of, stock_fit
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def fits(monkeypatch: pytest.MonkeyPatch) -> list[Fit]:
+    """The fits that loading makes."""
+    made: list[Fit] = []
+
+    def fitted(*args: object) -> Fit:
+        made.append(fit_capsules(*args))  # type: ignore[arg-type]
+        return made[-1]
+
+    monkeypatch.setattr(loading, "fit_capsules", fitted)
+    return made
+
+
+def _assert_alike(one: Capsules, other: Capsules, scale: float = 1.0) -> None:
+    assert (one.names, one.groups) == (other.names, other.groups)
+    assert np.array_equal(one.joints, other.joints)
+    for name in ("starts", "ends", "radii"):
+        ours, theirs = getattr(one, name), getattr(other, name)
+        assert (ours.dtype, ours.shape) == (theirs.dtype, theirs.shape)
+        np.testing.assert_allclose(ours, scale * theirs, rtol=0.0, atol=1e-6)
+
+
+def test_what_is_stored_is_what_the_fit_gives() -> None:
+    humanoid, points = load_with_surface(stock_avatar_path())
+    fit = fit_capsules(humanoid.skeleton, points)
+    stored = stock_fit(stock_avatar_path().read_bytes(), humanoid.skeleton)
+    assert stored is not None, "stale: run tools/make_stock_avatar"
+    assert stored.bare == fit.bare
+    _assert_alike(stored.capsules, fit.capsules)
+    _assert_alike(humanoid.capsules, fit.capsules)
+
+
+def test_nothing_of_a_fit_is_lost_on_its_way_through_the_file() -> None:
+    humanoid, points = load_with_surface(stock_avatar_path())
+    fit = fit_capsules(humanoid.skeleton, points)._replace(bare=("neck", "head"))
+    again = fit_of(json.loads(json.dumps(fit_document(b"", humanoid.skeleton, fit))), humanoid.skeleton)
+    assert again.bare == fit.bare
+    for name in ("joints", "starts", "ends", "radii"):
+        assert getattr(again.capsules, name).tobytes() == getattr(fit.capsules, name).tobytes()
+    assert (again.capsules.names, again.capsules.groups) == (fit.capsules.names, fit.capsules.groups)
+
+
+def test_the_stock_avatar_is_not_fitted_anew(fits: list[Fit]) -> None:
+    default = Humanoid.default()
+    _assert_alike(load_humanoid_bytes(stock_avatar_path().read_bytes(), "mine.vrm").capsules, default.capsules)
+    taller = Humanoid.load(stock_avatar_path(), LoadSettings(height=1.9))
+    scale = taller.skeleton.height / default.skeleton.height
+    assert scale > 1.05
+    _assert_alike(taller.capsules, default.capsules, scale)
+    assert not fits
+
+
+@pytest.mark.parametrize("settings", [LoadSettings(include_hair=True), LoadSettings(bones={"leftToes": None})])
+def test_with_other_settings_it_is_fitted(settings: LoadSettings, fits: list[Fit]) -> None:
+    humanoid = Humanoid.load(stock_avatar_path(), settings)
+    assert humanoid.capsules is fits[0].capsules
+
+
+def test_bones_that_are_told_beside_it_count(tmp_path: Path, fits: list[Fit]) -> None:
+    copy = tmp_path / "stock.vrm"
+    copy.write_bytes(stock_avatar_path().read_bytes())
+    copy.with_name("stock.vrm.bones.json").write_text('{"leftToes": null}')
+    assert Humanoid.load(copy).capsules is fits[0].capsules
+
+
+def test_a_changed_avatar_is_fitted(fits: list[Fit]) -> None:
+    """By a bit; the file is as long as it was."""
+    data = bytearray(stock_avatar_path().read_bytes())
+    data[-4] ^= 1
+    humanoid = load_humanoid_bytes(bytes(data), "stock.vrm")
+    assert humanoid.capsules is fits[0].capsules
+
+
+def test_a_fit_with_other_settings_than_loading_has_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    skeleton, data = Humanoid.default().skeleton, stock_avatar_path().read_bytes()
+    document = json.loads(stock_fit_path().read_text())
+    monkeypatch.setattr("elbowroom.body.stock_fit._stored", lambda: document)
+    assert stock_fit(data, skeleton) is not None
+    document["fit"]["share"] += 0.01
+    assert stock_fit(data, skeleton) is None
+    assert stock_fit(None, skeleton) is None
+
+
+def test_the_wheel_holds_it() -> None:
+    files = [Path(file.path) for file in WheelBuilder(str(ROOT)).recurse_included_files()]
+    assert {stock_fit_path().name, stock_avatar_path().name} <= {file.name for file in files}
