@@ -1,6 +1,7 @@
 """The bones of a glTF or VRM file: as it names them, as they are found, or as the user says; repaired where need be."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,7 +10,6 @@ from elbowroom.body.bone_mapping.mapping import OVERRIDE, map_bones
 from elbowroom.body.bone_mapping.override import override_nodes
 from elbowroom.body.bone_mapping.structure import checked_bones
 from elbowroom.body.bones import PARENTS
-from elbowroom.body.hanim_names import NamedBones
 from elbowroom.body.humanoid import BoneSource
 from elbowroom.body.rig_repair import repaired
 from elbowroom.formats.fields import Field
@@ -17,6 +17,9 @@ from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.meshes import skin_joints
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.formats.vrm import Vrm
+
+if TYPE_CHECKING:  # its readers are for those that have such a file
+    from elbowroom.body.hanim_names import NamedBones
 
 ADDED = "added"
 
@@ -34,7 +37,7 @@ class FileBones:
 
 
 def file_bones(
-    gltf: Gltf, tree: NodeTree, vrm: Vrm | None, override: Field | None, hanim: NamedBones | None = None
+    gltf: Gltf, tree: NodeTree, vrm: Vrm | None, override: Field | None, hanim: "NamedBones | None" = None
 ) -> FileBones:
     """Find, check and repair; `hanim` are the bones that an H-Anim file names. Raises `InputError`."""
     nodes = file_nodes(gltf, tree)

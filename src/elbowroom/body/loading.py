@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from elbowroom.body.body_parts import SIDES, BodyPoints
 from elbowroom.body.bone_mapping.override import override_beside, read_override
@@ -12,7 +13,6 @@ from elbowroom.body.file_bones import file_bones
 from elbowroom.body.fitting import Fit, fit_capsules
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
 from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading_hanim import HanimAsset, parse_hanim, read_hanim
 from elbowroom.body.permissions import Permissions, of_vrm_0, of_vrm_1
 from elbowroom.body.proportions import proportional_capsules
 from elbowroom.body.size import sized
@@ -25,7 +25,10 @@ from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import pack_glb
 from elbowroom.formats.vrm import VRM_0, Vrm, read_vrm
-from elbowroom.formats.x3d.files import SUFFIXES, is_x3d
+from elbowroom.formats.x3d.recognised import SUFFIXES, is_x3d
+
+if TYPE_CHECKING:  # few avatars need it
+    from elbowroom.body.loading_hanim import HanimAsset
 
 # A mesh that leaves more of these parts bare than so many is no body: tokens, a ball on a rig.
 _CORE = frozenset({"chest", "head"} | {s + p for s in SIDES for p in ("Thigh", "Shin", "UpperArm", "Forearm")})
@@ -41,6 +44,8 @@ def load_humanoid(path: Path, settings: LoadSettings | None = None) -> Humanoid:
 def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     """The same for the bytes of a file that was sent to us; it must not refer to other files."""
     if is_x3d(data) or name.lower().endswith(SUFFIXES):
+        from elbowroom.body.loading_hanim import parse_hanim
+
         hanim = parse_hanim(data, name)
         return _humanoid(hanim.gltf, None, None, LoadSettings(), hanim)[0]
     return _humanoid(parse_gltf(data, name), None, None, LoadSettings())[0]
@@ -51,6 +56,8 @@ def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple
     chosen = settings or LoadSettings()
     override = _override(path, chosen)
     if path.name.lower().endswith(SUFFIXES):
+        from elbowroom.body.loading_hanim import read_hanim
+
         hanim = read_hanim(path)
         return _humanoid(hanim.gltf, path, override, chosen, hanim)
     return _humanoid(read_gltf(path), path, override, chosen)
@@ -65,7 +72,7 @@ def _override(path: Path, settings: LoadSettings) -> Field | None:
 
 
 def _humanoid(
-    gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings, hanim: HanimAsset | None = None
+    gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings, hanim: "HanimAsset | None" = None
 ) -> tuple[Humanoid, BodyPoints]:
     tree = read_nodes(gltf)
     vrm = read_vrm(gltf, len(tree))

@@ -7,21 +7,12 @@ from urllib.parse import unquote
 from elbowroom.errors import InputError
 from elbowroom.formats.x3d.classic import parse_classic
 from elbowroom.formats.x3d.model import Interface, Node, Notes, X3dScene
+from elbowroom.formats.x3d.recognised import GZIP, UTF16
 from elbowroom.formats.x3d.xml import parse_xml
-
-SUFFIXES = (".x3d", ".x3dv", ".wrl", ".x3dz", ".x3dvz", ".wrz", ".x3d.gz", ".x3dv.gz", ".wrl.gz")
 
 MAX_BYTES = 64 * 2**20  # of one file unpacked, and of all files that one scene takes in
 _MAX_FILES = 200
-_GZIP = b"\x1f\x8b"
 _CLASSIC = (b"#VRML V2.0", b"#X3D V")
-_UTF16 = (b"\xff\xfe", b"\xfe\xff")
-
-
-def is_x3d(data: bytes) -> bool:
-    """Whether these bytes begin like X3D or VRML, maybe packed with gzip."""
-    head = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
-    return head.startswith((_GZIP, b"#VRML", b"#X3D", b"<?xml", b"<X3D", b"<!")) or data[:2] in _UTF16
 
 
 def parse_x3d(data: bytes, file: str, notes: Notes) -> X3dScene:
@@ -32,14 +23,14 @@ def parse_x3d(data: bytes, file: str, notes: Notes) -> X3dScene:
         raise InputError(f'{file} is VRML 1.0: only VRML97 ("#VRML V2.0") and X3D are read; convert it')
     if head.startswith(_CLASSIC):
         return parse_classic(_decoded(data), file, notes)
-    if head.startswith(b"<") or data[:2] in _UTF16:
+    if head.startswith(b"<") or data[:2] in UTF16:
         return parse_xml(data, file, notes)
     raise InputError(f"{file} starts with {data[:10]!r}: VRML97 starts with '#VRML V2.0 utf8', X3D with '#X3D' or '<'")
 
 
 def unpacked(data: bytes, file: str) -> bytes:
     """The bytes, taken out of gzip if they are in it; raises `InputError` beyond `MAX_BYTES`."""
-    if data[:2] == _GZIP:
+    if data[:2] == GZIP:
         stream = zlib.decompressobj(wbits=31)
         try:
             data = stream.decompress(data, MAX_BYTES + 1)

@@ -1,0 +1,11 @@
+"""Which files are X3D or VRML, told without what reads them."""
+
+SUFFIXES = (".x3d", ".x3dv", ".wrl", ".x3dz", ".x3dvz", ".wrz", ".x3d.gz", ".x3dv.gz", ".wrl.gz")
+GZIP = b"\x1f\x8b"
+UTF16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+def is_x3d(data: bytes) -> bool:
+    """Whether these bytes begin like X3D or VRML, maybe packed with gzip."""
+    head = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return head.startswith((GZIP, b"#VRML", b"#X3D", b"<?xml", b"<X3D", b"<!")) or data[:2] in UTF16
