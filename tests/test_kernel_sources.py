@@ -28,9 +28,8 @@ def made(folder: Path) -> Path:
 
 
 def digests(package: Path) -> dict[str, str]:
-    kernel_sources.digest_of.cache_clear()
-    kernel_sources._imported.cache_clear()
-    kernel_sources._text_digest.cache_clear()
+    for kept in (kernel_sources.digest_of, kernel_sources._imported, kernel_sources._file, kernel_sources._line):
+        kept.cache_clear()
     return {name: kernel_sources.digest_of(package / name, package) for name in SOURCES}
 
 

@@ -17,9 +17,8 @@ _IMPORT = re.compile(r"^from (\w+(?:\.\w+)*) import (\(.*?\)|[^\n]*)|^import (\w
 def digest_of(file: Path, package: Path = PACKAGE) -> str:
     """A digest of all sources that a file of `package` depends on."""
     told = hashlib.sha256()
-    for source in sorted(sources_of(file, package)):
-        place = source.relative_to(package) if source.is_relative_to(package) else source.name
-        told.update(f"{place} {_text_digest(source)}\n".encode())
+    for line in sorted(_line(source, package) for source in sources_of(file, package)):
+        told.update(line)
     return told.hexdigest()
 
 
@@ -35,18 +34,26 @@ def sources_of(file: Path, package: Path = PACKAGE) -> set[Path]:
 
 @lru_cache(maxsize=1024)
 def _imported(file: Path, package: Path) -> frozenset[Path]:
-    found: set[Path] = set()
+    found: set[str] = set()
     for module, names, plain in _IMPORT.findall(file.read_text("utf-8")):
         parts = (module or plain).split(".")
         if parts[0] != package.name:
             continue
-        place = package.joinpath(*parts[1:])
-        found.add(place.with_suffix(".py") if len(parts) > 1 else package / "__init__.py")
-        found |= {place / f"{name}.py" for name in re.findall(r"\w+", names)}
-        found.add(place / "__init__.py")
-    return frozenset(path for path in found if path.is_file())
+        place = "/".join(parts[1:])
+        found |= {f"{place}.py", f"{place}/__init__.py"}
+        found |= {f"{place}/{name}.py" for name in re.findall(r"\w+", names)}
+    return frozenset(path for path in (_file(place, package) for place in found) if path is not None)
+
+
+@lru_cache(maxsize=4096)
+def _file(place: str, package: Path) -> Path | None:
+    """The file at a place in the package, if there is one."""
+    path = package / place.removeprefix("/")
+    return path if path.is_file() else None
 
 
 @lru_cache(maxsize=1024)
-def _text_digest(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+def _line(file: Path, package: Path) -> bytes:
+    """What a digest is told of one file."""
+    place = file.relative_to(package) if file.is_relative_to(package) else file.name
+    return f"{place} {hashlib.sha256(file.read_bytes()).hexdigest()}\n".encode()
