@@ -99,9 +99,13 @@ def pair_clearances(
 @kernel
 def arm_clearances(left: Floats32, right: Floats32, allowed: Floats32) -> Floats32:
     """The least distance beyond what is allowed (C, C) of each left (C, 6, L) from each right (C, 6, R): (L, R)."""
-    out = np.full((left.shape[2], right.shape[2]), _INFINITE, np.float32)
-    body, chosen = np.empty((left.shape[0], 6), np.float32), np.ones(left.shape[0], np.bool_)
-    turned = np.ascontiguousarray(allowed.T)
+    out, body = np.empty((left.shape[2], right.shape[2]), np.float32), np.empty((left.shape[0], 6), np.float32)
+    chosen = np.empty(left.shape[0], np.bool_)
+    out[:], chosen[:] = _INFINITE, True
+    turned = np.empty((allowed.shape[1], allowed.shape[0]), np.float32)
+    for i in range(allowed.shape[0]):
+        for j in range(allowed.shape[1]):
+            turned[j, i] = allowed[i, j]
     for i in range(left.shape[2]):
         for c in range(left.shape[0]):
             for j in range(6):

@@ -30,6 +30,6 @@ def compose_into(
 @kernel
 def compose(positions: Floats, rotations: Floats, inner: Floats, turns: Floats) -> tuple[Floats, Floats]:
     """Frames at `inner` (n, 3), `turns` (n, 4), given in frames at `positions`, `rotations`, seen from outside."""
-    places, out = np.empty_like(positions), np.empty_like(rotations)
+    places, out = np.empty(positions.shape), np.empty(rotations.shape)
     compose_into(positions, rotations, inner, turns, positions.shape[0], places, out)
     return places, out

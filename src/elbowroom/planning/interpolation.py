@@ -39,14 +39,16 @@ def monotone_tangents(times: Floats, values: Floats, first: Floats) -> Floats:
 def hermite(times: Floats, values: Floats, tangents: Floats, time: float) -> tuple[Floats, Floats]:
     """Value (d,) and velocity (d,) at `time`; outside the key times the nearest key value, at rest."""
     last = len(times) - 1
+    value, velocity = np.empty(values.shape[1]), np.empty(values.shape[1])
     if time >= times[last] or last == 0:
-        return values[last].copy(), np.zeros(values.shape[1])
+        for i in range(values.shape[1]):
+            value[i], velocity[i] = values[last, i], 0.0
+        return value, velocity
     k = 0
     while times[k + 1] <= time:
         k += 1
     width = times[k + 1] - times[k]
     u = max((time - times[k]) / width, 0.0)
-    value, velocity = np.empty(values.shape[1]), np.empty(values.shape[1])
     for i in range(values.shape[1]):
         a, b, m, n = values[k, i], values[k + 1, i], width * tangents[k, i], width * tangents[k + 1, i]
         value[i] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))

@@ -13,7 +13,7 @@ from elbowroom.body.dof import DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.root_path import RootPath, interpolate_between, rates_at, sample_states
+from elbowroom.planning.root_path import RootPath, ground_covered, interpolate_between, rates_at, sample_states
 from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.moving import MovingBoxes
@@ -110,11 +110,11 @@ class LoweredLegs:
 @exact_kernel
 def _near(table: Floats, least: Floats, most: Floats, roots: Floats, reach: float) -> Floats:
     """The rows (B, 15) of the boxes, bounds (S, 2) on the ground, that legs within `reach` of the roots may touch."""
-    low_x, high_x = roots[:, 0].min() - reach, roots[:, 0].max() + reach
-    low_z, high_z = roots[:, 1].min() - reach, roots[:, 1].max() + reach
+    low_x, high_x, low_z, high_z = ground_covered(roots)
     out, count = np.empty(table.shape), 0
     for b in range(table.shape[0]):
-        if least[b, 0] <= high_x and most[b, 0] >= low_x and least[b, 1] <= high_z and most[b, 1] >= low_z:
+        across = least[b, 0] <= high_x + reach and most[b, 0] >= low_x - reach
+        if across and least[b, 1] <= high_z + reach and most[b, 1] >= low_z - reach:
             for c in range(table.shape[1]):
                 out[count, c] = table[b, c]
             count += 1

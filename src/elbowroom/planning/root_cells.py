@@ -62,7 +62,8 @@ def cheapest(
     `standing` (turns,) is what a row costs in each turn; `favoured` (rows, 2) the cells that are liked.
     """
     rows, columns, turns = clear.shape[1], clear.shape[2], clear.shape[3]
-    cost, parents = np.full((rows, columns, turns), np.inf), np.zeros((rows, columns, turns), np.int8)
+    cost, parents = np.empty((rows, columns, turns)), np.empty((rows, columns, turns), np.int8)
+    cost[:] = np.inf
     _turn_on_the_spot(clear[0, 0, begin[0]], prices, begin[1], cost[0, begin[0]])
     here, last = min(clear[0, 0, begin[0], begin[1]], prices.margin), 0
     while last + 1 < rows and _settle(clear, standing, prices, here, favoured, last + 1, cost, parents):

@@ -154,8 +154,9 @@ def to_look_at(
     `braking` and `swinging` are the accelerations, m/s^2 and rad/s^2, with which a stop is made.
     """
     count = states.shape[0] - 1
-    moving, stopping = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
-    low, high, rest = np.empty(2), np.empty(2), np.zeros(states.shape[1])
+    moving, stopping = np.empty(count, np.bool_), np.empty(count, np.bool_)
+    low, high, rest = np.empty(2), np.empty(2), np.empty(states.shape[1])
+    rest[:] = 0.0
     for k in range(count):
         a, b = states[k], states[k + 1]
         bulge = 0.125 * interval * _change(a, b)
@@ -173,7 +174,7 @@ def to_look_at(
 @exact_kernel
 def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Ground) -> Bools:
     """Which states (N, 7), each by itself, may come within `skin` of something, (N,)."""
-    near, low, high = np.zeros(states.shape[0], np.bool_), np.empty(2), np.empty(2)
+    near, low, high = np.empty(states.shape[0], np.bool_), np.empty(2), np.empty(2)
     for n in range(states.shape[0]):
         row = states[n]
         known = _swept(hull, row, row, 0.0, skin + _MORE, low, high)
@@ -184,7 +185,8 @@ def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Gro
 @exact_kernel
 def way_is_open(route: Floats, half: float, ground: Ground) -> bool:
     """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z."""
-    low, high = np.array([-half, -half]), np.array([half, half])
+    low, high = np.empty(2), np.empty(2)
+    low[0], low[1], high[0] = -half, -half, half
     for i in range(route.shape[0] - 1):
         dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
         high[1] = np.hypot(dx, dz) + half

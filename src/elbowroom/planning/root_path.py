@@ -104,6 +104,16 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, inter
     return value, slope / interval
 
 
+@exact_lean_kernel
+def ground_covered(states: Floats) -> tuple[float, float, float, float]:
+    """The rectangle that holds the places of states (N, 7): least and greatest x, least and greatest z."""
+    low_x, high_x, low_z, high_z = np.inf, -np.inf, np.inf, -np.inf
+    for n in range(states.shape[0]):
+        low_x, high_x = min(low_x, states[n, 0]), max(high_x, states[n, 0])
+        low_z, high_z = min(low_z, states[n, 1]), max(high_z, states[n, 1])
+    return low_x, high_x, low_z, high_z
+
+
 @exact_kernel
 def sample_states(states: Floats, interval: float, times: Floats) -> Floats:
     """States (N, 7) at `times` (N,) after the first of `states` (n+1, 7); the ends hold outside."""
@@ -111,6 +121,11 @@ def sample_states(states: Floats, interval: float, times: Floats) -> Floats:
     last = states.shape[0] - 1
     for i in range(times.shape[0]):
         position = min(max(times[i] / interval, 0.0), float(last))
-        k = min(int(position), last - 1)
-        out[i] = states[0] if last == 0 else interpolate_root(states[k], states[k + 1], position - k, interval)
+        if last == 0:
+            for j in range(ROOT_STATE):
+                out[i, j] = states[0, j]
+        else:
+            k = min(int(position), last - 1)
+            a, b = states[k], states[k + 1]
+            interpolate_between(a, b, rates_at(a, b), position - k, interval, out[i])
     return out

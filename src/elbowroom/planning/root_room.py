@@ -42,15 +42,16 @@ def lower_rows(
     sine, cosine, step, most = place[2], place[3], place[4], place[6]
     turns, columns = clear.shape[2], clear.shape[3]
     wide = place[5] * (columns // 2) + most
-    axis = np.zeros((1, 6, columns), np.float32)
+    axis = np.empty((1, 6, columns), np.float32)
     for j in range(columns):
         left = place[5] * (j - columns // 2)
         for e in (0, 3):
             axis[0, e, j], axis[0, e + 2, j] = left * cosine, -left * sine
-        axis[0, 4, j] = _TALL
+        axis[0, 1, j], axis[0, 4, j] = 0.0, _TALL
     extents, farthest = _extents(bodies, groups, radii, axis)
-    none, box, away = np.zeros(1, np.float32), np.empty((1, BOX_ROW), np.float32), np.empty(columns, np.float32)
-    found = np.empty(columns, np.float32)
+    none, box = np.empty(1, np.float32), np.empty((1, BOX_ROW), np.float32)
+    away, found = np.empty(columns, np.float32), np.empty(columns, np.float32)
+    none[0] = 0.0
     for i in range(clear.shape[0]):
         ahead = (first + i) * step
         middle_x, middle_z = place[0] + ahead * sine, place[1] + ahead * cosine
@@ -108,13 +109,13 @@ def room_at_best(rows: Floats32, comfort: float, aside: float) -> Room:
     Clearance changes by no more than one walks: so neighbours bound it, and between parallel walls it is the bound.
     """
     count, turns, columns = rows.shape[0], rows.shape[2], rows.shape[3]
-    best, shift = np.empty((3, count, columns, turns), np.float32), np.zeros((count, columns, turns), np.float32)
+    best, shift = np.empty((3, count, columns, turns), np.float32), np.empty((count, columns, turns), np.float32)
     for i in range(count):
         for j in range(columns):
             for t in range(turns):
                 for g in range(2, -1, -1):
                     own = rows[i, g, t, j]
-                    best[g, i, j, t] = own
+                    best[g, i, j, t], shift[i, j, t] = own, 0.0
                     if own < comfort and 0 < j < columns - 1:
                         right, left = rows[i, g, t, j - 1], rows[i, g, t, j + 1]
                         best[g, i, j, t] = min(own + 0.5 * aside, max(0.5 * (left + right) + aside, own), comfort)

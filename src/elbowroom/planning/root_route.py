@@ -125,8 +125,9 @@ def _needed(search: Search, here: float, a: float, b: float) -> float:
 def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices]:
     """Cost and parent of every cell (row by row); unreached cells cost infinity."""
     rows, columns = grid.shape
-    cost, parents = np.full(rows * columns, np.inf), np.full(rows * columns, -1)
-    done = np.zeros(rows * columns, np.bool_)
+    cost, parents = np.empty(rows * columns), np.empty(rows * columns, np.int64)
+    done = np.empty(rows * columns, np.bool_)
+    cost[:], parents[:], done[:] = np.inf, -1, False
     keys, nodes = np.empty(rows * columns * 16 + 1), np.empty(rows * columns * 16 + 1, np.int64)
     here = float(grid[first // columns, first % columns])
     keys[0], nodes[0], size = 0.0, first, 1
@@ -208,7 +209,7 @@ def _trace(parents: Indices, goal: int, columns: int, search: Search) -> Floats:
 def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     """Only the corners that are needed: from each, the farthest cell in sight is the next."""
     here = float(interpolate_grid(grid, search.start_a, search.start_l))
-    corners = np.empty_like(cells)
+    corners = np.empty(cells.shape)
     corners[0, 0], corners[0, 1] = cells[0, 0], cells[0, 1]
     count, at, last = 1, 0, cells.shape[0] - 1
     while at < last:

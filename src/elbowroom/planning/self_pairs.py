@@ -114,7 +114,7 @@ def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: F
 @kernel
 def _into_frames(segments: Floats32, places: Floats, turns: Floats) -> Floats32:
     """Segments (K, 6, N) as seen from frames at `places` (N, 3) with unit quaternions `turns` (N, 4)."""
-    out = np.empty_like(segments)
+    out = np.empty(segments.shape, np.float32)
     for n in range(segments.shape[2]):
         x, y, z, w = -turns[n, 0], -turns[n, 1], -turns[n, 2], turns[n, 3]
         for k in range(segments.shape[0]):

@@ -150,7 +150,8 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, table: Floats32) -> 
     if count == 0:
         return least
     used = (count + LANES - 1) // LANES
-    tiles, squares = np.empty(used * TILE, np.float32), np.full(used * LANES, _INFINITE, np.float32)
+    tiles, squares = np.empty(used * TILE, np.float32), np.empty(used * LANES, np.float32)
+    squares[:] = _INFINITE
     _fill_tiles(capsules, int(_FIRST), count, tiles)
     _lower_all(tiles, used, box_rows(table, table.shape[0]), np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):

@@ -36,8 +36,13 @@ def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats
         at = time % span
     else:
         at = span - abs(time % (2.0 * span) - span)
-    k = min(max(np.searchsorted(times, at, "right") - 1, 0), max(times.shape[0] - 2, 0))
-    last = min(k + 1, times.shape[0] - 1)
+    k, last = 0, times.shape[0] - 1  # the key poses beside
+    while last - k > 1:
+        middle = (k + last) // 2
+        if times[middle] <= at:
+            k = middle
+        else:
+            last = middle
     length = times[last] - times[k]
     share = min(max((at - times[k]) / length, 0.0), 1.0) if length > 0.0 else 1.0
     for i in range(4):
@@ -46,7 +51,7 @@ def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats
 
 @exact_inner_kernel
 def _turning_points(times: Floats, repeat: int, first: float, last: float, out: Floats) -> int:
-    """How often a track is at a key pose between two times; into `out` (N,) when, as far as there is room."""
+    """How often a track is at a key pose between two times; into `out` (N,) when, in order."""
     span, count = times[-1], 0
     still = span == 0.0 or repeat == ONCE
     period = np.inf if still else span if repeat == LOOP else 2.0 * span
@@ -54,8 +59,8 @@ def _turning_points(times: Floats, repeat: int, first: float, last: float, out: 
     for lap in range(begin, end):
         base = 0.0 if still else period * lap
         for back in range(2 if repeat == PINGPONG and not still else 1):
-            for k in range(times.shape[0]):
-                at = base + (period - times[k] if back else times[k])
+            for i in range(times.shape[0]):
+                at = base + (period - times[times.shape[0] - 1 - i] if back else times[i])
                 if first < at < last:
                     if count < out.shape[0]:
                         out[count] = at
@@ -66,13 +71,17 @@ def _turning_points(times: Floats, repeat: int, first: float, last: float, out: 
 @exact_inner_kernel
 def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
     """The times at which a track is looked at in a span, in order: evenly, and at its key poses."""
-    turning = np.empty(_turning_points(times, repeat, first, last, np.empty(0)))
-    _turning_points(times, repeat, first, last, turning)
-    looks = np.empty(_PARTS + 1 + turning.shape[0])
+    count = _PARTS + 1 + _turning_points(times, repeat, first, last, np.empty(0))
+    looks = np.empty(count)
     for i in range(_PARTS + 1):
         looks[i] = first + i / _PARTS * (last - first)
-    looks[_PARTS + 1 :] = turning
-    looks.sort()
+    _turning_points(times, repeat, first, last, looks[_PARTS + 1 :])
+    for i in range(_PARTS + 1, count):  # each goes down among the few even ones
+        time, place = looks[i], i
+        while looks[place - 1] > time:
+            looks[place] = looks[place - 1]
+            place -= 1
+        looks[place] = time
     return looks
 
 
@@ -83,7 +92,8 @@ def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float
     _pose_at(times, poses, repeat, 0.5 * (first + last), pose)
     yaw, reach = pose[3], math.hypot(half[0], half[2])
     sine, cosine, farthest, before = np.sin(yaw), np.cos(yaw), 0.0, 0.0
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    low, high = np.empty(3), np.empty(3)
+    low[:], high[:] = np.inf, -np.inf
     for i in range(looks.shape[0]):
         _pose_at(times, poses, repeat, looks[i], pose)
         turned = pose[3] - yaw

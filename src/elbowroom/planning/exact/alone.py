@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_kernel
 from elbowroom.planning.activity_graph import squared_distance
-from elbowroom.planning.exact.lattice import BACK, GOAL, HOLD, KEPT, OWN, squares_from
+from elbowroom.planning.exact.lattice import BACK, GOAL, HOLD, KEPT, OWN, place_of_least, squares_from
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -28,7 +28,7 @@ def alone_at(
     """
     width = columns.shape[1]
     count, size = goals.shape
-    own, needed = np.empty((count, OWN, size)), np.ones((count, OWN), np.bool_)
+    own, needed = np.empty((count, OWN, size)), np.empty((count, OWN), np.bool_)
     kept, squares = np.empty(count, np.int64), np.empty(width, np.float32)
     length, pace = _distance(goals[0], start), _BACK_STEP * step
     start_is_known = _known(known, columns, start, squares) >= 0
@@ -43,7 +43,7 @@ def alone_at(
         else:
             at = _known(known, columns, last[t], squares)
             kept[t] = at if at >= 0 else width + KEPT
-        needed[t, KEPT] = kept[t] == width + KEPT
+        needed[t, GOAL], needed[t, KEPT] = True, kept[t] == width + KEPT
         needed[t, BACK] = not settled and part < 1.0 and length > _SAME
         needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
     return own, needed, kept
@@ -59,8 +59,8 @@ def _distance(a: Floats, b: Floats) -> float:
 def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32) -> int:
     """The number of a posture (d,), or -1; `squares` (W,) is scratch."""
     squares_from(columns, posture, squares)
-    at = np.argmin(squares)
-    return int(at) if at < known.shape[0] and _near(posture, known[at]) else -1
+    at = place_of_least(squares)
+    return at if at < known.shape[0] and _near(posture, known[at]) else -1
 
 
 @exact_inner_kernel

@@ -52,7 +52,8 @@ def _all_closed(contacts: SliceContacts, kept: Bools) -> bool:
 
 @exact_kernel
 def _needed(contacts: SliceContacts) -> Bools:
-    kept = np.ones(contacts.waist.shape[0], np.bool_)
+    kept = np.empty(contacts.waist.shape[0], np.bool_)
+    kept[:] = True
     for b in range(kept.shape[0]):
         kept[b] = False
         kept[b] = not _all_closed(contacts, kept)

@@ -54,7 +54,8 @@ def folded(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats32, sp
 
     Parts are `axes` (P, 6), `allowed` (C, P) how near the axes may come, less `spare`.
     """
-    out = np.zeros((lanes.shape[0], BLOCK), np.bool_)
+    out = np.empty(lanes.shape[0] * BLOCK, np.bool_)
+    out[:] = False
     spheres, near = _spheres(lanes, balls), np.empty(lanes.shape[0], np.bool_)
     gaps = np.empty(BLOCK, np.float32)
     for c in range(lanes.shape[1]):
@@ -68,8 +69,8 @@ def folded(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats32, sp
                         gaps[i] = np.inf
                     lower_to_axis(lanes[b, c], axes[p], least, gaps)
                     for i in range(BLOCK):
-                        out[b, i] |= gaps[i] < 0.0
-    return out.reshape(lanes.shape[0] * BLOCK)
+                        out[b * BLOCK + i] |= gaps[i] < 0.0
+    return out
 
 
 @exact_inner_kernel
@@ -120,7 +121,7 @@ def folded_prices(
     set_contents(states, uppers, contents)
     rows, fresh = np.empty(own.shape[0], np.int64), np.empty(own.shape[0], np.int64)
     rows = rows[: _to_look_at(natural, needed, rows)]
-    places = np.empty_like(rows)
+    places = np.empty(rows.shape[0], np.int64)
     fresh = fresh[: _set_places(it.known, contents, rows, places, fresh)]
     if fresh.shape[0]:
         _look_at(it, uppers, states, rows, places, fresh)
@@ -208,8 +209,9 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
 def _own_gaps(it: Folding, own: Floats, rows: Indices, places: Indices) -> Floats32:
     """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
     body, extra, size = it.body, own.shape[1], own.shape[2]
-    gaps = np.full((rows.shape[0], extra), np.inf, np.float32)
-    postures, every = np.empty((gaps.size, size)), np.ones(it.wanted.shape[0], np.bool_)
+    gaps = np.empty((rows.shape[0], extra), np.float32)
+    postures, every = np.empty((gaps.size, size)), np.empty(it.wanted.shape[0], np.bool_)
+    gaps[:], every[:] = np.inf, True
     for i in range(rows.shape[0]):
         for e in range(extra):
             for j in range(size):

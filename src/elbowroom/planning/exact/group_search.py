@@ -147,7 +147,7 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
         carriers = carriers_at(roots.slots.ids, roots.places, roots.turns, task.roots)
     else:
         carriers = carriers_at(waists.slots.ids, waists.places, waists.turns, task.carriers)
-    price, clear = np.empty_like(task.extra), np.empty_like(task.extra)
+    price, clear = np.empty(task.extra.shape, np.float32), np.empty(task.extra.shape, np.float32)
     most, checks = node_prices(room, group.tables, postures, carriers, task, weights, own, needed, kept, clear, price)
     named = mask_keys(carriers.ids, goals)
     lattice = Lattice(
@@ -155,11 +155,12 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
         masks.closed, kept, postures.step, weights.step,
     )  # fmt: skip
     slots, skins = np.empty(horizon, np.int64), np.empty(horizon)
-    touches, stiff = np.zeros(horizon, np.bool_), np.zeros(horizon + 1, np.bool_)
+    touches, stiff = np.empty(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
+    touches[:] = False
     for k in range(horizon):
         skins[k] = min(task.skins[k], most)
     first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
-    keys, tangents = np.empty_like(goals), np.empty_like(goals)
+    keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(weights.rounds):
         reached, count = cheapest_way(lattice, work, first, rounds == 0)
         nodes += count

@@ -66,7 +66,8 @@ def way_costs(prices: Floats32, steps: Floats32) -> Floats32:
 def _beyond(prices: Floats32, least: Floats32) -> Floats32:
     """The least (n+1, V) over the waists of what a posture costs beyond the best under that waist (n+1, W)."""
     depths, waists, size = prices.shape
-    out = np.full((depths, size), np.float32(np.inf), np.float32)
+    out = np.empty((depths, size), np.float32)
+    out[:] = np.inf
     for t in range(depths):
         for w in range(waists):
             if least[t, w] < np.inf:
@@ -79,7 +80,8 @@ def _beyond(prices: Floats32, least: Floats32) -> Floats32:
 @kernel
 def _ahead(prices: Floats32, steps: Floats32) -> Floats32:
     """The least cost (n+1, V) of reaching each posture, its own price included."""
-    out = np.full(prices.shape, np.float32(np.inf), np.float32)
+    out = np.empty(prices.shape, np.float32)
+    out[:] = np.inf
     for v in range(prices.shape[1]):
         out[0, v] = prices[0, v]
     for t in range(steps.shape[0]):
@@ -97,7 +99,8 @@ def _ahead(prices: Floats32, steps: Floats32) -> Floats32:
 @kernel
 def _behind(prices: Floats32, steps: Floats32) -> Floats32:
     """The least cost (n+1, V) of the way on to the last depth, without the posture's own price; of open postures."""
-    out, size = np.zeros(prices.shape, np.float32), prices.shape[1]
+    out, size = np.empty(prices.shape, np.float32), prices.shape[1]
+    out[:] = 0.0
     onward, best = np.empty(size, np.float32), np.empty(_LANES, np.float32)
     whole = size // _LANES * _LANES
     for t in range(steps.shape[0] - 1, -1, -1):

@@ -31,7 +31,8 @@ class Reach(NamedTuple):
 @exact_inner_kernel
 def _packed(flags: Bools) -> Bits:
     """Rows of flags (N, R) as words (N, ceil(R / 64))."""
-    out = np.zeros((flags.shape[0], (flags.shape[1] + _WORD - 1) // _WORD), np.uint64)
+    out = np.empty((flags.shape[0], (flags.shape[1] + _WORD - 1) // _WORD), np.uint64)
+    out[:] = 0
     for n in range(flags.shape[0]):
         for r in range(flags.shape[1]):
             if flags[n, r]:
@@ -54,7 +55,8 @@ def _free(problem: Problem, depth: int) -> Bits:
     """The triples (W, L, words) that are free in a slice."""
     waist, left = problem.waist[depth], problem.left[depth]
     right, apart = _packed(_open(problem.right[depth])), _packed(problem.apart[depth])
-    out = np.zeros((left.shape[0], left.shape[1], right.shape[1]), np.uint64)
+    out = np.empty((left.shape[0], left.shape[1], right.shape[1]), np.uint64)
+    out[:] = 0
     for w in range(left.shape[0]):
         if not np.isfinite(waist[w]):
             continue
@@ -88,8 +90,9 @@ def _same(first: Bits, second: Bits) -> bool:
 @exact_inner_kernel
 def _stepped(known: Bits, steps: Bits) -> Bits:
     """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
-    out = np.zeros_like(known)
-    last, union = np.zeros(known.shape[2], np.uint64), np.zeros(known.shape[2], np.uint64)
+    out = np.empty(known.shape, np.uint64)
+    last, union = np.empty(known.shape[2], np.uint64), np.empty(known.shape[2], np.uint64)
+    last[:], union[:] = 0, 0
     for w in range(known.shape[0]):
         for n in range(known.shape[1]):
             here = known[w, n]
@@ -108,7 +111,8 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
 @exact_inner_kernel
 def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     """The steps of left arm and waist: unions of sets (W, L, words)."""
-    half, out = np.zeros_like(known), np.zeros_like(known)
+    half, out = np.empty(known.shape, np.uint64), np.empty(known.shape, np.uint64)
+    half[:], out[:] = 0, 0
     for n in range(known.shape[1]):
         for target in range(known.shape[1]):
             if left_steps[n, target]:
@@ -126,7 +130,7 @@ def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
 
 @exact_inner_kernel
 def _unpacked(bits: Bits, size: int) -> Bools:
-    out = np.zeros((bits.shape[0], bits.shape[1], size), np.bool_)
+    out = np.empty((bits.shape[0], bits.shape[1], size), np.bool_)
     for w in range(bits.shape[0]):
         for n in range(bits.shape[1]):
             for r in range(size):

@@ -37,7 +37,8 @@ def _lower(out: Floats32, values: Floats32, cost: float) -> None:
 @inner_kernel
 def _over_right(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the right arm: (W, L, R) to (W, L, R')."""
-    out = np.full((known.shape[0], known.shape[1], steps.shape[1]), np.float32(np.inf), np.float32)
+    out = np.empty((known.shape[0], known.shape[1], steps.shape[1]), np.float32)
+    out[:] = np.inf
     for w in range(known.shape[0]):
         for left in range(known.shape[1]):
             for r in range(known.shape[2]):
@@ -50,7 +51,8 @@ def _over_right(known: Floats32, steps: Floats32) -> Floats32:
 @inner_kernel
 def _over_left(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the left arm: (W, L, R) to (W, L', R)."""
-    out = np.full((known.shape[0], steps.shape[1], known.shape[2]), np.float32(np.inf), np.float32)
+    out = np.empty((known.shape[0], steps.shape[1], known.shape[2]), np.float32)
+    out[:] = np.inf
     for w in range(known.shape[0]):
         for left in range(known.shape[1]):
             for target in range(steps.shape[1]):
@@ -62,7 +64,8 @@ def _over_left(known: Floats32, steps: Floats32) -> Floats32:
 @inner_kernel
 def _over_waist(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the waist: (W, LR) to (W', LR)."""
-    out = np.full((steps.shape[1], known.shape[1]), np.float32(np.inf), np.float32)
+    out = np.empty((steps.shape[1], known.shape[1]), np.float32)
+    out[:] = np.inf
     for w in range(known.shape[0]):
         for target in range(steps.shape[1]):
             if steps[w, target] < np.inf:
@@ -92,7 +95,8 @@ def _before(
     known: Floats32, waist_steps: Floats32, left_steps: Floats32, right_steps: Floats32, target: Indices
 ) -> Indices:
     """The triple (3,) of a slice from which the cheapest way leads to the triple `target` of the next."""
-    best, out = np.float32(np.inf), np.zeros(3, np.int64)
+    best, out = np.float32(np.inf), np.empty(3, np.int64)
+    out[:] = 0
     for w in range(known.shape[0]):
         of_waist = waist_steps[w, target[0]]
         if of_waist == np.inf:
@@ -112,7 +116,8 @@ def _before(
 @inner_kernel
 def _least(costs: Floats32) -> Indices:
     """The cheapest triple (3,)."""
-    best, out = np.float32(np.inf), np.zeros(3, np.int64)
+    best, out = np.float32(np.inf), np.empty(3, np.int64)
+    out[:] = 0
     for w in range(costs.shape[0]):
         for left in range(costs.shape[1]):
             for r in range(costs.shape[2]):
@@ -122,6 +127,17 @@ def _least(costs: Floats32) -> Indices:
     return out
 
 
+@inner_kernel
+def _numbers(chosen: Bools) -> Indices:
+    """The numbers of those that are chosen (V,)."""
+    out, count = np.empty(chosen.shape[0], np.int64), 0
+    for v in range(chosen.shape[0]):
+        if chosen[v]:
+            out[count] = v
+            count += 1
+    return out[:count]
+
+
 @kernel
 def sweep(problem: Problem, waist: Bools, left: Bools, right: Bools) -> tuple[float, Indices]:
     """The cheapest way (n+1, 3) through the chosen postures (n+1, V) of each group, and its cost.
@@ -129,9 +145,10 @@ def sweep(problem: Problem, waist: Bools, left: Bools, right: Bools) -> tuple[fl
     Where there is none to the last depth, the way is empty and its cost infinite.
     """
     depths = waist.shape[0]
-    rows = [(np.flatnonzero(waist[t]), np.flatnonzero(left[t]), np.flatnonzero(right[t])) for t in range(depths)]
-    costs = [np.zeros((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
-    path = np.zeros((depths, 3), np.int64)
+    rows = [(_numbers(waist[t]), _numbers(left[t]), _numbers(right[t])) for t in range(depths)]
+    costs = [np.empty((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
+    costs[0][:] = 0.0
+    path = np.empty((depths, 3), np.int64)
     if not _add_prices(problem, int(_START), rows[0][0], rows[0][1], rows[0][2], costs[0]):
         return np.inf, path[:0]
     for t in range(depths - 1):

@@ -39,8 +39,9 @@ def clearances_under(
     that were checked.
     """
     blocks, lanes = postures.lanes.shape[0], postures.lanes.shape[3]
-    out = np.full((places.shape[0], blocks, lanes), FAR, np.float32)
-    near, moved, checks = np.empty_like(boxes), np.empty_like(boxes), 0
+    out = np.empty((places.shape[0], blocks, lanes), np.float32)
+    out[:] = FAR
+    near, moved, checks = np.empty(boxes.shape), np.empty(boxes.shape), 0
     for f in range(places.shape[0]):
         if not chosen[f]:
             continue

@@ -293,6 +293,16 @@ def least_in(row: Floats32) -> Any:
 
 
 @exact_lean_kernel
+def place_of_least(row: Floats32) -> int:
+    """Where the least of many numbers is; the first of them."""
+    place = 0
+    for i in range(1, row.shape[0]):
+        if row[i] < row[place]:
+            place = i
+    return place
+
+
+@exact_lean_kernel
 def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
     """Settle the lattice from depth `begin` on, without nodes through which no way costs at most `most`.
 
@@ -352,7 +362,7 @@ def widen(lattice: Lattice, work: Work) -> int:
 def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     """The nodes (reached+1,) of the cheapest way to that depth; the first is HOLD, the start."""
     way = np.empty(reached + 1, np.int64)
-    way[reached] = np.argmin(work.costs[reached])
+    way[reached] = place_of_least(work.costs[reached])
     for depth in range(reached, 0, -1):
         way[depth - 1] = work.parents[depth, way[depth]]
     way[0] = lattice.moves.shape[1] + HOLD

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root_path import RootPath, ground_covered
 from elbowroom.world.boxes import BOX_ROW
 from elbowroom.world.moving import MovingBoxes
 
@@ -49,12 +49,11 @@ def near_boxes(path: RootPath, table: Floats, moving: MovingBoxes, reach: float)
 def _near(rows: Floats, states: Floats, reach: float) -> Longs:
     """The numbers of the boxes (B, 15) that may come within `reach` of root states (N, 7): those near to a rectangle on
     the ground that holds them."""
-    low_x, high_x = states[:, 0].min() - reach, states[:, 0].max() + reach
-    low_z, high_z = states[:, 1].min() - reach, states[:, 1].max() + reach
+    low_x, high_x, low_z, high_z = ground_covered(states)
     found, count = np.empty(rows.shape[0], np.int64), 0
     for b in range(rows.shape[0]):
         x, z, half = rows[b, 0], rows[b, 2], rows[b, 12:]
-        aside, ahead = x - min(max(x, low_x), high_x), z - min(max(z, low_z), high_z)
+        aside, ahead = x - min(max(x, low_x - reach), high_x + reach), z - min(max(z, low_z - reach), high_z + reach)
         if np.sqrt(aside * aside + ahead * ahead) < np.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]):
             found[count] = b
             count += 1

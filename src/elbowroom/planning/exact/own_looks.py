@@ -54,12 +54,12 @@ def least_gaps(
     than 0.4 mm is the least of all moments; of more room it is the least that was seen.
     """
     own, count = parts.value, chosen.shape[0]
-    least = np.full((3, count), np.inf, np.float32)
-    at = np.full((count, MOMENTS + 1), -1)
+    least, at = np.empty((3, count), np.float32), np.empty((count, MOMENTS + 1), np.int64)
     looks = np.empty((at.size, 2), np.int64)
     segments = np.empty((at.size, own.body.joints.shape[0], 6), np.float32)
     gaps = np.empty((at.size, own.first.shape[0]), np.float32)
-    near = np.ones(own.first.shape[0], np.bool_)
+    near = np.empty(own.first.shape[0], np.bool_)
+    least[:], at[:], near[:] = np.inf, -1, True
     known, made = 0, _first_looks(chosen, at, looks)
     for level in range(STEPS.shape[0]):
         postures, roots = _shown(states, keys, rates, interval, chosen, looks[known:made])

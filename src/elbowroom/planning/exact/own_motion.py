@@ -61,7 +61,8 @@ def _contacts(
     interval: float, ahead: int,
 ) -> Indices:  # fmt: skip
     """See `OwnMotion.contacts`."""
-    it, out = seen.value, np.full(keys.shape[0] - 1, -1)
+    it, out = seen.value, np.empty(keys.shape[0] - 1, np.int64)
+    out[:] = -1
     chosen = _beside(keys, goals)
     if not chosen.shape[0]:
         return out
@@ -73,7 +74,7 @@ def _contacts(
         set_millionths(rates[t], contents[t, CONTENT + LOCAL :])
     if 2 * it.known.taken[0] > it.gaps.shape[0]:
         forget(it.known)
-    missing, count = np.empty_like(chosen), 0
+    missing, count = np.empty(chosen.shape[0], np.int64), 0
     for k in chosen:
         place = place_of(it.known, names[k * width : (k + 2) * width])
         if place < 0:

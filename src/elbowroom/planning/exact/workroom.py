@@ -67,7 +67,7 @@ def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
     limb, room = postures.limb, SWEEP << HALVINGS
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
     checks = check_room(postures.lanes.shape[0] * count, count, boxes)
-    spread = np.empty_like(checks.spread)
+    spread = np.empty(checks.spread.shape, np.float32)
     spread_balls(postures.balls, spread)
     return Workroom(
         checks,
