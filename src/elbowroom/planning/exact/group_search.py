@@ -159,7 +159,7 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
     touches[:] = False
     for k in range(horizon):
         skins[k] = min(task.skins[k], most)
-    first, deepest, nodes, gentle, harsh = int(_BEGIN), 0, 0, True, False
+    first, deepest, spent, nodes, gentle, harsh = int(_BEGIN), 0, weights.rounds, 0, True, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(weights.rounds):
         reached, count = cheapest_way(lattice, work, first, rounds == 0)
@@ -171,8 +171,8 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
             reopen(masks, lattice.masks[0])
             continue
         if reached < horizon:
-            until = reached + 1
-            return GroupWay(reached, keys[:until], tangents[:until], slots, price, most, checks, nodes, rounds)
+            deepest, spent = reached, rounds
+            break
         stiff[:] = False
         for attempt in range(2):
             tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
@@ -183,7 +183,8 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
             if attempt == 1 or not _stiffened(stiff, touches):
                 break
         if not touches.any():
-            return GroupWay(horizon, keys, tangents, slots, price, most, checks, nodes, rounds + 1)
+            deepest, spent = horizon, rounds + 1
+            break
         nodes += widen(lattice, work)
         first, farthest = _closed(lattice, work, masks, named, way, touches)
         deepest = max(deepest, first)
@@ -191,4 +192,4 @@ def search_group(shelf: Held[Shelf], task: GroupTask, weights: Weights) -> Group
         settle_backward(lattice, work, first, best + farthest)
         checks += _close_promising(room, postures, carriers, boxes, skins, lattice, work, masks, steps, first, best)
     until = deepest + 1
-    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, weights.rounds)
+    return GroupWay(deepest, keys[:until], tangents[:until], slots, price, most, checks, nodes, spent)
