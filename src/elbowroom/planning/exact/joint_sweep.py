@@ -146,7 +146,7 @@ def sweep(problem: Problem, waist: Bools, left: Bools, right: Bools) -> tuple[fl
     """
     depths = waist.shape[0]
     rows = [(_numbers(waist[t]), _numbers(left[t]), _numbers(right[t])) for t in range(depths)]
-    costs = [np.empty((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
+    costs: list[Floats32] = [np.empty((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
     costs[0][:] = 0.0
     path = np.empty((depths, 3), np.int64)
     if not _add_prices(problem, int(_START), rows[0][0], rows[0][1], rows[0][2], costs[0]):
