@@ -16,6 +16,7 @@ from numba.core import codegen
 from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 
+from elbowroom.kernel_libraries import KernelCache, LinkedCache, LinkedLibrary, entry_for_kernels
 from elbowroom.kernel_sources import digest_of
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -46,7 +47,7 @@ _use_whole_vectors()
 
 
 class _InnerCompiler(Compiler):
-    """Makes no wrapper for Python.
+    """Makes no wrapper for Python, and no machine code.
 
     That is said here and not among the options: Numba compiles what a kernel uses of NumPy anew for other options.
     """
@@ -54,7 +55,9 @@ class _InnerCompiler(Compiler):
     def define_pipelines(self) -> Any:
         """Numba's own passes, after a word about the result."""
         self.state.flags.no_cpython_wrapper = True
-        return cast(Any, super()).define_pipelines()
+        self.state.flags.no_compile = True
+        self.state.library = LinkedLibrary(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        return super().define_pipelines()
 
 
 class _LeafCompiler(_InnerCompiler):
@@ -71,6 +74,9 @@ class _InnerDispatcher(CPUDispatcher):
 
     def add_overload(self, cres: Any) -> None:
         """Keep what was compiled for kernels to call, and not where the interpreter looks."""
+        if cres.entry_point is None:
+            cres = cres._replace(entry_point=entry_for_kernels())
+            self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
         self.overloads[tuple(cres.signature.args)] = cres
 
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
@@ -120,6 +126,7 @@ def exact_lean_kernel(function: Function) -> Function:
 def _inner(dispatcher: Any) -> Any:
     """Have a call from Python refused with an error."""
     dispatcher.__class__ = _InnerDispatcher
+    _keep_as(LinkedCache, dispatcher)
     return dispatcher
 
 
@@ -131,7 +138,15 @@ def kernels_made() -> list[Any]:
 def _kept(dispatcher: Any) -> Any:
     """Have what is kept on disk forgotten when any source that was compiled into it has changed."""
     _kernels.append(dispatcher)
+    _keep_as(KernelCache, dispatcher)
     return forgotten_with(Path(dispatcher.py_func.__code__.co_filename), dispatcher)
+
+
+def _keep_as(cache: Any, dispatcher: Any) -> None:
+    """Have what a kernel keeps on disk written and read by a class of ours; a leaf keeps nothing."""
+    made = getattr(dispatcher._cache, "_impl", None)
+    if made is not None:
+        made.__class__ = cache
 
 
 def forgotten_with(source: Path, dispatcher: Any) -> Any:
