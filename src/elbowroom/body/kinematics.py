@@ -137,7 +137,7 @@ def _rows(values: ArrayLike, size: int) -> Floats:
 def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
     feet, drops = foot_poses(model.gait.legs, model.gait.scale, states)
-    sinks = hips_sinks(model.gait.half_leg, drops, lowerings)
+    sinks = hips_sinks(model.gait.half_leg, drops, np.ascontiguousarray(lowerings))
     return leg_rotations(model.leg_rest, feet, sinks), sinks
 
 

@@ -15,7 +15,8 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
-_FIRST = 0  # place in a row of capsules
+_FIRST, _SECOND = 0, 1  # places in a row of capsules or joints
+_OTHER_END = 3  # where it begins in the row (6,) of a capsule
 
 
 @leaf
@@ -69,12 +70,12 @@ def _set_trunk(
 def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
     """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
     upper, lower = joints[0], joints[1]
-    _set_power(-arm[0], 0.0, mirror * arm[1], 1.0, scratch, 0)
+    _set_power(-arm[0], 0.0, mirror * arm[1], 1.0, scratch, int(_FIRST))
     half = 0.5 * np.sqrt(0.5)
     # Ry(-m i) Rz(-m 90 deg): the product of two rotations about axes, written out
     c, s = 2.0 * half * np.cos(0.5 * arm[2]), -mirror * 2.0 * half * np.sin(0.5 * arm[2])
     scratch[1, 0], scratch[1, 1], scratch[1, 2], scratch[1, 3] = -mirror * s, s, -mirror * c, c
-    _product(scratch, 0, scratch, 1, local, upper)
+    _product(scratch, int(_FIRST), scratch, int(_SECOND), local, upper)
     local[lower, 0], local[lower, 1] = 0.0, -mirror * np.sin(0.5 * arm[3])
     local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
 
@@ -97,8 +98,9 @@ def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rot
         joint = order[i]
         parent = parents[joint]
         _offset(
-            rotations, parent, offsets[joint, 0], offsets[joint, 1], offsets[joint, 2], places, parent, places, joint, 0
-        )
+            rotations, parent, offsets[joint, 0], offsets[joint, 1], offsets[joint, 2], places, parent, places, joint,
+            int(_FIRST),
+        )  # fmt: skip
         _product(rotations, parent, local, joint, rotations, joint)
 
 
@@ -109,8 +111,8 @@ def _segments(
     """Capsule end points of posture `n` into out (C, 6, N); `row` (1, 6) is scratch."""
     for c in range(len(joints)):
         j = joints[c]
-        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, 0, 0)
-        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, 0, 3)
+        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, int(_FIRST), int(_FIRST))
+        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, int(_FIRST), int(_OTHER_END))
         for i in range(6):
             out[c, i, n] = row[0, i]
 
@@ -201,7 +203,7 @@ def pose_body(
     chest = spine[-1]
     for n in range(len(q)):
         _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q[n], leg_rotations[n], local, scratch)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, 0)
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, int(_FIRST))
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
         for i in range(3):
@@ -230,7 +232,7 @@ def pose_legs(
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     for n in range(len(roots)):
         _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, 0)
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, int(_FIRST))
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -279,7 +281,7 @@ def pose_trunk_into(
     chest = spine[len(spine) - 1]
     for n in range(count):
         below, behind = hips_sink(half_leg, 0.0, waist[n, 2])
-        _place(0, room.rotations, room.places, 0.0, -below, -behind, 0.0)
+        _place(int(_FIRST), room.rotations, room.places, 0.0, -below, -behind, 0.0)
         _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], room.local)
         _chain(order, parents, offsets, room.local, room.rotations, room.places)
         _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)

@@ -18,7 +18,7 @@ from time import perf_counter_ns
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.activity_graph import GraphArrays, insert, squared_distance
 from elbowroom.planning.limb import pose
 from elbowroom.planning.result import PlanStatus, SearchResult
@@ -118,7 +118,7 @@ def _push_free(
     return count
 
 
-@exact_inner_kernel
+@inlined
 def _enhance(
     graph: GraphArrays, roadmap: RoadmapArrays, target: int, depth: int, margin: float, state: NDArray[np.uint64]
 ) -> int:

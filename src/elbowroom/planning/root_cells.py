@@ -71,8 +71,8 @@ def cheapest(
     least, end_j, end_t = np.inf, begin[0], begin[1]
     for j in range(columns):
         for t in range(turns):
-            beside, turned = (j - columns // 2) ** 2, (t - turns // 2) ** 2
-            total = cost[last, j, t] + prices.ends[0] * beside + prices.ends[1] * turned
+            aside, turned = j - columns // 2, t - turns // 2
+            total = cost[last, j, t] + prices.ends[0] * (aside * aside) + prices.ends[1] * (turned * turned)
             if total < least:
                 least, end_j, end_t = total, j, t
     way = np.empty((last + 1, 2), np.int64)
@@ -115,8 +115,8 @@ def _settle(
             best, move = _best_move(clear, prices, i, j, t, cost)
             if best == np.inf:
                 continue
-            own = standing[t] + prices.beside * (j - clear.shape[2] // 2) ** 2
-            own += prices.leftward * max(j - clear.shape[2] // 2, 0)
+            aside = j - clear.shape[2] // 2
+            own = standing[t] + prices.beside * (aside * aside) + prices.leftward * max(aside, 0)
             for g in range(3):
                 own += prices.bodies[g] * (prices.comfort - clear[g, i, j, t])
             if abs(favoured[i, 0] - j) <= 1 and abs(favoured[i, 1] - t) <= 1:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.root_path import interpolate_between, interpolate_root, rates_at
 
 Floats = NDArray[np.float64]
@@ -69,7 +69,7 @@ def wrapped(angle: float) -> float:
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
 
-@exact_inner_kernel
+@inlined
 def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, quickness: float) -> None:
     """Write state k+1: velocities change linearly from those of state k to (vx, vz) on the ground and `turn`."""
     a, b = states[k], states[k + 1]
@@ -133,7 +133,7 @@ def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds)
         limited_step(states, k, vx, vz, wanted[2], interval, bounds)
 
 
-@exact_inner_kernel
+@inlined
 def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, float, float]:
     """The point `look_ahead` metres along the route after the point nearest to (x, z), and the way left to its end."""
     best, leg, part = np.inf, 0, 0.0

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.world.walkable import WalkableMap, interpolate_grid
 
 Floats = NDArray[np.float64]
@@ -45,6 +45,7 @@ class Search(NamedTuple):
     roomy: float
 
 
+_EMPTY = 0  # size of a heap
 _ESCAPE = 0.4  # metres around the start where less clearance than the margin is accepted: one must be able to leave
 _MOVES = np.array(
     [
@@ -121,7 +122,7 @@ def _needed(search: Search, here: float, a: float, b: float) -> float:
     return min(here - 1e-3, search.margin) if distance < _ESCAPE else search.margin
 
 
-@exact_inner_kernel
+@inlined
 def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices]:
     """Cost and parent of every cell (row by row); unreached cells cost infinity."""
     rows, columns = grid.shape
@@ -130,7 +131,7 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
     cost[:], parents[:], done[:] = np.inf, -1, False
     keys, nodes = np.empty(rows * columns * 16 + 1), np.empty(rows * columns * 16 + 1, np.int64)
     here = float(grid[first // columns, first % columns])
-    keys[0], nodes[0], size = 0.0, first, 1
+    size = _push(keys, nodes, int(_EMPTY), 0.0, first)
     cost[first] = 0.0
     while size > 0:
         node = nodes[0]
@@ -150,7 +151,7 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
                 between = interpolate_grid(grid, i + 0.5 * _MOVES[m, 0], j + 0.5 * _MOVES[m, 1])
                 if between < _needed(search, here, a, b):
                     continue
-            length = np.sqrt(_MOVES[m, 0] ** 2 + _MOVES[m, 1] ** 2) * search.cell
+            length = np.sqrt(_MOVES[m, 0] * _MOVES[m, 0] + _MOVES[m, 1] * _MOVES[m, 1]) * search.cell
             aside = search.aside * abs(b - search.line) * search.cell
             narrow = search.tight * min(max(1.0 - (clear - search.margin) / search.roomy, 0.0), 1.0)
             total = cost[node] + length * (1.0 + aside + narrow)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.world.boxes import BOX_ROW
 
 Floats = NDArray[np.float64]
@@ -68,7 +68,7 @@ def _turning_points(times: Floats, repeat: int, first: float, last: float, out: 
     return count
 
 
-@exact_inner_kernel
+@inlined
 def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
     """The times at which a track is looked at in a span, in order: evenly, and at its key poses."""
     count = _PARTS + 1 + _turning_points(times, repeat, first, last, np.empty(0))
@@ -85,7 +85,7 @@ def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
     return looks
 
 
-@exact_inner_kernel
+@inlined
 def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
     """The row (15,) of a box, turned as the track is in the middle of a span, round its corners at all its times."""
     looks, pose = _looks(times, repeat, first, last), np.empty(4)

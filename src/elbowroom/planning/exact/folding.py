@@ -10,7 +10,7 @@ from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.axis_gaps import lower_to_axis, lower_to_body
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.content import is_natural, set_contents
@@ -171,7 +171,7 @@ def _set_places(known: Known, contents: Indices, rows: Indices, places: Indices,
     return count
 
 
-@exact_inner_kernel
+@inlined
 def _look_at(it: Folding, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
     """Keep what surrounds the arm at `fresh` rows, and which postures come too near to it."""
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
@@ -205,7 +205,7 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
             out[p, e + 2] = c + w * tz + x * ty - y * tx
 
 
-@exact_inner_kernel
+@inlined
 def _own_gaps(it: Folding, own: Floats, rows: Indices, places: Indices) -> Floats32:
     """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
     body, extra, size = it.body, own.shape[1], own.shape[2]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
 from elbowroom.planning.exact.joint_bounds import Problem
 
 Bits = NDArray[np.uint64]
@@ -87,7 +87,7 @@ def _same(first: Bits, second: Bits) -> bool:
     return bool(differing == 0)
 
 
-@exact_inner_kernel
+@inlined
 def _stepped(known: Bits, steps: Bits) -> Bits:
     """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
     out = np.empty(known.shape, np.uint64)
@@ -108,7 +108,7 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
     return out
 
 
-@exact_inner_kernel
+@inlined
 def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     """The steps of left arm and waist: unions of sets (W, L, words)."""
     half, out = np.empty(known.shape, np.uint64), np.empty(known.shape, np.uint64)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -170,7 +170,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     return square
 
 
-@exact_lean_kernel
+@inlined
 def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
     nodes have a way."""

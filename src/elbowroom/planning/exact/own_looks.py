@@ -140,7 +140,7 @@ def _shown(
     return postures, roots
 
 
-@exact_inner_kernel
+@inlined
 def _measure(
     capsules: Floats32,
     first: Indices,
@@ -176,7 +176,7 @@ def _measure(
         near[p] = nearest < _FAR
 
 
-@exact_lean_kernel
+@inlined
 def _clear_between(
     first: Indices,
     second: Indices,

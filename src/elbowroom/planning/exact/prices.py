@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.group import GroupTask, Weights
 from elbowroom.planning.exact.lattice import BACK, OWN, squares_from
@@ -49,7 +49,7 @@ def carriers_at(ids: Longs, places: Floats, turns: Floats, slots: Longs) -> Carr
     return out
 
 
-@exact_lean_kernel
+@inlined
 def _clearances(
     room: Workroom, tables: Tables, postures: Postures, carriers: Carriers, goals: Floats, boxes: Floats, own: Floats,
     needed: Bools, clear: Floats32,
@@ -81,7 +81,7 @@ def _lower(row: Floats32, other: Floats32) -> None:
         row[i] = min(row[i], other[i])
 
 
-@exact_lean_kernel
+@inlined
 def _priced(
     columns: Floats32, goals: Floats, own: Floats, clear: Floats32, extras: Floats32, margins: Floats, most: float,
     weights: Weights, kept: Longs, price: Floats32,
@@ -106,7 +106,7 @@ def _priced(
             row[node] = cost if free[node] >= margin else _INFINITE
 
 
-@exact_lean_kernel
+@inlined
 def _unfold(room: Workroom, limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
     """Rule out ways back that lead through the trunk."""
     width = price.shape[1] - OWN

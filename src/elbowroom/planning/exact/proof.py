@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.posing import place_pelvis_into
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.clearances import COMFORT, boxes_around, least_of
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.exact.slots import admit, find
@@ -88,7 +88,7 @@ def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, shar
     return least
 
 
-@exact_lean_kernel
+@inlined
 def _frames_between(room: Workroom, chain: Chain, is_waist: bool, carrier: Carrier, waist: Ends, count: int) -> None:
     """The carrier's frames at the first `count` of the room's parts of an interval, into the room.
 
@@ -119,7 +119,7 @@ def _enter(parts: Parts, now: int, n: int, at: float, look: int, before: Floats3
         ends[0, c], ends[1, c] = before[c], after[c]
 
 
-@exact_lean_kernel
+@inlined
 def _refined(
     room: Workroom, postures: Postures, levers: Floats, chain: Chain, carrier: Carrier, waist: Ends, ends: Ends,
     boxes: Floats,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_lean_kernel, inlined
 from elbowroom.planning.activity_graph import squared_distance
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, capsule_clearances_in
 from elbowroom.planning.exact.lattice import OWN, Lattice, Work, least_in, slopes_of, squares_from
@@ -96,7 +96,7 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
     return count
 
 
-@exact_lean_kernel
+@inlined
 def _posed_between(
     room: Workroom, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
 ) -> None:

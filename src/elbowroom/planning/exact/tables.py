@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel, leaf
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined, leaf
 from elbowroom.planning.exact.clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
 from elbowroom.planning.exact.postures import BLOCK, Postures
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
@@ -81,7 +81,7 @@ def _set_frame(room: Workroom, n: int, places: Floats, turns: Floats, look: int)
         room.turns[n, i] = turns[look, i]
 
 
-@exact_lean_kernel
+@inlined
 def _goals_held(
     room: Workroom, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
 ) -> tuple[Any, Any, int]:
@@ -112,7 +112,7 @@ def _goals_held(
     return early, late, checks
 
 
-@exact_lean_kernel
+@inlined
 def _moments(
     room: Workroom, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
 ) -> int:

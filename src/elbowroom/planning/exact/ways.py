@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import hips_sinks, quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.slots import Slots, admit, find, new_slots
 from elbowroom.planning.frames import compose_into
 from elbowroom.planning.limb import Limb, LimbRoom
@@ -198,7 +198,7 @@ def _root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: floa
     return int(at)
 
 
-@exact_lean_kernel
+@inlined
 def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
