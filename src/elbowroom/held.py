@@ -14,7 +14,6 @@ from typing import Any, Generic, TypeVar, cast
 
 from numba.core import types
 from numba.experimental import structref
-from numba.extending import overload
 
 from elbowroom.jit import exact_kernel, forgotten_with
 
@@ -36,23 +35,8 @@ class Held(structref.StructRefProxy, Generic[Value]):
     _numba_type_ = _structref.StructRefProxy._type  # asked for at each call: the slot itself, not a function around it
 
 
-_structref.define_boxing(HeldType, Held)
+_structref.define_proxy(Held, HeldType, ["value"])
 _made: Any = Held
-_kind: Any = HeldType
-_empty: Any = _structref.new
-
-
-@overload(Held, inline="always")
-def _making(value: Any) -> Any:
-    """How kernels make one; in the kernel itself, as a function of its own it would take as long again to compile."""
-    kind = _kind([("value", value)])
-
-    def make(value: Any) -> Any:
-        held = _empty(kind)
-        held.value = value
-        return held
-
-    return make
 
 
 def hold(value: Value) -> Held[Value]:
