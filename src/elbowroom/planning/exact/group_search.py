@@ -13,20 +13,13 @@ from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.alone import alone_at
 from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.group import Group, GroupTask, GroupWay, Weights
-from elbowroom.planning.exact.lattice import (
-    Lattice,
-    Work,
-    cheapest_way,
-    least_in,
-    set_keys,
-    settle_backward,
-    traced,
-    widen,
-)
+from elbowroom.planning.exact.lattice import Lattice, Work, least_in
+from elbowroom.planning.exact.lattice_ways import set_keys, traced
 from elbowroom.planning.exact.masks import Masks, known_masks, mask_keys, new_mask, reopen
 from elbowroom.planning.exact.postures import Postures
 from elbowroom.planning.exact.prices import Carriers, carriers_at, node_prices
 from elbowroom.planning.exact.proof import ENOUGH, Carrier, limb_way_in
+from elbowroom.planning.exact.settling import cheapest_way, settle_backward, widen
 from elbowroom.planning.exact.shelves import Shelf
 from elbowroom.planning.exact.slots import begin_round
 from elbowroom.planning.exact.steps import MOST_STEPS, ban_near, close_steps, promising
