@@ -1,4 +1,4 @@
-"""The README's Python runs as it stands, and its commands exist."""
+"""The Python of the README and of docs/planner.md runs as it stands, and the commands exist."""
 
 import re
 from pathlib import Path
@@ -7,17 +7,23 @@ from typer.main import get_command
 
 from elbowroom.cli.main import app
 
-README = (Path(__file__).parents[1] / "README.md").read_text()
+ROOT = Path(__file__).parents[1]
 
 
-def code_blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def code_blocks(language: str, file: str = "README.md") -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", (ROOT / file).read_text("utf-8"), flags=re.DOTALL)
 
 
 def test_python_example_runs(capsys) -> None:  # type: ignore[no-untyped-def]
     (example,) = code_blocks("python")
     exec(compile(example, "README.md", "exec"), {})
     assert "elbow room" in capsys.readouterr().out
+
+
+def test_two_avatars_in_the_planners_page_pass_each_other(capsys) -> None:  # type: ignore[no-untyped-def]
+    (example,) = code_blocks("python", "docs/planner.md")
+    exec(compile(example, "docs/planner.md", "exec"), {})
+    assert "past each other" in capsys.readouterr().out
 
 
 def test_every_command_shown_is_a_command() -> None:
@@ -27,6 +33,6 @@ def test_every_command_shown_is_a_command() -> None:
 
 
 def test_every_make_target_shown_exists() -> None:
-    makefile = (Path(__file__).parents[1] / "Makefile").read_text()
+    makefile = (ROOT / "Makefile").read_text()
     for target in re.findall(r"make (\w+)", " ".join(code_blocks("bash"))):
         assert re.search(rf"^{target}:", makefile, flags=re.MULTILINE), target
