@@ -4,6 +4,7 @@ import time
 from typing import Any
 
 LOAD_SECONDS = 60.0
+PATIENCE = 60.0  # seconds: much more than it takes, as other programs may keep both processors busy
 STEP = 0.05
 
 
@@ -22,7 +23,7 @@ class LivePage:
         snapshot: dict[str, Any] = self.page.evaluate("window.__app")
         return snapshot
 
-    def wait(self, condition: str, seconds: float = 20.0) -> dict[str, Any]:
+    def wait(self, condition: str, seconds: float = PATIENCE) -> dict[str, Any]:
         """Wait until a JavaScript condition on `s`, the page's state, holds; the state then."""
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
@@ -47,6 +48,7 @@ def open_live_page(
     script = options.pop("script", None)
     context = browser.new_context(viewport={"width": viewport[0], "height": viewport[1]}, **options)
     page = context.new_page()
+    page.set_default_timeout(1000.0 * PATIENCE)
     if script:
         page.add_init_script(script)
     live = LivePage(page, context)

@@ -149,7 +149,7 @@ def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) ->
         live.wait("!s.connected && s.connection === 'lost'")
         live.page.wait_for_selector("#veil:not([hidden])")
         server.start()
-        count = live.wait("s.connected", 30)["framesReceived"]
+        count = live.wait("s.connected")["framesReceived"]
         live.wait(f"s.framesReceived > {count + 10} && s.settings.scene === 'c'")
         live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision", 60)
         live.page.wait_for_selector("#veil", state="hidden")

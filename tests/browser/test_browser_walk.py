@@ -103,7 +103,7 @@ def test_assist_off_goes_through_things(open_page: Open) -> None:
     live.wait("s.settings.assist === false")
     live.page.keyboard.press("Escape")
     live.page.keyboard.down("w")
-    state = live.wait("s.touching && s.touchingParts.length > 0", 30)
+    state = live.wait("s.touching && s.touchingParts.length > 0")
     live.page.keyboard.up("w")
     assert set(state["touchingParts"]) <= set(live.page.evaluate("window.__app.bodyParts"))
     live.page.keyboard.press("t")
