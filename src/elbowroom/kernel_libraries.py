@@ -8,14 +8,26 @@ loads a kernel; here they stay bytes until then (a tenth of a later start, and a
 This leans on the inner works of Numba, here and in `jit` alone; docs/architecture.md says on which ("The first start").
 """
 
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from llvmlite import binding
 from numba.core import compiler
 from numba.core.caching import CompileResultCacheImpl
 from numba.core.codegen import JITCodeLibrary
 
-_RELOAD_INIT, _ENVIRONMENTS = 6, 7  # places in what `CompileResult._reduce` puts together, after the library
+
+class Kept(NamedTuple):
+    """What `CompileResult._reduce` puts together, and what lies on disk."""
+
+    library: tuple[str, str, tuple[bytes, bytes]]  # its name, its kind, machine code and module
+    described: Any
+    environment: Any
+    signature: Any
+    objectmode: bool
+    lifted: tuple[Any, ...]
+    annotation: str
+    reload_init: list[Any]
+    environments: tuple[Any, ...]
 
 
 class LinkedLibrary(JITCodeLibrary):
@@ -53,8 +65,8 @@ class LinkedCache(CompileResultCacheImpl):
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         """The compiled function, with a module that is read when another is compiled that calls it."""
-        library, rest = _unread(LinkedLibrary, target_context, payload)
-        return _result(target_context, library, entry_for_kernels(), rest)
+        kept = Kept(*payload)
+        return _result(target_context, _unread(LinkedLibrary, target_context, kept), entry_for_kernels(), kept)
 
 
 class KernelCache(CompileResultCacheImpl):
@@ -62,13 +74,14 @@ class KernelCache(CompileResultCacheImpl):
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         """The compiled kernel, ready to be called."""
-        library, rest = _unread(LoadedLibrary, target_context, payload)
-        machine_code, described, environment = payload[0][2][0], rest[0], rest[1]
+        kept = Kept(*payload)
+        library = _unread(LoadedLibrary, target_context, kept)
+        (machine_code, _), described = kept.library[2], kept.described
         library.load(machine_code, {described.llvm_func_name, described.llvm_cpython_wrapper_name})
-        entry = target_context.get_executable(library, described, environment)
-        for one in rest[_ENVIRONMENTS]:
-            library.codegen.set_env(one.env_name, one)
-        return _result(target_context, library, entry, rest)
+        entry = target_context.get_executable(library, described, kept.environment)
+        for environment in kept.environments:
+            library.codegen.set_env(environment.env_name, environment)
+        return _result(target_context, library, entry, kept)
 
 
 def entry_for_kernels() -> object:
@@ -76,33 +89,32 @@ def entry_for_kernels() -> object:
     return object()
 
 
-def _unread(kind: type[Any], target_context: Any, payload: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
-    """A library with its module unread, and the rest of what `CompileResult._reduce` has put together."""
-    (name, _, (_, bitcode)), *rest = payload
-    for initialize in rest[_RELOAD_INIT]:
+def _unread(kind: type[Any], target_context: Any, kept: Kept) -> Any:
+    """A library with its module unread."""
+    for initialize in kept.reload_init:
         initialize()
+    name, _, (_, bitcode) = kept.library
     library = kind(target_context.codegen(), name)
     library.bitcode, library._finalized = bitcode, True
-    return library, tuple(rest)
+    return library
 
 
-def _result(target_context: Any, library: Any, entry: object, rest: tuple[Any, ...]) -> Any:
+def _result(target_context: Any, library: Any, entry: object, kept: Kept) -> Any:
     """What `CompileResult._rebuild` makes."""
-    described, environment, signature, objectmode, lifted, annotation, reload_init, environments = rest
     return cast(Any, compiler.CompileResult)(
         target_context=target_context,
         typing_context=target_context.typing_context,
         library=library,
-        environment=environment,
+        environment=kept.environment,
         entry_point=entry,
-        fndesc=described,
-        type_annotation=annotation,
-        signature=signature,
-        objectmode=objectmode,
-        lifted=lifted,
+        fndesc=kept.described,
+        type_annotation=kept.annotation,
+        signature=kept.signature,
+        objectmode=kept.objectmode,
+        lifted=kept.lifted,
         typing_error=None,
         call_helper=None,
         metadata=None,
-        reload_init=reload_init,
-        referenced_envs=environments,
+        reload_init=kept.reload_init,
+        referenced_envs=kept.environments,
     )
