@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from elbowroom import kernel_sources
-from elbowroom.planning.exact import group_search
+from elbowroom.planning.exact.group import search as group_search
 
 SOURCES = {
     "__init__.py": "",

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
-from elbowroom.planning.exact.dressing import Dressing
-from elbowroom.planning.exact.joint_step import JointStep
-from elbowroom.planning.exact.kept import Start
-from elbowroom.planning.exact.pauses import finished
+from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.plan.pauses import finished
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody
+from elbowroom.planning.exact.plan.upper_body_search import Dressing
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import Effort, UpperBody
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.scene import Scene
 

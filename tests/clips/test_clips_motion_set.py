@@ -14,7 +14,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.planning_motion import PlanningMotion, planning_motion
 from elbowroom.clips.swing import KEYS, Swing, resting
 from elbowroom.errors import InputError
-from elbowroom.planning.activity_graph import ActivityGraph
+from elbowroom.planning.paper.activity_graph import ActivityGraph
 
 
 def learnt() -> MotionSet:

@@ -17,8 +17,8 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 INTERVAL = 0.2
 SIZE = 5

@@ -14,8 +14,8 @@ from elbowroom.control.frame import Frame
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_motion import RootMotionSettings
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

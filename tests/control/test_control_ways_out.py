@@ -7,7 +7,7 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.rehearsal import partial_motions, standing_path
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 
 

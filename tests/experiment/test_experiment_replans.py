@@ -7,7 +7,7 @@ import pytest
 
 from elbowroom.experiment.replans import Replans, plan_change
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 WALK = Command(forward=1.0)
 

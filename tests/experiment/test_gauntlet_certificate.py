@@ -14,7 +14,7 @@ from elbowroom.experiment.gauntlet.speeds import WALK_SPEED, HumanSpeeds
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.clearance import clearance, pairwise_clearance
 from gauntlet_courses import SAMPLE, course, stock
 

@@ -16,7 +16,7 @@ from elbowroom.experiment.gauntlet.sweep import STEERING
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.boxes import Boxes
 from gauntlet_courses import course, stock
 

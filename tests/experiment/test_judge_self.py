@@ -12,8 +12,8 @@ from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.verdict import BodyVerdict, JudgeSettings, judge
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_pairs import SKIN, self_clearances, self_pairs
+from elbowroom.planning.model.self_pairs import SKIN, self_clearances, self_pairs
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from judged_bodies import random_postures, scene_with
 

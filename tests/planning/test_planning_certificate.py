@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.planning.exact.certificate import SliceContacts, blocking_boxes
+from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_boxes
 
 
 def random_contacts(seed: int) -> SliceContacts:

@@ -9,14 +9,14 @@ from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
 from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.key_frame_queue import KeyFrameQueue
-from elbowroom.planning.exact.crouch import ROUNDS, Crouch, node_lowerings
-from elbowroom.planning.exact.kept import Start
+from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.plan.upper_body import UpperBody
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
+from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.lowered_legs import LoweredLegs
+from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.result import PlanStatus
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

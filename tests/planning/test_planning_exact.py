@@ -14,13 +14,13 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.kept import Kept, Start
+from elbowroom.planning.exact.memory.previous_plan import Kept, Start
+from elbowroom.planning.exact.plan.upper_body import UpperBody
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import PlanStatus
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

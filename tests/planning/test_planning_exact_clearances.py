@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.planning.exact.clearances import COMFORT, box_in_frame, capsule_clearances, lower_blocks
-from elbowroom.planning.exact.postures import BLOCK, blocks_of
+from elbowroom.planning.exact.lattice.postures import BLOCK, blocks_of
+from elbowroom.planning.exact.sweep.block_clearances import COMFORT, box_in_frame, capsule_clearances, lower_blocks
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import pairwise_clearance
 

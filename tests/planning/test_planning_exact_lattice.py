@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.lattice import BACK, HOLD, OWN, Lattice, Work, new_work
-from elbowroom.planning.exact.lattice_ways import traced
-from elbowroom.planning.exact.postures import BLOCK, spans_of
-from elbowroom.planning.exact.settling import cheapest_way, settle_backward, widen
+from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_way, settle_backward, widen
+from elbowroom.planning.exact.lattice.lattice import BACK, HOLD, OWN, Lattice, Work, new_work
+from elbowroom.planning.exact.lattice.paths import traced
+from elbowroom.planning.exact.lattice.postures import BLOCK, spans_of
 
 STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
 INF = np.float32(np.inf)

@@ -10,18 +10,18 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.curve import peak_acceleration, peak_speed
-from elbowroom.planning.exact.kept import Start
+from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed
+from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.plan.full_plan import Whole
+from elbowroom.planning.exact.plan.recent_plans import Recent, after
+from elbowroom.planning.exact.plan.upper_body import UpperBody, UpperPlan
 from elbowroom.planning.exact.planner import ExactPlanner
-from elbowroom.planning.exact.recent import Recent, after
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Whole
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.scene import Scene
 

@@ -13,17 +13,17 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.curve import peak_acceleration, peak_speed, smooth_tangents
-from elbowroom.planning.exact.kept import Kept, Start
+from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
+from elbowroom.planning.exact.memory.previous_plan import Kept, Start
+from elbowroom.planning.exact.plan.upper_body import UpperBody
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.scene import Scene
 

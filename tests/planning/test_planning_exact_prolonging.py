@@ -12,14 +12,14 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact import farther
+from elbowroom.planning.exact.plan import farther
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.moving import MovingBoxes, Track

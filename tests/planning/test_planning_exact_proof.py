@@ -10,10 +10,9 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, chest_frames, pelvis_frames, trunk_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
-from elbowroom.planning.exact.postures import Postures, postures_of
-from elbowroom.planning.exact.proof import Carrier, limb_way
-from elbowroom.planning.exact.slots import begin_round
-from elbowroom.planning.exact.ways import (
+from elbowroom.planning.exact.lattice.postures import Postures, postures_of
+from elbowroom.planning.exact.memory.cache_index import begin_round
+from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
     Chain,
     LimbWays,
@@ -26,8 +25,9 @@ from elbowroom.planning.exact.ways import (
     new_root_ways,
     root_ways,
 )
-from elbowroom.planning.limb import limb_of
-from elbowroom.planning.root_path import interpolate_root
+from elbowroom.planning.exact.sweep.proof import Carrier, limb_way
+from elbowroom.planning.model.limb import limb_of
+from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.boxes import Boxes
 
 Floats = NDArray[np.float64]

@@ -10,12 +10,12 @@ import naive_figure6 as naive
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, trunk_capsules
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.planning import figure6
-from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.limb import limb_of
+from elbowroom.planning.model.limb import limb_of
+from elbowroom.planning.model.self_contact import clear_of_trunk
+from elbowroom.planning.paper import figure6
+from elbowroom.planning.paper.activity_graph import ActivityGraph
+from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.planning.result import PlanStatus, SearchResult
-from elbowroom.planning.roadmap import PosedGraph, Roadmap
-from elbowroom.planning.self_contact import clear_of_trunk
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
 

@@ -8,8 +8,8 @@ from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.swing import KEYS, Swing, resting
-from elbowroom.planning.fitted_swing import fitted
-from elbowroom.planning.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.model.fitted_swing import fitted
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 
 HUMANOID = proportional_humanoid(1.72)
 PHASES = np.arange(KEYS + 1) / KEYS

@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.planning.exact.alone import alone_at
-from elbowroom.planning.exact.folding import SPARE, folded, folded_prices
-from elbowroom.planning.exact.lattice import OWN
-from elbowroom.planning.exact.own_body import OwnBody
-from elbowroom.planning.exact.postures import BLOCK, Postures, postures_of
+from elbowroom.planning.exact.lattice.extra_nodes import alone_at
+from elbowroom.planning.exact.lattice.lattice import OWN
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded, folded_prices
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.limb import limb_of
-from elbowroom.planning.self_contact import axis_distance
-from elbowroom.planning.self_pairs import EXEMPT, body_from_chest
+from elbowroom.planning.model.limb import limb_of
+from elbowroom.planning.model.self_contact import axis_distance
+from elbowroom.planning.model.self_pairs import EXEMPT, body_from_chest
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -5,7 +5,7 @@ import numpy as np
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, within_limits
 from elbowroom.body.stock_clips import arm_swing_goal
 from elbowroom.planning.goal import fixed_goal, natural_walk, periodic_goal, side_by_side
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 
 def walk(speed: float, rate: float = 0.9, horizon: int = 30, interval: float = 0.2) -> RootPath:

@@ -9,7 +9,7 @@ from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
 from elbowroom.body.stock_clips import stock_clips
 from elbowroom.errors import InputError
-from elbowroom.planning.activity_graph import ActivityGraph
+from elbowroom.planning.paper.activity_graph import ActivityGraph
 
 ARM = DofGroup.LEFT_ARM
 

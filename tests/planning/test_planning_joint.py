@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.planning.exact.joint import joint_way
-from elbowroom.planning.exact.joint_bounds import Problem, bounds_of
+from elbowroom.planning.exact.joint.bounds import Problem, bounds_of
+from elbowroom.planning.exact.joint.product import joint_way
 from elbowroom.planning.result import PlanStatus
 
 INF = np.float32(np.inf)

@@ -10,17 +10,17 @@ from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.planning.exact.dressing import Dressing
-from elbowroom.planning.exact.folding import SPARE
-from elbowroom.planning.exact.joint_step import JointStep
-from elbowroom.planning.exact.kept import Start
-from elbowroom.planning.exact.pauses import finished
+from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.plan.pauses import finished
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody
+from elbowroom.planning.exact.plan.upper_body_search import Dressing
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import Effort, UpperBody
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.result import BlockadeKind, PlanStatus
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

@@ -3,7 +3,7 @@
 import numpy as np
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.known import Known, admit, forget, new_known, place_of
+from elbowroom.planning.exact.memory.row_index import Known, admit, forget, new_known, place_of
 
 
 @exact_kernel

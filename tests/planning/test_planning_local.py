@@ -12,11 +12,11 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.errors import InputError
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.local_planner import GroupSettings, LocalPlanner, LocalPlannerSettings
 from elbowroom.planning.names import PLANNER_NAMES
+from elbowroom.planning.paper.local_planner import GroupSettings, LocalPlanner, LocalPlannerSettings
 from elbowroom.planning.planner import PLANNERS, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

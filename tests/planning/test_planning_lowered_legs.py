@@ -6,8 +6,8 @@ from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.interpolation import hermite, monotone_tangents
-from elbowroom.planning.lowered_legs import LoweredLegs
-from elbowroom.planning.root_path import RootPath, sample_states
+from elbowroom.planning.model.lowered_legs import LoweredLegs
+from elbowroom.planning.root.path import RootPath, sample_states
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance_of
 from elbowroom.world.moving import MovingBoxes, Repeat, Track

@@ -10,14 +10,14 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact import own_motion
-from elbowroom.planning.exact.curve import smooth_tangents
-from elbowroom.planning.exact.own_looks import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
-from elbowroom.planning.exact.own_motion import OwnMotion
+from elbowroom.planning.exact.lattice.tangents import smooth_tangents
+from elbowroom.planning.exact.sweep import own_motion
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.sweep.own_samples import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

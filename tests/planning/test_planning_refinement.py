@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
-from elbowroom.planning.exact.refinement import Pool, chosen, drawn_postures
+from elbowroom.planning.exact.refine.sampling import Pool, chosen, drawn_postures
 
 
 @pytest.mark.parametrize("group", LOCAL_GROUPS)

@@ -8,11 +8,11 @@ from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
 from elbowroom.body.kinematics import BodyModel, body_model, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
-from elbowroom.planning.activity_graph import ActivityGraph
-from elbowroom.planning.frames import compose
-from elbowroom.planning.limb import limb_of, pose
-from elbowroom.planning.roadmap import PosedGraph, Roadmap
-from elbowroom.planning.self_contact import axis_distance, clear_of_trunk
+from elbowroom.planning.model.frames import compose
+from elbowroom.planning.model.limb import limb_of, pose
+from elbowroom.planning.model.self_contact import axis_distance, clear_of_trunk
+from elbowroom.planning.paper.activity_graph import ActivityGraph
+from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.world.boxes import Boxes, tables_in_frames
 from elbowroom.world.clearance import clearance
 

@@ -12,13 +12,13 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_cells import Prices, cheapest
-from elbowroom.planning.root_evasion import EvasionFinder, EvasionSettings
-from elbowroom.planning.root_line import new_line
-from elbowroom.planning.root_motion import MotionBounds, RootMotionSettings
-from elbowroom.planning.root_plan import RootPlan, RootPlanKind
-from elbowroom.planning.root_planner import RootPlanner
-from elbowroom.planning.root_profile import Course, follow_profile, turned_speed
+from elbowroom.planning.root.evasion import EvasionFinder, EvasionSettings
+from elbowroom.planning.root.grid_search import Prices, cheapest
+from elbowroom.planning.root.line import new_line
+from elbowroom.planning.root.motion import MotionBounds, RootMotionSettings
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.profile import Course, follow_profile, turned_speed
 from elbowroom.world.clearance import clearance
 from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene

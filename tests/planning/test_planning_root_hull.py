@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import leg_capsules
 from elbowroom.body.root import RootState
-from elbowroom.planning.root_body import LowerBody
-from elbowroom.planning.root_hull import ground_below, to_look_at
-from elbowroom.planning.root_motion import MotionBounds, dense_states, steer, stopping_states
+from elbowroom.planning.root.hull import ground_below, to_look_at
+from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root_path import RootPath, interpolate_root
+from elbowroom.planning.root.path import RootPath, interpolate_root
 
 
 def random_states(rng: np.random.Generator, count: int) -> NDArray[np.float64]:

@@ -12,10 +12,10 @@ from elbowroom.body.kinematics import body_model, leg_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_motion import RootMotionSettings
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlan, RootPlanKind
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene
 

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_line import TravelLine
-from elbowroom.planning.root_planner import RootPlanner
-from elbowroom.planning.root_rooms import Grid, LineRooms
-from elbowroom.planning.root_turned import TurnedBody
+from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line_rooms import Grid, LineRooms
+from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.turned_body import TurnedBody
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene
 

@@ -7,16 +7,16 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.held import hold
 from elbowroom.planning.command import Command
-from elbowroom.planning.root_body import LowerBody
-from elbowroom.planning.root_free import LegCheck
-from elbowroom.planning.root_line import new_line, wanted_speed
-from elbowroom.planning.root_lost import prices_of, seconds_lost
-from elbowroom.planning.root_motion import MotionBounds
-from elbowroom.planning.root_moving import MovingAround
-from elbowroom.planning.root_plan import RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root_query import RootQuery
-from elbowroom.planning.root_straight import Stretch, Walker, straight_walk
-from elbowroom.planning.root_way import WayFinder
+from elbowroom.planning.root.ahead import WayFinder
+from elbowroom.planning.root.cost import prices_of, seconds_lost
+from elbowroom.planning.root.leg_check import LegCheck
+from elbowroom.planning.root.line import new_line, wanted_speed
+from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.moving_legs import MovingAround
+from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root.query import RootQuery
+from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 

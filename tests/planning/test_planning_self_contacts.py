@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elbowroom.planning.exact.self_contacts import SelfContacts, rule_out_near
+from elbowroom.planning.exact.memory.own_contacts import SelfContacts, rule_out_near
 
 WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 

@@ -12,11 +12,11 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import arm_capsules, body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
-from elbowroom.planning.axis_gaps import arm_clearances, clear_pairs, lower_to_body
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_contact import axis_distance
-from elbowroom.planning.self_pairs import EXEMPT, SKIN, body_from_chest, self_clearances, self_pairs
+from elbowroom.planning.model.axis_distances import arm_clearances, clear_pairs, lower_to_body
+from elbowroom.planning.model.self_contact import axis_distance
+from elbowroom.planning.model.self_pairs import EXEMPT, SKIN, body_from_chest, self_clearances, self_pairs
+from elbowroom.planning.root.path import RootPath
 from shared_data import SHARED, needs_shared
 
 Floats = NDArray[np.float64]

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.rehearsal import rehearse_detour
-from elbowroom.planning.root_motion import RootMotionSettings
-from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.server.library import Library
 from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
 from elbowroom.server.pose_frame import parse

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

@@ -27,10 +27,10 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.planning.fitted_swing import fitted
+from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
-from elbowroom.planning.root_plan import RootPlanKind
+from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.scene import Scene
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_plan import RootPlan
+from elbowroom.planning.root.plan import RootPlan
 
 Floats = NDArray[np.float64]
 

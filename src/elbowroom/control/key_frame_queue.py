@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.interpolation import hermite, monotone_tangents
-from elbowroom.planning.root_path import RootPath, interpolate_root
+from elbowroom.planning.root.path import RootPath, interpolate_root
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.axis_gaps import lower_to_body
+from elbowroom.planning.model.axis_distances import lower_to_body
 from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]

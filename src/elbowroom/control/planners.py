@@ -6,7 +6,7 @@ from threading import Lock
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.planner import Planner, make_planner
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, columns_of
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.key_frame_queue import KeyFrameQueue
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

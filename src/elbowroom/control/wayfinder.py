@@ -17,8 +17,8 @@ from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_
 from elbowroom.control.settings import ControlSettings
 from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlan
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.stock_clips import HANGING, arm_swing, swing_into
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan
-from elbowroom.planning.root_plan import RootPlan
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.moving import MovingBoxes
 
 Floats = NDArray[np.float64]

@@ -9,10 +9,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.errors import InputError
 from elbowroom.planning.exact.planner import ExactPlanner
-from elbowroom.planning.local_planner import LocalPlanner
 from elbowroom.planning.names import EXACT, FIGURE6
+from elbowroom.planning.paper.local_planner import LocalPlanner
 from elbowroom.planning.result import LocalPlan
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 
 

@@ -12,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.planner import PLANNERS
-from elbowroom.planning.root_motion import RootMotionSettings
+from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS

@@ -18,8 +18,8 @@ from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.boxes import Boxes
 from elbowroom.world.clearance import clearance
 from elbowroom.world.scene import Scene

@@ -15,8 +15,8 @@ from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

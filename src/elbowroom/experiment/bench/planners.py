@@ -19,7 +19,7 @@ from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 from elbowroom.planning.command import Command
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.planner import PLANNERS
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -8,8 +8,8 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.self_contact import axis_distance
+from elbowroom.planning.model.self_contact import axis_distance
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

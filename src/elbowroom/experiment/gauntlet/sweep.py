@@ -12,7 +12,7 @@ from elbowroom.experiment.gauntlet.certificate import Certificate
 from elbowroom.experiment.gauntlet.line import CourseLine, walk_along
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root_path import RootPath
+from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 

@@ -14,21 +14,21 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.farther import Farther
-from elbowroom.planning.exact.kept import Start
-from elbowroom.planning.exact.pauses import Pausing, finished
-from elbowroom.planning.exact.prolonging import Walk, prolonged, rest_of, settled
-from elbowroom.planning.exact.recent import Recent
+from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.plan.attempts import Turns, same_place
+from elbowroom.planning.exact.plan.extension import Walk, prolonged, rest_of, settled
+from elbowroom.planning.exact.plan.farther import Farther
+from elbowroom.planning.exact.plan.full_plan import Stand, Whole, costing, first_part, stands
+from elbowroom.planning.exact.plan.pauses import Pausing, finished
+from elbowroom.planning.exact.plan.recent_plans import Recent
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody, UpperPlan
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.turns import Turns, same_place
-from elbowroom.planning.exact.upper_body import Effort, UpperBody, UpperPlan
-from elbowroom.planning.exact.whole import Stand, Whole, costing, first_part, stands
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
-from elbowroom.planning.root_motion import brake
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlan, RootPlanKind
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.root.motion import brake
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

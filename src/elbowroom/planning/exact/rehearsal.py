@@ -13,27 +13,27 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.folding import folded_prices
-from elbowroom.planning.exact.joint import joint_way
-from elbowroom.planning.exact.joint_bounds import Problem
-from elbowroom.planning.exact.joint_reach import stepped_triples
-from elbowroom.planning.exact.kept import Start, jolts
-from elbowroom.planning.exact.own_body import OwnBody
-from elbowroom.planning.exact.own_motion import OwnMotion
-from elbowroom.planning.exact.pauses import finished
-from elbowroom.planning.exact.postures import postures_of
-from elbowroom.planning.exact.prolonging import leads_to
-from elbowroom.planning.exact.proof import Carrier, limb_way
-from elbowroom.planning.exact.self_contacts import rule_out_near
+from elbowroom.planning.exact.joint.bounds import Problem
+from elbowroom.planning.exact.joint.product import joint_way
+from elbowroom.planning.exact.joint.reachability import stepped_triples
+from elbowroom.planning.exact.lattice.postures import postures_of
+from elbowroom.planning.exact.memory.own_contacts import rule_out_near
+from elbowroom.planning.exact.memory.previous_plan import Start, jolts
+from elbowroom.planning.exact.plan.extension import leads_to
+from elbowroom.planning.exact.plan.pauses import finished
+from elbowroom.planning.exact.plan.upper_body import UpperBody
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body import UpperBody
-from elbowroom.planning.exact.ways import SWEEP, chain_of, levers_of, new_limb_ways
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_ways
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_body_nodes import folded_prices
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.sweep.proof import Carrier, limb_way
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.limb import limb_of
-from elbowroom.planning.lowered_legs import LoweredLegs
-from elbowroom.planning.root_path import RootPath
-from elbowroom.planning.root_plan import RootPlan
-from elbowroom.planning.root_planner import RootPlanner
+from elbowroom.planning.model.limb import limb_of
+from elbowroom.planning.model.lowered_legs import LoweredLegs
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.boxes import BOX_ROW, Boxes
 from elbowroom.world.scene import Scene
 

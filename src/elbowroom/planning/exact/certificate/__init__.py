@@ -1,0 +1,1 @@
+"""Why there is no path: the fewest obstacles that close it."""

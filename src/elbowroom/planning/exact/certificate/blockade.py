@@ -1,0 +1,95 @@
+"""The certificate of a plan that was not found: the slice where it ends, and the obstacles that end it.
+
+First it is asked whether obstacles leave any posture of the whole upper body in the slice at all; if some are left,
+whether any of them can be reached within the speed limits from what was reached before. Where the key times allow a way
+and only the motion between them touches, no obstacles are named.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_boxes
+from elbowroom.planning.exact.joint.bounds import Problem
+from elbowroom.planning.exact.joint.clearances import clearances_under
+from elbowroom.planning.exact.joint.reachability import reach, stepped_triples
+from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.result import Blockade, BlockadeKind
+from elbowroom.planning.root.path import RootPath
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+
+def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Blockade:
+    """Why there is no way into the slice at `depth`; `rows` (B,) are the numbers of the step's boxes in the scene."""
+    named, kind = blocking_boxes(_contacts(step, depth, _possible(step, depth))), BlockadeKind.NO_POSTURE
+    if named is None:
+        for before in range(depth + 1):
+            step.fill(before, np.ones(step.filled.shape[1], np.bool_))
+        problem = _until(step.problem(), depth)
+        reached = reach(problem)
+        if 0 <= reached.depth < depth:
+            depth = reached.depth + 1
+            possible = _possible(step, depth)
+            named = blocking_boxes(_contacts(step, depth, possible))
+            if named is None:
+                kind = BlockadeKind.OUT_OF_REACH
+                steps = stepped_triples(problem, reached.depth, reached.triples)
+                named = blocking_boxes(_contacts(step, depth, possible & steps))
+    boxes = () if named is None else tuple(int(rows[b]) for b in named)
+    state = path.states[depth]
+    way = np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum()
+    return Blockade(
+        kind if boxes else BlockadeKind.MOTION,
+        path.start_time + path.interval * depth,
+        (float(state[0]), float(state[1])),
+        float(way),
+        boxes,
+    )
+
+
+def _possible(step: JointStep, depth: int) -> Bools:
+    """The triples (W, L, R) that the body itself allows in a slice, whatever is near."""
+    waist, left, right = step.nodes
+    usable = [np.isfinite(group.prices_alone[depth]) for group in (waist, left, right)]
+    folded = [step.folded(side, depth, np.flatnonzero(usable[0])) for side in range(2)]
+    apart = step.apart_at(depth)
+    possible: Bools = np.zeros((len(usable[0]), len(usable[1]), len(usable[2])), np.bool_)
+    for row, w in enumerate(np.flatnonzero(usable[0])):
+        both = (usable[1] & ~folded[0][row])[:, None] & (usable[2] & ~folded[1][row])
+        possible[w] = both & apart
+    return possible
+
+
+def _contacts(step: JointStep, depth: int, candidates: Bools) -> SliceContacts:
+    """Which box closes which node of a slice."""
+    around, (waist, *arms) = step.around, step.nodes
+    boxes, count = around.boxes[depth], candidates.shape[0]
+    used = candidates.any(axis=(1, 2))
+    pelvis = around.places[depth][None], around.turns[depth][None]
+    chests = step.chests(depth, step.configurations(0, depth))
+    one = np.ones(1, np.bool_)
+    by_waist = np.zeros((len(boxes), count), np.bool_)
+    by_arms = [np.zeros((len(boxes), count, arm.base.shape[1]), np.bool_) for arm in arms]
+    for b in range(len(boxes)):
+        box = boxes[b : b + 1]
+        clear, _ = clearances_under(step.lanes(0, depth), *pelvis, box, one)
+        by_waist[b] = clear[0, :count] < waist.margins[depth]
+        for side, arm in enumerate(arms):
+            found, _ = clearances_under(step.lanes(1 + side, depth), *chests, box, used & ~by_waist[b])
+            by_arms[side][b] = found[:, : arm.base.shape[1]] < arm.margins[depth]
+    return SliceContacts(candidates, by_waist, by_arms[0], by_arms[1])
+
+
+def _until(problem: Problem, depth: int) -> Problem:
+    """The product's first slices, up to a depth."""
+    return Problem(
+        waist=problem.waist[: depth + 1],
+        left=problem.left[: depth + 1],
+        right=problem.right[: depth + 1],
+        waist_steps=problem.waist_steps[:depth],
+        left_steps=problem.left_steps[:depth],
+        right_steps=problem.right_steps[:depth],
+        apart=problem.apart[: depth + 1],
+    )

@@ -1,0 +1,124 @@
+"""The ways of the arms under the waist's: clear of the obstacles, of the body, and the right arm of the left one."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
+from elbowroom.planning.exact.group.caches import Shelves
+from elbowroom.planning.exact.group.path_problem import PathProblem
+from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, own_postures
+from elbowroom.planning.exact.joint.guide import Guide
+from elbowroom.planning.exact.memory.own_contacts import SelfContacts, rule_out_near
+from elbowroom.planning.exact.plan.evidence import Ledger
+from elbowroom.planning.exact.plan.pauses import Pausing
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_body_nodes import folded_prices
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body on its way
+_ARMS = LOCAL_GROUPS[1:]
+_NO_KEYS = np.zeros((0, LOCAL))
+
+
+class Ways(NamedTuple):
+    """The ways of the groups, in order, as far as they were found; and the one that ended it."""
+
+    ways: tuple[GroupWay, ...]
+    failed: GroupWay | None
+    reached: int  # the key time that all groups reached
+    keys: Floats = _NO_KEYS  # the key postures of the groups side by side, (n+1, 11) if none failed, and
+    velocities: Floats = _NO_KEYS  # the velocities there
+
+    @staticmethod
+    def joined(ways: list[GroupWay], reached: int) -> "Ways":
+        """The ways of all groups."""
+        keys = np.concatenate([way.keys for way in ways], axis=1)
+        velocities = np.concatenate([way.velocities for way in ways], axis=1)
+        return Ways(tuple(ways), None, reached, keys, velocities)
+
+
+class Arms:
+    """Searches the arms' ways along one root path."""
+
+    def __init__(
+        self,
+        shelves: Shelves,
+        problem: PathProblem,
+        own_body: OwnBody,
+        own_motion: OwnMotion,
+        contacts: SelfContacts,
+        rounds: int,
+    ) -> None:
+        """At most `rounds` motions may turn out to run into the body."""
+        self._shelves, self._problem, self._contacts, self._rounds = shelves, problem, contacts, rounds
+        self._own_body, self._own_motion = own_body, own_motion
+
+    def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Pausing[Ways]:
+        """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
+        horizon = self._problem.path.horizon
+        if waist.reached < horizon:
+            return Ways((), waist, waist.reached)
+        ways, first, whole, touching = [waist], 0, self._contacts.alert, 0
+        for _ in range(self._rounds):
+            del ways[1 + first :]
+            for side in range(first, len(_ARMS)):
+                way = yield from self._way(
+                    side, ways, None if guides is None else guides[1 + side], ledger, whole=whole
+                )
+                if way.reached < horizon:
+                    return Ways(tuple(ways), way, way.reached)
+                ways.append(way)
+            found = Ways.joined(ways, horizon)
+            contact = self._self_contact(found)
+            if contact is None:
+                return found
+            first, touching, whole = *contact, True
+            self._remember(ways, *contact)
+            yield None
+        return Ways(tuple(ways[:-1]), ways[-1], touching)
+
+    def _way(
+        self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool
+    ) -> Pausing[GroupWay]:
+        """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
+        task = self._problem.task(_ARMS[side], ways[0].slots, None if whole else self._resting(side), follow)
+        if whole:
+            folded = self._folded(side, ways, task)
+            task = task._replace(extra=folded if follow is None else folded + task.extra)
+        return (yield from ledger.search(_ARMS[side], task))
+
+    def _resting(self, side: int) -> Floats32:
+        """Infinite where a node touches the naturally walking body."""
+        postures, most = self._shelves.group(_ARMS[side]).postures, self._shelves.horizon + 1
+        return self._own_body.resting_prices(side, postures, most)[: len(self._problem.goals)]
+
+    def _folded(self, side: int, ways: list[GroupWay], task: GroupTask) -> Floats32:
+        """Infinite where a node touches the body on its ways, or is near to one that did."""
+        problem, made = self._problem, self._shelves.group(_ARMS[side])
+        around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
+        folding = self._own_body.folding(side, made.postures)
+        prices = folded_prices(
+            folding, task.goals, task.kept, task.start, task.settled, problem.goals, around, problem.path.states
+        )
+        for t, contact in self._contacts.of(side, problem.path.times):
+            if t > 0 and contact.happens(around[t]):
+                own, _, _ = own_postures(made, task)
+                rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
+        return prices
+
+    def _remember(self, ways: list[GroupWay], side: int, interval: int) -> None:
+        """Remember what an arm did at both ends of an interval in which it ran into the body."""
+        for t in range(max(interval, 1), interval + 2):
+            around = np.concatenate([way.keys[t] for way in ways[: 1 + side]])
+            self._contacts.add(side, float(self._problem.path.times[t]), around, ways[1 + side].keys[t].copy())
+
+    def _self_contact(self, found: Ways) -> tuple[int, int] | None:
+        """The arm and the first interval in which the shown motion runs into the body, or None."""
+        problem, keys, rates = self._problem, found.keys, found.velocities
+        arms = self._own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        return next(((arm, k) for k, arm in enumerate(arms.tolist()) if arm >= 0), None)

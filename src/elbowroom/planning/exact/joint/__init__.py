@@ -1,0 +1,1 @@
+"""The joint step: waist, left arm and right arm searched together."""

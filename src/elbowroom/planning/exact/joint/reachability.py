@@ -1,0 +1,169 @@
+"""How deep any way leads through the product of postures: sets of triples, the right arm's postures as bits.
+
+That there is no way at all can only be said when every triple was looked at. Reaching needs no costs: a slice is one
+bit for each triple, 64 at a time, and a step is the union of neighbours' sets. In the open, where the sets under many
+waists and left postures are equal, the same union is not made twice.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.planning.exact.joint.bounds import Problem
+
+Bits = NDArray[np.uint64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+_WORD = 64
+_START = 0  # the first slice
+
+
+class Reach(NamedTuple):
+    """The deepest slice that can be reached, and the triples there that can."""
+
+    depth: int  # -1 where not even the start is free
+    triples: Bools  # (W, L, R)
+
+
+@exact_inner_kernel
+def _packed(flags: Bools) -> Bits:
+    """Rows of flags (N, R) as words (N, ceil(R / 64))."""
+    out = np.empty((flags.shape[0], (flags.shape[1] + _WORD - 1) // _WORD), np.uint64)
+    out[:] = 0
+    for n in range(flags.shape[0]):
+        for r in range(flags.shape[1]):
+            if flags[n, r]:
+                out[n, r // _WORD] |= np.uint64(1) << np.uint64(r % _WORD)
+    return out
+
+
+@exact_inner_kernel
+def _open(costs: Floats32) -> Bools:
+    """Which prices or steps (N, R) are finite."""
+    out = np.empty(costs.shape, np.bool_)
+    for n in range(costs.shape[0]):
+        for r in range(costs.shape[1]):
+            out[n, r] = np.isfinite(costs[n, r])
+    return out
+
+
+@exact_inner_kernel
+def _free(problem: Problem, depth: int) -> Bits:
+    """The triples (W, L, words) that are free in a slice."""
+    waist, left = problem.waist[depth], problem.left[depth]
+    right, apart = _packed(_open(problem.right[depth])), _packed(problem.apart[depth])
+    out = np.empty((left.shape[0], left.shape[1], right.shape[1]), np.uint64)
+    out[:] = 0
+    for w in range(left.shape[0]):
+        if not np.isfinite(waist[w]):
+            continue
+        for n in range(left.shape[1]):
+            if np.isfinite(left[w, n]):
+                for i in range(right.shape[1]):
+                    out[w, n, i] = right[w, i] & apart[n, i]
+    return out
+
+
+@exact_inner_kernel
+def _keep(known: Bits, free: Bits) -> bool:
+    """Keep those triples of `known` that are free; whether there are any."""
+    kept = np.uint64(0)
+    for w in range(known.shape[0]):
+        for n in range(known.shape[1]):
+            for i in range(known.shape[2]):
+                known[w, n, i] &= free[w, n, i]
+                kept |= known[w, n, i]
+    return bool(kept != 0)
+
+
+@exact_inner_kernel
+def _same(first: Bits, second: Bits) -> bool:
+    differing = np.uint64(0)
+    for i in range(first.shape[0]):
+        differing |= first[i] ^ second[i]
+    return bool(differing == 0)
+
+
+@inlined
+def _stepped(known: Bits, steps: Bits) -> Bits:
+    """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
+    out = np.empty(known.shape, np.uint64)
+    last, union = np.empty(known.shape[2], np.uint64), np.empty(known.shape[2], np.uint64)
+    last[:], union[:] = 0, 0
+    for w in range(known.shape[0]):
+        for n in range(known.shape[1]):
+            here = known[w, n]
+            if not _same(here, last):
+                for i in range(union.shape[0]):
+                    last[i], union[i] = here[i], 0
+                for r in range(steps.shape[0]):
+                    if here[r // _WORD] >> np.uint64(r % _WORD) & np.uint64(1):
+                        for i in range(union.shape[0]):
+                            union[i] |= steps[r, i]
+            for i in range(union.shape[0]):
+                out[w, n, i] = union[i]
+    return out
+
+
+@inlined
+def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
+    """The steps of left arm and waist: unions of sets (W, L, words)."""
+    half, out = np.empty(known.shape, np.uint64), np.empty(known.shape, np.uint64)
+    half[:], out[:] = 0, 0
+    for n in range(known.shape[1]):
+        for target in range(known.shape[1]):
+            if left_steps[n, target]:
+                for w in range(known.shape[0]):
+                    for i in range(known.shape[2]):
+                        half[w, target, i] |= known[w, n, i]
+    for w in range(known.shape[0]):
+        for target in range(known.shape[0]):
+            if waist_steps[w, target]:
+                for n in range(known.shape[1]):
+                    for i in range(known.shape[2]):
+                        out[target, n, i] |= half[w, n, i]
+    return out
+
+
+@exact_inner_kernel
+def _unpacked(bits: Bits, size: int) -> Bools:
+    out = np.empty((bits.shape[0], bits.shape[1], size), np.bool_)
+    for w in range(bits.shape[0]):
+        for n in range(bits.shape[1]):
+            for r in range(size):
+                out[w, n, r] = bits[w, n, r // _WORD] >> np.uint64(r % _WORD) & np.uint64(1)
+    return out
+
+
+@exact_inner_kernel
+def _after(problem: Problem, depth: int, known: Bits) -> Bits:
+    """The triples of the next slice to which a step leads from `known`, free or not."""
+    stepped = _stepped(known, _packed(_open(problem.right_steps[depth])))
+    return _merged(stepped, _open(problem.waist_steps[depth]), _open(problem.left_steps[depth]))
+
+
+@exact_kernel
+def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
+    """The triples (W, L, R) of the next slice to which a step leads from some of these, free or not."""
+    waist, left, right = triples.shape
+    bits = _packed(triples.reshape(waist * left, right)).reshape(waist, left, (right + _WORD - 1) // _WORD)
+    return _unpacked(_after(problem, depth, bits), right)
+
+
+@exact_kernel
+def reach(problem: Problem) -> Reach:
+    """The deepest slice to which a way leads, every triple of every slice looked at."""
+    size = problem.right.shape[2]
+    depth, last = int(_START), problem.waist_steps.shape[0]
+    known = _free(problem, depth)
+    if not _keep(known, known):
+        return Reach(-1, _unpacked(known, size))
+    while depth < last:
+        after = _after(problem, depth, known)
+        if not _keep(after, _free(problem, depth + 1)):
+            break
+        depth, known = depth + 1, after
+    return Reach(depth, _unpacked(known, size))

@@ -1,0 +1,272 @@
+"""The joint step along a root path: the product of waist, left arm and right arm, filled in as far as it is needed.
+
+What arms cost under a waist has to be looked up for every waist. So the waists that are cheapest by themselves are
+filled in first, and the product among them is searched exactly (`joint`). A way that is found costs U: every waist
+through which a way could be cheaper, were nothing near its arms, is filled in too and the product searched again. So
+the answer is that of all waists, though most were never looked at; and there is none only when all of them were.
+"""
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.kinematics import chest_frames
+from elbowroom.jit import kernel
+from elbowroom.planning.exact.joint.bounds import Problem, way_costs
+from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
+from elbowroom.planning.exact.joint.product import JointWay, joint_way
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
+from elbowroom.planning.exact.plan.pauses import Pausing
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded
+from elbowroom.planning.model.axis_distances import arm_clearances
+from elbowroom.planning.model.frames import compose
+from elbowroom.planning.model.limb import pose
+from elbowroom.planning.result import PlanStatus
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+_FIRST = 8  # waists of each slice that are filled in at first
+_GROWTH = 3
+_ALIKE = 0.1  # radians, of both ends together: steps so near to one that touches are ruled out with it
+_INFINITE = np.float32(np.inf)
+
+
+class JointSettings(NamedTuple):
+    """What a joint step prefers and where it ends."""
+
+    step: float  # weight of steps
+    near: float  # weight of lacking comfort
+    comfort: float  # metres
+    budget: int = 4_000_000  # triples settled
+    checks: int = 3_000_000  # capsules checked
+
+
+class GroupNodes(NamedTuple):
+    """The nodes of a group: W postures, the last ones repeated to whole blocks, and E of each key time alone."""
+
+    postures: Postures
+    own: Floats  # (n+1, E, d)
+    base: Floats32  # (n+1, W+E) their prices; an arm's apart from what is near; infinite: not to be used
+    prices_alone: Floats32  # (n+1, W+E) the same, for the waist too apart from what is near
+    goals: Floats  # (n+1, d)
+    margins: Floats  # (n+1,) metres of clearance that a node needs
+
+
+class Surroundings(NamedTuple):
+    """Where the avatar goes."""
+
+    states: Floats  # (n+1, 7) the root at the key times
+    places: Floats  # (n+1, m, 3) pelvis at m moments around each key time, in the world
+    turns: Floats  # (n+1, m, 4)
+    boxes: Floats  # (n+1, B, 15) in the world, around each key time
+
+
+class JointStep:
+    """One joint step: the tables that it has filled in."""
+
+    def __init__(
+        self,
+        body: OwnBody,
+        waist: GroupNodes,
+        arms: tuple[GroupNodes, GroupNodes],
+        around: Surroundings,
+        settings: JointSettings,
+    ) -> None:
+        self.nodes = (waist, *arms)
+        self.around, self.settings = around, settings
+        self.checks, self.states = 0, 0
+        self._body = body
+        depths, waists = waist.base.shape
+        self.filled = np.zeros((depths, waists), np.bool_)
+        self.prices = [np.full((depths, waists, arm.base.shape[1]), _INFINITE, np.float32) for arm in arms]
+        self._lanes: dict[tuple[int, int], Lanes] = {}
+        self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
+
+    def search(self) -> Pausing[JointWay]:
+        """The cheapest way for all three groups; nodes count as in `GroupNodes`."""
+        for g in range(len(self.nodes)):
+            if g not in self._alone:
+                self._alone[g] = way_costs(self.nodes[g].base, self.steps[g])
+        alone = self._alone[0] + self._alone[1].min() + self._alone[2].min()
+        count = _FIRST
+        while True:
+            whole = count >= alone.shape[1]
+            wanted = np.isfinite(alone)
+            if not whole:
+                wanted &= alone <= np.partition(alone, count - 1, axis=1)[:, count - 1 : count]
+            way = self._among(wanted)
+            yield None
+            if way.status is PlanStatus.FOUND:
+                break
+            if whole or way.status is PlanStatus.OUT_OF_BUDGET or self._spent:
+                return way
+            count *= _GROWTH
+        needed = np.isfinite(alone) & (alone <= way.cost)
+        if (self.filled >= needed).all():
+            return way
+        better = self._among(self.filled | needed)
+        return way if better.status is PlanStatus.OUT_OF_BUDGET else better
+
+    @property
+    def _spent(self) -> bool:
+        return self.checks > self.settings.checks
+
+    def _among(self, waists: Bools) -> JointWay:
+        """The cheapest way among some waists (n+1, W+E), filled in first."""
+        for depth in range(len(waists)):
+            self.fill(depth, waists[depth])
+        way = joint_way(self.problem(), self.settings.budget - self.states)
+        self.states += way.states
+        return way
+
+    def problem(self) -> Problem:
+        """The product as far as it is filled in."""
+        waist = np.where(self.filled, self.nodes[0].base, _INFINITE)
+        return Problem(waist, self.prices[0], self.prices[1], self.steps[0], self.steps[1], self.steps[2], self.apart)
+
+    def fill(self, depth: int, waists: Bools) -> None:
+        """Look up the arms under some waists (W+E,) of a slice, those that are not yet known."""
+        chosen = np.flatnonzero(waists & ~self.filled[depth] & np.isfinite(self.nodes[0].base[depth]))
+        if not len(chosen):
+            return
+        self.filled[depth, chosen] = True
+        inner = self.configurations(0, depth)[chosen]
+        frames = self.chests(depth, inner)
+        for side, group in enumerate(self.nodes[1:]):
+            lanes = self.lanes(1 + side, depth)
+            every = np.ones(len(chosen), np.bool_)
+            clear, checks = clearances_under(lanes, *frames, self.around.boxes[depth], every)
+            self.checks += checks
+            clear = clear[:, : group.base.shape[1]]
+            if depth > 0:
+                clear[self.folded(side, depth, chosen)] = -np.inf
+            lack = np.maximum(np.float32(self.settings.comfort) - clear, np.float32(0.0))
+            price = group.base[depth] + np.float32(self.settings.near) * np.minimum(lack, 1.0) ** 2
+            price[clear < group.margins[depth]] = _INFINITE
+            self.prices[side][depth, chosen] = price
+
+    def folded(self, side: int, depth: int, waists: Indices) -> Bools:
+        """Which nodes of an arm touch the body under some waists (F,) of a slice, (F, W+E)."""
+        states = np.repeat(self.around.states[depth : depth + 1], len(waists), axis=0)
+        parts = self._body.parts(side, self.configurations(0, depth)[waists], states, None)
+        lanes, size = self.lanes(1 + side, depth), self.nodes[1 + side].base.shape[1]
+        out = np.empty((len(waists), size), np.bool_)
+        for row, axes in enumerate(parts.axes):
+            out[row] = folded(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
+        return out
+
+    def configurations(self, group: int, depth: int) -> Floats:
+        """The configurations (W+E, d) of a group's nodes at a depth."""
+        nodes = self.nodes[group]
+        return np.concatenate([_padded(nodes.postures), nodes.own[depth]])
+
+    def chests(self, depth: int, waists: Floats) -> tuple[Floats, Floats]:
+        """The chest's frames (F, m, 3), (F, m, 4) in the world under waists (F, d), at a slice's moments."""
+        inner, inner_turns = chest_frames(self._body.model, waists)
+        places, turns = self.around.places[depth], self.around.turns[depth]
+        moments = len(places)
+        found = compose(
+            np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
+            np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
+        )  # fmt: skip
+        return found[0].reshape(len(waists), moments, 3), found[1].reshape(len(waists), moments, 4)
+
+    def lanes(self, group: int, depth: int) -> Lanes:
+        """All of a group's nodes at a depth as lanes."""
+        if (group, depth) not in self._lanes:
+            known, own = self.nodes[group].postures, self.nodes[group].own[depth]
+            lanes, balls = blocks_of(pose(known.limb, own), known.limb.radii)
+            both = np.concatenate([known.lanes, lanes]), np.concatenate([known.balls, balls])
+            self._lanes[group, depth] = Lanes(*both, known.reach)
+        return self._lanes[group, depth]
+
+    def close(self, group: int, depth: int, nodes: Indices) -> None:
+        """Rule out the step of a group between two nodes (2,) from `depth` to the next, and those that are like it."""
+        near = []
+        for at, node in enumerate(nodes):
+            known = self.configurations(group, depth + at)
+            near.append(np.sum((known - known[node]) ** 2, axis=1))
+        self.steps[group][depth][near[0][:, None] + near[1] <= _ALIKE * _ALIKE] = np.inf
+        self._alone.pop(group, None)
+
+    @cached_property
+    def steps(self) -> list[Floats32]:
+        """What the groups' steps cost, each (n, W+E, W+E)."""
+        return [_steps(group, self.settings.step) for group in self.nodes]
+
+    @cached_property
+    def apart(self) -> Bools:
+        """Which arms keep clear of each other, (n+1, L, R); at the start they are as they are."""
+        depths = range(1, len(self.filled))
+        start = np.ones((1, self.prices[0].shape[2], self.prices[1].shape[2]), np.bool_)
+        return np.concatenate([start, *(self.apart_at(depth)[None] for depth in depths)])
+
+    @cached_property
+    def _known_apart(self) -> tuple[list[Floats32], Bools]:
+        segments = [_padded_segments(group.postures) for group in self.nodes[1:]]
+        return segments, arm_clearances(segments[0], segments[1], self._body.pairs.between) >= SPARE
+
+    def apart_at(self, depth: int) -> Bools:
+        """Which arms keep clear of each other in a slice, (L, R)."""
+        segments, known = self._known_apart
+        own = [np.ascontiguousarray(pose(group.postures.limb, group.own[depth])) for group in self.nodes[1:]]
+        apart = np.empty((self.prices[0].shape[2], self.prices[1].shape[2]), np.bool_)
+        apart[: known.shape[0], : known.shape[1]] = known
+        every, between = np.concatenate([segments[1], own[1]], axis=2), self._body.pairs.between
+        apart[known.shape[0] :] = arm_clearances(own[0], every, between) >= SPARE
+        apart[: known.shape[0], known.shape[1] :] = arm_clearances(segments[0], own[1], between) >= SPARE
+        return apart
+
+
+def _padded(postures: Postures) -> Floats:
+    """The configurations (W, d), the last one repeated to whole blocks."""
+    width = len(postures.lanes) * BLOCK
+    return postures.configurations[np.minimum(np.arange(width), len(postures.configurations) - 1)]
+
+
+def _padded_segments(postures: Postures) -> Floats32:
+    width = len(postures.lanes) * BLOCK
+    return np.ascontiguousarray(postures.segments[:, :, np.minimum(np.arange(width), postures.segments.shape[2] - 1)])
+
+
+def _steps(group: GroupNodes, weight: float) -> Floats32:
+    """What steps cost, (n, W+E, W+E): `weight` times the squared change of the deviation from the goal."""
+    longest = group.postures.step**2 * (1.0 + 1e-6)
+    known = np.repeat(_padded(group.postures)[None], len(group.own), axis=0)
+    nodes = np.concatenate([known, group.own], axis=1)
+    return _step_costs(nodes, group.own.shape[1], group.postures.moves, group.goals, longest, weight)
+
+
+@kernel
+def _step_costs(nodes: Floats, extra: int, moves: Floats32, goals: Floats, longest: float, weight: float) -> Floats32:
+    """`_steps` for nodes (n+1, W+E, d), the last `extra` of a key time alone; `moves` (V, W) are squared lengths."""
+    count, size = nodes.shape[1], nodes.shape[2]
+    width = count - extra
+    out, slopes = np.empty((nodes.shape[0] - 1, count, count), np.float32), np.empty((2, count))
+    for t in range(nodes.shape[0] - 1):
+        square = 0.0
+        slopes[:] = 0.0
+        for j in range(size):
+            way = goals[t + 1, j] - goals[t, j]
+            square += weight * way * way
+            for i in range(2):
+                for v in range(count):
+                    slopes[i, v] += 2.0 * weight * way * nodes[t + i, v, j]
+        for v in range(count):
+            row = out[t, v]
+            for u in range(count):
+                move = 0.0
+                if v < width and u < width:
+                    move = moves[v, u] if v < moves.shape[0] else np.inf
+                else:
+                    for j in range(size):
+                        move += (nodes[t + 1, u, j] - nodes[t, v, j]) ** 2
+                cost = max(weight * move + square + slopes[0, v] - slopes[1, u], 0.0)
+                row[u] = cost if move <= longest else np.inf
+    return out

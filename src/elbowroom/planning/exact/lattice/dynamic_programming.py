@@ -1,0 +1,212 @@
+"""What the cheapest way through a time lattice to each node costs: dynamic programming, each node settled once.
+
+A step from a to b costs w |b - a - g|^2 (`lattice`), and that is |b - a|^2 + 2 a.g + |g|^2 - 2 b.g: the first part is a
+table that never changes, the others belong to the source or to the target alone. What is left of a row is the (min, +)
+product of a vector with a constant matrix, in which every target is a lane.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.planning.exact.lattice.lattice import (
+    HOLD,
+    OWN,
+    Lattice,
+    Work,
+    least_in,
+    measure_own,
+    own_move,
+    slopes_of,
+)
+from elbowroom.planning.exact.lattice.paths import kept_way, own_way
+
+Floats32 = NDArray[np.float32]
+Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
+
+_SLACK = 1e-3  # squared radians: more than the rounding of a sum
+_INFINITE = np.float32(np.inf)
+_FIRST = 0  # lane, depth
+_GLANCE = 0.25  # squared radians: how much dearer than the least prices a way may be at a glance
+
+
+@exact_lean_kernel
+def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
+    """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
+    start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
+    for b in range(np.uint64(out.shape[0])):
+        cost = start + factor * row[b]
+        better = cost < out[b]
+        out[b] = cost if better else out[b]
+        origins[b] = origin if better else origins[b]
+
+
+@exact_lean_kernel
+def _relax_open(
+    out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Bools
+) -> None:
+    """`_relax` where some steps are closed."""
+    start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
+    for b in range(np.uint64(out.shape[0])):
+        cost = _INFINITE if closed[b] else start + factor * row[b]
+        better = cost < out[b]
+        out[b] = cost if better else out[b]
+        origins[b] = origin if better else origins[b]
+
+
+@inlined
+def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
+    """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
+    nodes have a way."""
+    size, width = lattice.postures.shape[0], lattice.moves.shape[1]
+    out, origins = work.costs[depth + 1], work.parents[depth + 1]
+    targets, target_origins = out[:width], origins[:width]
+    out[:] = _INFINITE
+    base, limit = work.base, np.float32(most)
+    square, known = np.float32(slopes_of(lattice, depth, depth, base)), work.costs[depth]
+    for node in range(np.uint64(width + OWN)):
+        base[node] = known[node] + base[node] + square if known[node] <= limit else _INFINITE
+    mask = lattice.masks[depth]
+    closed = lattice.closed[mask]
+    for node in range(width + OWN):
+        if base[node] == _INFINITE:
+            continue
+        row = lattice.moves[node] if node < size else work.squares[depth, node - width]
+        low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
+        if mask >= 0:
+            _relax_open(
+                targets[low:high],
+                target_origins[low:high],
+                base[node],
+                row[low:high],
+                lattice.weight,
+                node,
+                closed[node, low:high],
+            )
+        else:
+            _relax(targets[low:high], target_origins[low:high], base[node], row[low:high], lattice.weight, node)
+    for f in range(OWN):
+        if lattice.price[depth + 1, width + f] < _INFINITE:
+            out[width + f], origins[width + f] = _settle_own(lattice, work, depth, f, base)
+    slopes_of(lattice, depth, depth + 1, base)
+    price, count = lattice.price[depth + 1], 0
+    for node in range(np.uint64(width + OWN)):
+        out[node] += price[node] - base[node]
+        count += out[node] < _INFINITE
+    return count
+
+
+@exact_lean_kernel
+def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
+    """The least cost of a step to an own posture of the next depth, and where it comes from."""
+    width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
+    best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
+    mask = lattice.masks[depth]
+    closed = lattice.closed[mask]
+    for node in range(width + OWN):
+        if base[node] >= best or (mask >= 0 and closed[node, width + f]):
+            continue
+        move = row[node] if node < width else np.float32(own_move(lattice, depth, node - width, f))
+        cost = base[node] + weight * move
+        if cost < best:
+            best, origin = cost, node
+    return best, origin
+
+
+@exact_lean_kernel
+def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on, without nodes through which no way costs at most `most`.
+
+    Returns the greatest depth that has a way and the number of nodes that have one.
+    """
+    work.most[0] = most
+    if begin == 0:
+        work.costs[0] = _INFINITE
+        work.costs[0, lattice.moves.shape[1] + HOLD] = 0.0
+    reached, nodes = begin, 0
+    for depth in range(begin, lattice.goals.shape[0] - 1):
+        count = _settle(lattice, work, depth, most - work.least[depth])
+        if count == 0:
+            break
+        reached, nodes = depth + 1, nodes + count
+    return reached, nodes
+
+
+@exact_kernel
+def cheapest_way(lattice: Lattice, work: Work, begin: int, glance: bool) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
+
+    Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
+    prices of the depths to come would cost more than a way that is known are left out. At a `glance` ways are looked
+    for first that cost little more than these prices: what is found there is the cheapest, and most nodes are left out;
+    `widen` makes up for it.
+    """
+    depths, least, nodes = lattice.goals.shape[0], work.least, 0
+    if begin == 0:
+        measure_own(lattice, work)
+    most = min(own_way(lattice, work.few), kept_way(lattice)) + _SLACK
+    least[depths - 1] = 0.0
+    for depth in range(depths - 2, -1, -1):
+        price = least_in(lattice.price[depth + 1])
+        least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
+    if most > work.most[0]:
+        begin = 0  # what was left out may be needed
+    work.most[1] = most
+    if glance and least[0] + _GLANCE < most:
+        reached, nodes = _settle_from(lattice, work, int(_FIRST), least[0] + _GLANCE)
+        if reached == depths - 1 and least_in(work.costs[reached]) + _SLACK < least[0] + _GLANCE:
+            return reached, nodes
+    reached, count = _settle_from(lattice, work, begin, most)
+    return reached, nodes + count
+
+
+@exact_lean_kernel
+def widen(lattice: Lattice, work: Work) -> int:
+    """Settle also what was left out at a glance, if it was one; the number of nodes that have a way."""
+    if work.most[0] == work.most[1]:
+        return 0
+    _, nodes = _settle_from(lattice, work, int(_FIRST), work.most[1])
+    return nodes
+
+
+@exact_kernel
+def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
+    """The costs `left` of the nodes at the depths from the last down to `until`.
+
+    Nodes that no way of at most the cost `most` leads through are left out.
+    """
+    size, width, weight = lattice.postures.shape[0], lattice.moves.shape[1], lattice.weight
+    base, slopes, origins, column, limit = work.base, work.slopes, work.origins, work.closed, np.float32(most)
+    work.left[lattice.goals.shape[0] - 1] = 0.0
+    for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
+        out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]
+        targets, price, mask = out[:width], lattice.price[depth + 1], lattice.masks[depth]
+        closed = lattice.closed[mask]
+        out[:] = _INFINITE
+        square = np.float32(slopes_of(lattice, depth, depth + 1, slopes))
+        for node in range(np.uint64(width + OWN)):
+            base[node] = after[node] + price[node] - slopes[node] + square
+            base[node] = base[node] if known[node] + after[node] <= limit else _INFINITE
+        for node in range(width + OWN):
+            if base[node] == _INFINITE:
+                continue
+            row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
+            low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
+            if mask >= 0:
+                for source in range(low, high):
+                    column[source] = closed[source, node]
+                near = column[low:high]
+                _relax_open(targets[low:high], origins[low:high], base[node], row[low:high], weight, node, near)
+            else:
+                _relax(targets[low:high], origins[low:high], base[node], row[low:high], weight, node)
+            for e in range(OWN):
+                if work.costs[depth, width + e] < _INFINITE and not (mask >= 0 and closed[width + e, node]):
+                    move = work.squares[depth, e, node] if node < size else own_move(lattice, depth, e, node - width)
+                    cost = np.float32(base[node] + weight * move)
+                    out[width + e] = min(out[width + e], cost)
+        slopes_of(lattice, depth, depth, slopes)
+        for node in range(np.uint64(width + OWN)):
+            out[node] += slopes[node]

@@ -1,0 +1,71 @@
+"""The postures of a key time alone: its goal, what the last plan had there, the start, and the way back from it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.planning.exact.lattice.lattice import BACK, GOAL, HOLD, KEPT, OWN, place_of_least, squares_from
+from elbowroom.planning.paper.activity_graph import squared_distance
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_BACK_STEP = 0.8  # of the longest step
+_SAME = 1e-9  # radians
+
+
+@exact_kernel
+def alone_at(
+    known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats, settled: bool
+) -> tuple[Floats, Bools, Longs]:
+    """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
+
+    `known` (V, d) are the group's postures, also as `columns` (d, W), with steps of at most `step`; `goals` (n+1, d),
+    `last` (n+1, d) what the last plan had, `start` (d,). A posture that is among the known needs no node of its own.
+    A start that is `settled` is one of `last`, and nobody needs to stay there or to find a way back from it.
+    """
+    width = columns.shape[1]
+    count, size = goals.shape
+    own, needed = np.empty((count, OWN, size)), np.empty((count, OWN), np.bool_)
+    kept, squares = np.empty(count, np.int64), np.empty(width, np.float32)
+    length, pace = _distance(goals[0], start), _BACK_STEP * step
+    start_is_known = _known(known, columns, start, squares) >= 0
+    for t in range(count):
+        goal = goals[t]
+        part = min(pace * t / max(_distance(goal, start), 1e-9), 1.0)
+        for i in range(size):
+            own[t, GOAL, i], own[t, KEPT, i], own[t, HOLD, i] = goal[i], last[t, i], start[i]
+            own[t, BACK, i] = start[i] + part * (goal[i] - start[i])
+        if _near(last[t], goal):
+            kept[t] = width + GOAL
+        else:
+            at = _known(known, columns, last[t], squares)
+            kept[t] = at if at >= 0 else width + KEPT
+        needed[t, GOAL], needed[t, KEPT] = True, kept[t] == width + KEPT
+        needed[t, BACK] = not settled and part < 1.0 and length > _SAME
+        needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
+    return own, needed, kept
+
+
+@exact_inner_kernel
+def _distance(a: Floats, b: Floats) -> float:
+    """How far two postures (d,) are apart, radians."""
+    return float(np.sqrt(squared_distance(a, b)))
+
+
+@exact_inner_kernel
+def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32) -> int:
+    """The number of a posture (d,), or -1; `squares` (W,) is scratch."""
+    squares_from(columns, posture, squares)
+    at = place_of_least(squares)
+    return at if at < known.shape[0] and _near(posture, known[at]) else -1
+
+
+@exact_inner_kernel
+def _near(a: Floats, b: Floats) -> bool:
+    apart = 0.0
+    for i in range(a.shape[0]):
+        apart = max(apart, abs(a[i] - b[i]))
+    return apart <= _SAME

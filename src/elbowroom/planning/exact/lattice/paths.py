@@ -1,0 +1,69 @@
+"""Ways through a time lattice: what those that are known beforehand cost, and the cheapest one, once it is settled."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.planning.exact.lattice.lattice import HOLD, OWN, Lattice, Work, component_of, place_of_least, step_cost
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+
+_INFINITE = np.float32(np.inf)
+
+
+@exact_lean_kernel
+def own_way(lattice: Lattice, few: Floats) -> float:
+    """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more.
+
+    `few` (2, OWN) is scratch.
+    """
+    width, last = lattice.moves.shape[1], lattice.goals.shape[0] - 1
+    for e in range(OWN):
+        few[0, e] = 0.0 if e == HOLD else np.inf
+    for depth in range(last):
+        known, found = few[depth % 2], few[1 - depth % 2]
+        found[:] = np.inf
+        for f in range(OWN):
+            price = lattice.price[depth + 1, width + f]
+            if price == _INFINITE:
+                continue
+            for e in range(OWN):
+                if known[e] < np.inf:
+                    found[f] = min(found[f], known[e] + price + step_cost(lattice, depth, width + e, width + f))
+    least = np.inf
+    for e in range(OWN):
+        least = min(least, few[last % 2, e])
+    return least
+
+
+@exact_lean_kernel
+def kept_way(lattice: Lattice) -> float:
+    """The cost of the last plan's way, infinite where it is not free."""
+    total, before = 0.0, lattice.moves.shape[1] + HOLD
+    for depth in range(lattice.goals.shape[0] - 1):
+        node = lattice.kept[depth + 1]
+        total += lattice.price[depth + 1, node] + step_cost(lattice, depth, before, node)
+        if total == np.inf:
+            break
+        before = node
+    return total
+
+
+@exact_kernel
+def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
+    """The nodes (reached+1,) of the cheapest way to that depth; the first is HOLD, the start."""
+    way = np.empty(reached + 1, np.int64)
+    way[reached] = place_of_least(work.costs[reached])
+    for depth in range(reached, 0, -1):
+        way[depth - 1] = work.parents[depth, way[depth]]
+    way[0] = lattice.moves.shape[1] + HOLD
+    return way
+
+
+@exact_lean_kernel
+def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
+    """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
+    for t in range(way.shape[0]):
+        for i in range(keys.shape[1]):
+            keys[t, i] = component_of(lattice, t, way[t], i)

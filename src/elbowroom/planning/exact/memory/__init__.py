@@ -1,0 +1,1 @@
+"""How results of earlier plans are found again."""

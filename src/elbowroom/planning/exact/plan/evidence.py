@@ -1,0 +1,55 @@
+"""What the searches of one plan cost, group by group."""
+
+from collections.abc import Iterable
+from time import perf_counter_ns
+
+from elbowroom.body.dof import DofGroup
+from elbowroom.planning.exact.group.caches import Shelves
+from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, Weights
+from elbowroom.planning.exact.group.search import search_group
+from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.exact.plan.pauses import Pausing
+from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
+
+
+class Ledger:
+    """Searches one group after the other and keeps what each group's searches cost together."""
+
+    def __init__(self, shelves: Shelves, weights: Weights) -> None:
+        self._shelves, self._weights = shelves, weights
+        self._rows: list[GroupEvidence] = []
+        self.joint: JointEvidence | None = None
+
+    def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupWay]:
+        """`search_group`, entered under `group`."""
+        began = perf_counter_ns()
+        way: GroupWay = search_group(self._shelves.held[group], task, self._weights)
+        spent = perf_counter_ns() - began
+        status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
+        row = GroupEvidence(group, status, way.checks, way.nodes, 0, spent)
+        self._rows.append(row)
+        yield row
+        return way
+
+    def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
+        """What the joint step cost until now."""
+        before = 0 if self.joint is None else self.joint.nanoseconds
+        self.joint = JointEvidence(status, step.states, step.checks, before + nanoseconds)
+
+    def evidence(self) -> tuple[GroupEvidence, ...]:
+        """A row for each group that was searched, in order."""
+        return by_group(self._rows)
+
+
+def by_group(rows: Iterable[GroupEvidence]) -> tuple[GroupEvidence, ...]:
+    """What searches cost, those of one group together, which ended as the last of them."""
+    found: dict[DofGroup, GroupEvidence] = {}
+    for row in rows:
+        old = found.get(row.group)
+        found[row.group] = row if old is None else _both(old, row)
+    return tuple(found.values())
+
+
+def _both(one: GroupEvidence, then: GroupEvidence) -> GroupEvidence:
+    checks, nodes, enhanced = one.checks + then.checks, one.nodes + then.nodes, one.enhanced + then.enhanced
+    return GroupEvidence(then.group, then.status, checks, nodes, enhanced, one.nanoseconds + then.nanoseconds)

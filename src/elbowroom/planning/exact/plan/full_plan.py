@@ -1,0 +1,136 @@
+"""A motion over the whole look-ahead: what is handed over of it, and when it answers a later query too."""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.memory.previous_plan import Asked, Kept
+from elbowroom.planning.interpolation import hermite
+from elbowroom.planning.motion import Motion, MotionQuery
+from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan
+
+Floats = NDArray[np.float64]
+
+_SAME = 1e-6  # of a key interval
+
+
+class Whole(NamedTuple):
+    """A motion over the whole look-ahead."""
+
+    root: RootPlan
+    local: LocalPlan
+    asked: Asked | None = None  # None: not a way that was found
+
+
+def kept_of(whole: Whole, path: RootPath) -> Kept | None:
+    """What a motion has at the key times of a path, if it has any; between its own key times it is on its curve."""
+    known, keys, velocities = whole.root.path, whole.local.configurations, whole.local.velocities
+    at = (path.start_time - known.start_time) / known.interval
+    first, last = math.floor(at + _SAME), len(keys) - 1
+    if path.interval != known.interval or velocities is None or whole.asked is None or not 0 <= first <= last:
+        return None
+    asked, share = whole.asked.since(first, path.horizon), at - first
+    rows = np.minimum(first + np.arange(len(path.states)), last)
+    if share < _SAME:
+        return Kept(keys[rows], len(keys) - first, asked)
+    span, later = np.array([0.0, known.interval]), whole.asked.since(first + 1, path.horizon)
+    between = [
+        hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
+        for k in rows
+    ]
+    return Kept(np.array(between), last - first, asked.beside(later))
+
+
+def first_part(whole: Whole, horizon: int) -> Motion:
+    """The first `horizon` key intervals."""
+    root, local = whole.root, whole.local
+    return Motion(root.along(root.path.until(horizon)), part(local, slice(horizon + 1), local.evidence, local.joint))
+
+
+def part(
+    local: LocalPlan, rows: slice, evidence: tuple[GroupEvidence, ...], joint: JointEvidence | None = None
+) -> LocalPlan:
+    """Some key times of a plan, and what they cost."""
+    velocities = None if local.velocities is None else local.velocities[rows]
+    keys, goals = local.configurations[rows], local.goals[rows]
+    return LocalPlan(local.status, keys, goals, evidence, joint, local.blockade, velocities)
+
+
+def later(whole: Whole, at: int) -> Whole:
+    """What is left of a motion from its key time `at` on, for which nothing was searched."""
+    root, local, asked = whole
+    path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
+    rest = part(local, slice(at, None), _free_of_charge(local))
+    asked = None if asked is None else asked.since(at, path.horizon)
+    return Whole(root.going_on(path), rest, asked)
+
+
+def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
+    """A motion that is as it was found, for whose groups so much was searched meanwhile, a row for each of them."""
+    if not rows:
+        return whole
+    spent = {row.group: row for row in rows}
+    evidence = tuple(
+        row if row.group not in spent else spent[row.group]._replace(status=row.status) for row in whole.local.evidence
+    )
+    return whole._replace(local=whole.local._replace(evidence=evidence))
+
+
+def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
+    return tuple(GroupEvidence(row.group, row.status, 0, 0, 0, 0) for row in local.evidence)
+
+
+class Stand(NamedTuple):
+    """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
+
+    query: MotionQuery
+    version: int  # of the posture sets
+    whole: Whole
+    left: int  # paths that have not had their turn to be thought through
+
+    def answers(self, query: MotionQuery, version: int) -> bool:
+        """Whether this is the answer to `query` too."""
+        known, asked = self.query, query
+        same = known.root == asked.root and known.command == asked.command and version == self.version
+        same &= known.horizon == asked.horizon and known.interval == asked.interval
+        return same and bool(
+            np.array_equal(known.upper, asked.upper) and np.array_equal(known.velocity, asked.velocity)
+        )
+
+    def at(self, time: float) -> Whole:
+        """The answer at another time, for which nothing was searched."""
+        root, local = self.whole.root, self.whole.local
+        passed = time - self.query.time
+        why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + passed)
+        path = replace(root.path, start_time=time)
+        return Whole(
+            root.going_on(path),
+            local._replace(evidence=_free_of_charge(local), joint=None, blockade=why),
+            self.whole.asked,
+        )
+
+
+def stands(whole: Whole, query: MotionQuery) -> bool:
+    """Whether a plan leaves all as it is."""
+    return _stays(whole.root.path.states, whole.local.configurations, query.upper, query.velocity)
+
+
+@exact_kernel
+def _stays(states: Floats, uppers: Floats, upper: Floats, velocity: Floats) -> bool:
+    """Whether root states (n+1, 7) are at rest, and `uppers` (n+1, 11) where an `upper` body is at rest already."""
+    for t in range(states.shape[0]):
+        if states[t, 3] != 0.0 or states[t, 4] != 0.0 or states[t, 5] != 0.0:
+            return False
+    for j in range(upper.shape[0]):
+        if velocity[j] != 0.0:
+            return False
+        for t in range(uppers.shape[0]):
+            if uppers[t, j] != upper[j]:
+                return False
+    return True

@@ -1,0 +1,80 @@
+"""The last plans: what the next one may keep to, or go on with."""
+
+import numpy as np
+
+from elbowroom.planning.exact.memory.previous_plan import Kept
+from elbowroom.planning.exact.plan.full_plan import Whole, kept_of, later
+from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlanKind
+
+_PAST = 3  # plans before the last one
+_SAME_TIME = 1e-6  # of a key interval
+_SAME = 1e-9  # radians, metres
+
+
+class Recent:
+    """The last plan, and what was shown before it.
+
+    Plans may begin a little ahead: who changes the wish before that is still in an earlier one.
+    """
+
+    def __init__(self) -> None:
+        self._last: Whole | None = None
+        self._past: tuple[Whole, ...] = ()
+
+    def take(self, whole: Whole) -> None:
+        """Remember a plan as the last one."""
+        if self._last is not None:
+            self._past = (*self._past[1 - _PAST :], self._last)
+        self._last = whole
+
+    def since(self, time: float) -> Whole | None:
+        """The last plan, with what is shown before it if it begins later than `time`."""
+        whole = self._last
+        for earlier in reversed(self._past):
+            if whole is None or whole.root.path.start_time <= time:
+                break
+            whole = after(earlier, whole)
+        return whole
+
+    def kept(self, path: RootPath) -> Kept | None:
+        """What the last plan had at the key times of `path`, if it has any of them."""
+        last = self.since(path.start_time)
+        return None if last is None else kept_of(last, path)
+
+    def continued(self, query: MotionQuery) -> Whole | None:
+        """What is left of the last plan, if it led to where this one starts."""
+        last = self.since(query.time)
+        if last is None or not len(last.local.configurations):
+            return None
+        path = last.root.path
+        at = round((query.time - path.start_time) / query.interval)
+        if not 0 <= at < len(path.states) - 1 or not np.allclose(path.states[at], query.root, atol=1e-9):
+            return None
+        left = later(last, at)
+        return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED))
+
+
+def after(earlier: Whole, whole: Whole) -> Whole:
+    """A motion with what is shown before it, if it goes on from an `earlier` one at one of its key times."""
+    path, local = whole.root.path, whole.local
+    if earlier.asked is None or whole.asked is None:
+        return whole
+    known, rows = earlier.root.path, earlier.local.configurations
+    velocities, speeds = earlier.local.velocities, local.velocities
+    at = round((path.start_time - known.start_time) / known.interval)
+    apart = abs(known.start_time + at * known.interval - path.start_time)
+    if velocities is None or speeds is None or known.interval != path.interval or not 0 < at < len(rows):
+        return whole
+    there, here = (known.states[at], rows[at], velocities[at]), (path.states[0], local.configurations[0], speeds[0])
+    if apart > _SAME_TIME * path.interval or any(np.abs(a - b).max() > _SAME for a, b in zip(there, here, strict=True)):
+        return whole
+    joined = local._replace(
+        configurations=np.concatenate([rows[:at], local.configurations]),
+        goals=np.concatenate([earlier.local.goals[:at], local.goals]),
+        velocities=np.concatenate([velocities[:at], speeds]),
+    )
+    states = np.concatenate([known.states[:at], path.states])
+    longer = whole.root.along(RootPath(known.start_time, known.interval, states))
+    return Whole(longer, joined, earlier.asked.then(at, whole.asked))

@@ -1,0 +1,240 @@
+"""One plan of the upper body along one root path: group after group, and all together where that fails.
+
+The groups are searched in the order of the paper, each arm under the waist's way and clear of the body, the right arm
+of the left one too. Where an arm has no way, the waist's last way is tried, under which the arms had theirs; then the
+joint step decides.
+"""
+
+from dataclasses import dataclass
+from time import perf_counter_ns
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.planning.exact.certificate.blockade import blockade
+from elbowroom.planning.exact.group.arms import Arms, Ways
+from elbowroom.planning.exact.group.caches import Shelves
+from elbowroom.planning.exact.group.path_problem import PathProblem, no_prices
+from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, Weights, own_postures
+from elbowroom.planning.exact.joint.guide import Guide, arm_nodes, guide, surroundings, waist_nodes
+from elbowroom.planning.exact.joint.step import JointSettings, JointStep, Surroundings
+from elbowroom.planning.exact.lattice.lattice import KEPT, OWN
+from elbowroom.planning.exact.memory.own_contacts import SelfContacts
+from elbowroom.planning.exact.memory.previous_plan import Asked, jolts
+from elbowroom.planning.exact.plan.evidence import Ledger
+from elbowroom.planning.exact.plan.pauses import Pausing
+from elbowroom.planning.exact.refine.blocked import Blocked
+from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.model.lowered_legs import LoweredLegs
+from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
+from elbowroom.planning.root.path import RootPath
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Longs = NDArray[np.int64]
+
+_DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
+_JOLT = 0.5  # squared radians that another motion must be better than one under the last plan's waist
+
+
+@dataclass(eq=False)
+class Dressing:
+    """One root path to be dressed."""
+
+    shelves: Shelves
+    weights: Weights
+    settings: ExactSettings
+    own_body: OwnBody
+    own_motion: OwnMotion
+    contacts: SelfContacts
+    legs: LoweredLegs
+    problem: PathProblem
+
+    def __post_init__(self) -> None:
+        self.asked: Asked | None = None  # of the way that was found
+        self._arms = Arms(
+            self.shelves, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
+        )
+        self.ledger = Ledger(self.shelves, self.weights)
+        self.deepest = 0  # key time that all groups reached in the best attempt
+        self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
+        self._waist: GroupWay | None = None
+        # infinite where the legs have no room to crouch as a node does
+        self._crouching = no_prices(self.shelves, DofGroup.WAIST, self.path.horizon)
+
+    @property
+    def path(self) -> RootPath:
+        """The root path."""
+        return self.problem.path
+
+    @property
+    def goals(self) -> Floats:
+        """The goals (n+1, 11)."""
+        return self.problem.goals
+
+    def motion(self, rounds: int) -> Pausing[LocalPlan | None]:
+        """The motion, if there is one: group after group, then in so many rounds of the joint step.
+
+        One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
+        """
+        found, last = (yield from self.apart()), self.problem.last
+        if last is not None and (found.failed is not None or jolts(found.keys, last.keys, last.known)):
+            kept = yield from self.with_kept_waist()
+            if found.failed is not None or (kept.failed is None and self._cost(kept) <= self._cost(found) + _JOLT):
+                found = kept
+        if found.failed is not None and rounds > 0:
+            found = yield from self.together(rounds)
+        if found.failed is not None:
+            return None
+        self.asked = self._asked(found)
+        evidence, joint = self.ledger.evidence(), self.ledger.joint
+        return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
+
+    def _asked(self, found: Ways) -> Asked:
+        """The clearances that were asked for: less where the start has less."""
+        most, settings = [way.most for way in found.ways], self.settings
+        enough = min(most) >= max(settings.margin, settings.skin)
+        return self.problem.asked if enough else self.problem.asked.at_most(most)
+
+    def _cost(self, found: Ways) -> float:
+        """What ways cost that are free: distance from the goals and its changes, squared radians."""
+        away = found.keys - self.goals
+        return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
+
+    def apart(self) -> Pausing[Ways]:
+        """Each group by itself."""
+        self._waist = yield from self._waist_way(self._crouching)
+        found = yield from self._under(self._waist)
+        self.blocked = len(found.ways), min(found.reached + 1, self.path.horizon)
+        return found
+
+    def _under(self, waist: GroupWay, guides: list[Guide] | None = None) -> Pausing[Ways]:
+        """The arms under a way of the waist."""
+        found = yield from self._arms.under(waist, guides, self.ledger)
+        if found.failed is not None:
+            self.deepest = max(self.deepest, found.reached)
+        return found
+
+    def with_kept_waist(self) -> Pausing[Ways]:
+        """The waist held to the last plan's way while there is one."""
+        prices = np.full_like(self._crouching, _DEARER)
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots)
+        _, _, kept = own_postures(self.shelves.group(DofGroup.WAIST), task)
+        prices[np.arange(len(prices)), kept] = 0.0
+        waist = yield from self._waist_way(prices + self._crouching)
+        return (yield from self._under(waist))
+
+    def together(self, rounds: int) -> Pausing[Ways]:
+        """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
+        waist = self._waist
+        assert waist is not None
+        if waist.reached < self.path.horizon:
+            return Ways((), waist, waist.reached)
+        step = self.joint_step(waist)
+        ways = Ways((), waist, 0)
+        for _ in range(rounds):
+            began = perf_counter_ns()
+            answer = yield from step.search()
+            self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)
+            if answer.status is not PlanStatus.FOUND:
+                break
+            guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
+            way = yield from self._waist_way(self._crouching, guides[0])
+            ways = yield from self._under(way, guides)
+            if len(ways.ways) == len(LOCAL_GROUPS):
+                break
+            failed, at = len(ways.ways), min(ways.reached, self.path.horizon - 1)
+            step.close(failed, at, answer.nodes[at : at + 2, failed])
+        return ways
+
+    def blockade(self) -> Blockade:
+        """Why there is no way."""
+        assert self._waist is not None
+        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.problem.near.rows)
+
+    def blocked_slice(self) -> Blocked:
+        """The slice that the first group to fail could not get through."""
+        number, depth = self.blocked
+        waist = self._waist
+        assert waist is not None
+        at, known = columns_of(LOCAL_GROUPS[number]), self.shelves.group(DofGroup.WAIST).postures.configurations
+        prices = waist.price[depth, : len(known)]
+        order = np.argsort(prices, kind="stable")
+        waists = known[order[np.isfinite(prices[order])]]
+        if depth < len(waist.keys):
+            waists = np.concatenate([waist.keys[depth : depth + 1], waists])
+        margin = float(self.problem.anew.margins[number, depth])
+        return Blocked(depth, self._surroundings(), self.goals[depth, at], margin, waists)
+
+    def waist_at(self, depth: int) -> Floats:
+        """The waist (d,) that was chosen for itself at a key time that it reached."""
+        assert self._waist is not None
+        key: Floats = self._waist.keys[depth]
+        return key
+
+    def joint_step(self, waist: GroupWay) -> JointStep:
+        """The joint step of this path, nothing filled in yet."""
+        shelves, task = self.shelves, self.problem.task(DofGroup.WAIST, self.problem.roots)
+        arms = []
+        for group in LOCAL_GROUPS[1:]:
+            arm_task, most = self.problem.task(group, waist.slots), np.inf
+            if waist.reached == self.path.horizon:
+                most = self._room_at_start(group, arm_task, waist)
+            arms.append(arm_nodes(shelves.group(group), arm_task, self.weights.keeping, most))
+        return JointStep(
+            self.own_body,
+            waist_nodes(shelves.group(DofGroup.WAIST), task, waist, self.weights.keeping),
+            (arms[0], arms[1]),
+            self._surroundings(),
+            JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
+        )
+
+    def _surroundings(self) -> Surroundings:
+        problem = self.problem
+        return surroundings(self.path.states, self.shelves.roots, problem.roots, problem.near.slices)
+
+    def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> Pausing[GroupWay]:
+        """The waist's way on which the legs have room to crouch as it does."""
+        at, postures = columns_of(DofGroup.WAIST), self.shelves.group(DofGroup.WAIST).postures
+        kept, closed = self.problem.kept[:, at], prices.copy()
+        if follow is not None:
+            kept = follow.keys
+            closed[:, closed.shape[1] - OWN + KEPT] = 0.0
+
+        def lowerings() -> Floats:
+            lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
+            lanes[: len(postures.configurations)] = postures.configurations
+            return node_lowerings(lanes, self.goals[:, at], kept, self.problem.begins.upper[at])
+
+        crouch = Crouch(self.legs, self.path, lowerings)
+        for attempt in range(ROUNDS):
+            way = yield from self._search(closed, follow)
+            if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
+                if follow is None and attempt > 0:
+                    self._crouching[np.isinf(closed)] = np.inf
+                return way
+        return way._replace(reached=0)
+
+    def _room_at_start(self, group: DofGroup, task: GroupTask, waist: GroupWay) -> float:
+        """The clearance that may be asked of a group, half of what it has at the start; all if that is proven."""
+        if task.settled:
+            return np.inf
+        shelves, root = self.shelves, self.problem.roots[0]
+        places, turns = shelves.roots.places[root], shelves.roots.turns[root]
+        if group is not DofGroup.WAIST:
+            carriers = shelves.group(DofGroup.WAIST).ways
+            places, turns = carriers.places[waist.slots[0]], carriers.turns[waist.slots[0]]
+        postures, boxes = shelves.group(group).postures, self.problem.near.intervals[0]
+        clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
+        return max(0.5 * clearance, 0.0)
+
+    def _search(self, extra: Floats32, follow: Guide | None) -> Pausing[GroupWay]:
+        """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
+        return (yield from self.ledger.search(DofGroup.WAIST, task))

@@ -1,0 +1,1 @@
+"""More postures, sampled only where the search is blocked."""

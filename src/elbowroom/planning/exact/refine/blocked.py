@@ -1,0 +1,77 @@
+"""Postures drawn for a blocked slice: which of them are free there, and worth taking in."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.kinematics import chest_frames
+from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
+from elbowroom.planning.exact.joint.step import Surroundings
+from elbowroom.planning.exact.lattice.postures import blocks_of
+from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen, drawn_postures
+from elbowroom.planning.exact.sweep.own_body import OwnBody
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded
+from elbowroom.planning.model.frames import compose
+from elbowroom.planning.model.limb import Limb, pose
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_WAISTS = 6  # waists of a blocked slice under which arms are tried
+
+
+class Blocked(NamedTuple):
+    """A slice that a group could not get through."""
+
+    depth: int
+    around: Surroundings
+    goal: Floats  # (d,)
+    margin: float  # metres of clearance that a posture needs
+    waists: Floats  # (F, d) that are free there, the best first; for an arm
+
+
+def waists_for(limb: Limb, reach: float, known: Floats, blocked: Blocked, settings: RefinementSettings) -> Floats:
+    """Waist postures (k, d) that are free in a blocked slice and unlike the `known` (V, d)."""
+    drawn = drawn_postures(DofGroup.WAIST, blocked.goal, settings.drawn, settings.near)
+    places, turns = blocked.around.places[blocked.depth][None], blocked.around.turns[blocked.depth][None]
+    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
+    clear, _ = clearances_under(lanes, places, turns, blocked.around.boxes[blocked.depth], np.ones(1, np.bool_))
+    free = clear[0, : len(drawn)] >= blocked.margin
+    return _worth(drawn, free, known, blocked.goal, settings)
+
+
+def arms_for(
+    body: OwnBody, side: int, limb: Limb, reach: float, known: Floats, blocked: Blocked, settings: RefinementSettings
+) -> Floats:
+    """Arm postures (k, d) that are free in a blocked slice under one of its waists, and unlike the `known` (V, d)."""
+    drawn = drawn_postures(LOCAL_GROUPS[1 + side], blocked.goal, settings.drawn, settings.near)
+    waists = blocked.waists[:_WAISTS]
+    if not len(waists):
+        return drawn[:0]
+    inner, inner_turns = chest_frames(body.model, waists)
+    places, turns = blocked.around.places[blocked.depth], blocked.around.turns[blocked.depth]
+    moments = len(places)
+    frames = compose(
+        np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
+        np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
+    )  # fmt: skip
+    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
+    clear, _ = clearances_under(
+        lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4),
+        blocked.around.boxes[blocked.depth], np.ones(len(waists), np.bool_),
+    )  # fmt: skip
+    states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
+    parts = body.parts(side, waists, states, None)
+    free = np.zeros(len(drawn), np.bool_)
+    for row, axes in enumerate(parts.axes):
+        kept_off = ~folded(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)
+        free |= (clear[row] >= blocked.margin)[: len(drawn)] & kept_off[: len(drawn)]
+    return _worth(drawn, free, known, blocked.goal, settings)
+
+
+def _worth(drawn: Floats, free: Bools, known: Floats, goal: Floats, settings: RefinementSettings) -> Floats:
+    prices = np.where(free, np.sum((drawn - goal) ** 2, axis=1), np.inf)
+    taken: Floats = drawn[chosen(drawn, prices, known, settings.apart, settings.taken)]
+    return taken

@@ -1,0 +1,238 @@
+"""Clearance of whole blocks of postures around the key times, and of single capsules along a motion."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, lean_kernel
+from elbowroom.planning.exact.lattice.postures import BLOCK
+from elbowroom.world.capsule_tiles import BOX, PER_METRE, TILE, lower_squares, lower_to_squares
+from elbowroom.world.clearance import fill_box_rows
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+
+COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
+_ROUNDING = 1e-5  # metres: balls are held against boxes in single precision
+_NONE = 0
+_PAIRS = 512  # pairs of a tile and a box that are collected before they are checked
+_FAR = np.float32(np.inf)
+_ZERO = np.float32(0.0)
+_QUARTER = np.float32(0.25)
+_LAST = BLOCK - 1
+
+
+@exact_lean_kernel
+def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> int:
+    """Copy the boxes (B, 15) whose ball comes within `reach` of a place (3,) to `near`; their number."""
+    count = 0
+    for b in range(boxes.shape[0]):
+        total, half = 0.0, 0.0
+        for i in range(3):
+            total += (boxes[b, i] - place[i]) ** 2
+            half += boxes[b, 12 + i] ** 2
+        if np.sqrt(total) - np.sqrt(half) < reach:
+            for i in range(boxes.shape[1]):
+                near[count, i] = boxes[b, i]
+            count += 1
+    return count
+
+
+@exact_kernel
+def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
+    """The row (15,) of a box as seen from a frame at `place` (3,) with the unit quaternion `turn` (4,)."""
+    x, y, z, w = turn[0], turn[1], turn[2], turn[3]
+    xx, xy, xz = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
+    yx, yy, yz = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
+    zx, zy, zz = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+    dx, dy, dz = box[0] - place[0], box[1] - place[1], box[2] - place[2]
+    out[0], out[1], out[2] = xx * dx + yx * dy + zx * dz, xy * dx + yy * dy + zy * dz, xz * dx + yz * dy + zz * dz
+    for i in range(3):
+        m = 3 + 3 * i
+        p, q, r = box[m], box[m + 1], box[m + 2]
+        out[m], out[m + 1], out[m + 2] = p * xx + q * yx + r * zx, p * xy + q * yy + r * zy, p * xz + q * yz + r * zz
+        out[12 + i] = box[12 + i]
+
+
+class CheckRoom(NamedTuple):
+    """What checks of T tiles of capsules against B boxes work on, and room for C capsules in sixteen places."""
+
+    rows: Floats32  # (B * 15,) boxes as `lower_squares` takes them
+    spread: Floats32  # (5, W) balls by components, W >= T a multiple of `BLOCK`
+    squares: Floats32  # (T * 16,)
+    pairs: Longs  # (_PAIRS + T, 2)
+    lanes: Floats32  # (C, 7, 16) capsules with radii
+    tiles: Floats32  # the same, flat
+    balls: Floats  # (C, 1, 4) around them
+    apart: Floats32  # (16,)
+
+
+@exact_inner_kernel
+def check_room(tiles: int, capsules: int, boxes: int) -> CheckRoom:
+    """Room for checks of so many tiles, or of single capsules, against so many boxes."""
+    flat = np.empty(capsules * TILE, np.float32)
+    return CheckRoom(
+        np.empty(boxes * BOX, np.float32),
+        np.empty((5, (tiles + BLOCK - 1) // BLOCK * BLOCK), np.float32),
+        np.empty(tiles * BLOCK, np.float32),
+        np.empty((_PAIRS + tiles, 2), np.int64),
+        flat.reshape(capsules, TILE // BLOCK, BLOCK),
+        flat,
+        np.empty((capsules, 1, 4)),
+        np.empty(BLOCK, np.float32),
+    )
+
+
+@exact_lean_kernel
+def spread_balls(balls: Floats, out: Floats32) -> None:
+    """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
+
+    Those beyond B C, up to a multiple of `BLOCK`, are such that nothing is near them. The last row is left as it is.
+    """
+    parts = balls.shape[1]
+    total = balls.shape[0] * parts
+    t = 0
+    for b in range(balls.shape[0]):
+        for c in range(parts):
+            reach = (balls[b, c, 3] + COMFORT + _ROUNDING) * PER_METRE
+            out[0, t], out[1, t], out[2, t], out[3, t] = balls[b, c, 0], balls[b, c, 1], balls[b, c, 2], reach * reach
+            t += 1
+    for t in range(total, (total + BLOCK - 1) // BLOCK * BLOCK):
+        out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
+
+
+@lean_kernel
+def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int:
+    """How far (W,) balls as `spread_balls` are out of reach of box b, negative where they are within; how many are."""
+    row = rows[b * BOX : (b + 1) * BOX]
+    cx, cy, cz, hx, hy, hz = row[0], row[1], row[2], row[12], row[13], row[14]
+    m = (row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])
+    within = 0
+    for t in range(np.uint64(out.shape[0])):
+        x, y, z = balls[0, t] - cx, balls[1, t] - cy, balls[2, t] - cz
+        p = max(abs(m[0] * x + m[1] * y + m[2] * z) - hx, _ZERO)
+        q = max(abs(m[3] * x + m[4] * y + m[5] * z) - hy, _ZERO)
+        r = max(abs(m[6] * x + m[7] * y + m[8] * z) - hz, _ZERO)
+        out[t] = p * p + q * q + r * r - balls[3, t]
+        within += out[t] < _ZERO
+    return within
+
+
+@exact_lean_kernel
+def lower_blocks_in(
+    room: CheckRoom, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
+) -> int:
+    """`lower_blocks` with room to work in, for lanes that lie flat and balls as `spread_balls` leaves them."""
+    total = tiles.shape[0] // TILE
+    rows, squares, pairs, parts = room.rows, room.squares, room.pairs, total // out.shape[0]
+    fill_box_rows(boxes, count, rows)
+    for i in range(np.uint64(total * BLOCK)):
+        squares[i] = _FAR
+    found, checks, beyond = int(_NONE), 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
+    for b in range(count):
+        if _beyond_reach(spread, rows, b, beyond) > 0:
+            for t in range(total):
+                pairs[found, 0], pairs[found, 1] = t, b
+                found += beyond[t] < 0.0
+        if found >= _PAIRS or b == count - 1:
+            lower_squares(tiles, rows, pairs, found, squares)
+            checks, found = checks + found * BLOCK, int(_NONE)
+    if checks > 0:
+        for t in range(total):
+            if squares[t * BLOCK] < _FAR:
+                radius = tiles[t * TILE + (TILE - BLOCK)]
+                lower_to_squares(squares[t * BLOCK : (t + 1) * BLOCK], radius, out[t // parts])
+    return checks
+
+
+@exact_kernel
+def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
+    """Lower `out` (B, 16) to the clearance of blocks of postures from `count` boxes, all in one frame.
+
+    What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
+    """
+    room = check_room(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
+    spread_balls(balls, room.spread)
+    return int(lower_blocks_in(room, lanes.reshape(lanes.size), room.spread, boxes, count, out))
+
+
+@exact_lean_kernel
+def place_capsules(
+    segments: Floats32, count: int, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32
+) -> None:
+    """The first `count` capsules (C, 6, N) in frames at `places` (N, 3), `turns` (N, 4), as lanes (C, 7, W) outside.
+
+    The lanes beyond these repeat the last.
+    """
+    for n in range(count):
+        x, y, z, w = turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3]
+        xx, xy, xz = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
+        yx, yy, yz = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
+        zx, zy, zz = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+        for c in range(segments.shape[0]):
+            for e in range(0, 6, 3):
+                a, b, d = segments[c, e, n], segments[c, e + 1, n], segments[c, e + 2, n]
+                lanes[c, e, n] = places[n, 0] + xx * a + xy * b + xz * d
+                lanes[c, e + 1, n] = places[n, 1] + yx * a + yy * b + yz * d
+                lanes[c, e + 2, n] = places[n, 2] + zx * a + zy * b + zz * d
+    for c in range(segments.shape[0]):
+        for e in range(6):
+            last = lanes[c, e, count - 1]
+            for n in range(count, lanes.shape[2]):
+                lanes[c, e, n] = last
+        for n in range(lanes.shape[2]):
+            lanes[c, 6, n] = radii[c]
+
+
+@lean_kernel
+def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
+    """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
+    ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
+    x = _QUARTER * (ax[0] + bx[0] + ax[_LAST] + bx[_LAST])
+    y = _QUARTER * (ay[0] + by[0] + ay[_LAST] + by[_LAST])
+    z = _QUARTER * (az[0] + bz[0] + az[_LAST] + bz[_LAST])
+    for i in range(np.uint64(scratch.shape[0])):
+        a = (ax[i] - x) * (ax[i] - x) + (ay[i] - y) * (ay[i] - y) + (az[i] - z) * (az[i] - z)
+        b = (bx[i] - x) * (bx[i] - x) + (by[i] - y) * (by[i] - y) + (bz[i] - z) * (bz[i] - z)
+        scratch[i] = max(a, b)
+    farthest = _ZERO
+    for i in range(scratch.shape[0]):
+        farthest = max(farthest, scratch[i])
+    ball[0], ball[1], ball[2], ball[3] = x, y, z, lanes[6, 0] + np.sqrt(farthest)
+
+
+@exact_lean_kernel
+def capsule_clearances_in(room: CheckRoom, boxes: Floats, count: int, out: Floats32) -> int:
+    """`capsule_clearances` of the capsules in the room."""
+    for c in range(room.lanes.shape[0]):
+        _ball_around(room.lanes[c], room.apart, room.balls[c, 0])
+    spread_balls(room.balls, room.spread)
+    return int(lower_blocks_in(room, room.tiles, room.spread, boxes, count, out))
+
+
+@exact_kernel
+def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
+    """Lower `out` (C, 16) to the clearance of each capsule in each lane (C, 7, 16).
+
+    Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
+    """
+    room = check_room(lanes.shape[0], lanes.shape[0], count)
+    room.lanes[:] = lanes
+    return int(capsule_clearances_in(room, boxes, count, out))
+
+
+@exact_lean_kernel
+def least_of(rows: Floats32, scratch: Floats32) -> float:
+    """The least number in rows (C, 16) of clearances; `scratch` (16,)."""
+    for i in range(np.uint64(BLOCK)):
+        scratch[i] = rows[0, i]
+    for c in range(1, rows.shape[0]):
+        row = rows[c]
+        for i in range(np.uint64(BLOCK)):
+            scratch[i] = min(scratch[i], row[i])
+    least = scratch[0]
+    for i in range(1, BLOCK):
+        least = min(least, scratch[i])
+    return float(least)

@@ -1,0 +1,165 @@
+"""Which steps of one key interval touch: looked at in a batch where the search is blocked, the promising ones first."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_lean_kernel, inlined
+from elbowroom.planning.exact.lattice.lattice import OWN, Lattice, Work, least_in, slopes_of, squares_from
+from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_WAY, Postures
+from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, capsule_clearances_in
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
+from elbowroom.planning.exact.sweep.scratch import Workroom
+from elbowroom.planning.model.limb import pose_into
+from elbowroom.planning.paper.activity_graph import squared_distance
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Longs = NDArray[np.int64]
+
+MOST_STEPS = 128  # looked at in one go
+_INFINITE = np.float32(np.inf)
+_ONE = 1  # posture
+
+
+@exact_lean_kernel
+def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
+    """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
+    width = lattice.moves.shape[1]
+    posture = lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    squares_from(lattice.columns, posture, out[:width])
+    for e in range(OWN):
+        out[width + e] = squared_distance(lattice.own[depth, e], posture)
+
+
+@exact_lean_kernel
+def ban_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
+    """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
+    nodes, most = lattice.price.shape[1], np.float32(radius * radius)
+    before, after = work.base, work.slopes
+    _distances(lattice, depth, source, before)
+    _distances(lattice, depth + 1, target, after)
+    kept, closed = lattice.kept[depth + 1], lattice.closed[lattice.masks[depth]]
+    for node in range(nodes):
+        if before[node] <= most:
+            row, spared = closed[node], closed[node, kept]
+            for other in range(nodes):
+                if before[node] + after[other] <= most:
+                    row[other] = True
+            if depth == 0 or node == lattice.kept[depth]:
+                row[kept] = spared
+    closed[source, target] = True
+
+
+@exact_lean_kernel
+def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
+    """The steps of a key interval through which a way might go that costs at most `most`, without those `seen`.
+
+    They are written to `found` (MOST_STEPS, 2), and marked as seen in `seen` (W+OWN, W+OWN). Returns their number.
+    """
+    size, nodes, weight = lattice.postures.shape[0], lattice.price.shape[1], np.float32(lattice.weight)
+    width, limit = nodes - OWN, np.float32(most)
+    count, costs, base, end = 0, work.costs[depth], work.base, work.slopes
+    square = np.float32(slopes_of(lattice, depth, depth, base))
+    slopes_of(lattice, depth, depth + 1, end)
+    for b in range(np.uint64(nodes)):
+        end[b] = work.left[depth + 1, b] + lattice.price[depth + 1, b] - end[b]
+    for a in range(np.uint64(nodes)):
+        base[a] = costs[a] + base[a] + square
+    least, first, likely, few = least_in(end), least_in(base), work.origins, 0
+    closed = lattice.closed[lattice.masks[depth]]
+    for b in range(nodes):
+        if first + end[b] <= limit:
+            likely[few] = b
+            few += 1
+    for a in range(nodes):
+        start = base[a]
+        if not start + least <= limit:
+            continue
+        for i in range(few):
+            b = likely[i]
+            if not start + end[b] <= limit or seen[a, b] or closed[a, b] or a == b:
+                continue
+            if b >= width:
+                own, posture = lattice.own[depth + 1, b - width], lattice.own[depth, max(a - width, 0)]
+                posture = lattice.postures[a] if a < width else posture
+                move = np.float32(squared_distance(own, posture))
+                move = move if move <= lattice.step * lattice.step else _INFINITE
+            else:
+                move = lattice.moves[a, b] if a < size else work.squares[depth, a - width, b]
+            if start + weight * move + end[b] <= limit:
+                seen[a, b] = True
+                found[count, 0], found[count, 1] = a, b
+                count += 1
+                if count == MOST_STEPS:
+                    return count
+    return count
+
+
+@inlined
+def _posed_between(
+    room: Workroom, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
+) -> None:
+    """Sixteen steps' postures on their way, from the step `first` on, at one of the looks between, into the room.
+
+    The lanes beyond the `count` steps repeat the last.
+    """
+    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], room.checks.lanes
+    pairs, filled = postures.pairs, min(count - first, BLOCK)
+    for n in range(filled):
+        a, b = steps[first + n, 0], steps[first + n, 1]
+        pair = pairs[a, b] if a < size and b < size else -1
+        if pair >= 0:
+            on_way = postures.between[pair, part if a < b else BETWEEN - 1 - part]
+            for c in range(lanes.shape[0]):
+                for i in range(6):
+                    lanes[c, i, n] = on_way[c, i]
+        else:
+            start = lattice.postures[a] if a < width else lattice.own[depth, a - width]
+            end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
+            for i in range(start.shape[0]):
+                room.configurations[0, i] = start[i] + share * (end[i] - start[i])
+            pose_into(postures.limb, room.limb, room.configurations, int(_ONE), n, lanes)
+    for c in range(lanes.shape[0]):
+        for i in range(6):
+            for n in range(filled, BLOCK):
+                lanes[c, i, n] = lanes[c, i, filled - 1]
+        for n in range(BLOCK):
+            lanes[c, 6, n] = postures.limb.radii[c]
+
+
+@exact_lean_kernel
+def close_steps(
+    room: Workroom,
+    postures: Postures,
+    lattice: Lattice,
+    depth: int,
+    steps: Longs,
+    many: int,
+    places: Floats,
+    turns: Floats,
+    boxes: Floats,
+    skin: float,
+) -> int:
+    """Close those of the first `many` steps (K, 2) that touch on the way; returns the capsules checked.
+
+    `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
+    """
+    out, closed, checks = room.found, lattice.closed[lattice.masks[depth]], 0
+    for part in range(BETWEEN):
+        look = (part + 1) * SWEEP // (BETWEEN + 1)
+        place, turn = places[look], turns[look]
+        count = boxes_around(boxes, place, postures.reach, room.near)
+        if count == 0:
+            continue
+        for b in range(count):
+            box_in_frame(room.near[b], place, turn, room.framed[b])
+        for first in range(0, many, BLOCK):
+            _posed_between(room, postures, lattice, depth, steps, many, first, part)
+            out[:] = _INFINITE
+            checks += capsule_clearances_in(room.checks, room.framed, count, out)
+            for k in range(first, min(first + BLOCK, many)):
+                for c in range(out.shape[0]):
+                    if out[c, k - first] < skin:
+                        closed[steps[k, 0], steps[k, 1]] = True
+    return checks

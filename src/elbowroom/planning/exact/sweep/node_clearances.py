@@ -1,0 +1,180 @@
+"""The clearance of all postures of a group in one key interval, while the frame that carries them moves.
+
+A posture belongs to a key time, and stays there for half a key interval to either side: so each interval gives the
+postures of the key time before it an `early` row and those of the key time after it a `late` one, which looks at the
+key time itself too. The goal's own posture at these two key times rides along.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined, leaf
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
+from elbowroom.planning.exact.memory.cache_index import Slots, admit, find, new_slots
+from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
+from elbowroom.planning.exact.sweep.scratch import Workroom, held_against, workroom
+from elbowroom.planning.model.limb import pose_into
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_MOMENTS = 4  # parts of an interval, at whose ends postures are looked at
+_STRIDE = SWEEP // _MOMENTS
+HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
+_EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
+_FAR = np.float32(1e3)
+_ONE, _BOTH, _FIRST = 1, 2, 0  # postures; place
+
+
+class Tables(NamedTuple):
+    """Tables by interval; the key is the carrier's way and the goals at both ends."""
+
+    slots: Slots
+    early: Floats32  # (S, W + 1) clearance of every posture, then of the goal
+    late: Floats32  # (S, W + 1)
+
+
+def new_tables(count: int, size: int, width: int) -> Tables:
+    """Room for `count` tables of `width` lanes of postures with `size` components."""
+    return Tables(
+        new_slots(count, 1 + 2 * size),
+        np.empty((count, width + 1), np.float32),
+        np.empty((count, width + 1), np.float32),
+    )
+
+
+@exact_lean_kernel
+def table_of(
+    room: Workroom, tables: Tables, postures: Postures, carrier: int, places: Floats, turns: Floats, goals: Floats,
+    boxes: Floats,
+) -> tuple[int, int]:  # fmt: skip
+    """The slot of the table of an interval, and the capsules that had to be checked for it.
+
+    `carrier` is the number of the carrier's way, `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are its frames,
+    `goals` (2, d) those at the interval's ends, `boxes` (B, 15) in the world.
+    """
+    size = goals.shape[1]
+    key = room.key[: 1 + 2 * size]
+    key[0] = carrier
+    for i in range(size):
+        key[1 + i], key[1 + size + i] = goals[0, i], goals[1, i]
+    known = find(tables.slots, key)
+    if known >= 0:
+        return int(known), 0
+    at = admit(tables.slots, key)
+    early, late = tables.early[at], tables.late[at]
+    checks = _moments(room, postures, places, turns, boxes, early, late)
+    width = early.shape[0] - 1
+    early[width], late[width], count = _goals_held(room, postures, goals, places, turns, boxes)
+    return int(at), checks + count
+
+
+@leaf
+def _set_frame(room: Workroom, n: int, places: Floats, turns: Floats, look: int) -> None:
+    """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` in the room."""
+    for i in range(3):
+        room.places[n, i] = places[look, i]
+    for i in range(4):
+        room.turns[n, i] = turns[look, i]
+
+
+@inlined
+def _goals_held(
+    room: Workroom, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
+) -> tuple[Any, Any, int]:
+    """The clearances of an interval's goals (2, d), the first held early and the second late, and capsules checked."""
+    near, segments, found = boxes_around(boxes, places[0], postures.reach + 0.5, room.near), room.segments, room.found
+    if near == 0:
+        return _FAR, _FAR, 0
+    for i in range(goals.shape[1]):
+        room.configurations[0, i], room.configurations[1, i] = goals[0, i], goals[1, i]
+    pose_into(postures.limb, room.limb, room.configurations, int(_BOTH), int(_FIRST), segments)
+    total = _EARLY + _MOMENTS + 1 - _LATE
+    for n in range(total):
+        look = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
+        _set_frame(room, n, places, turns, look)
+    for c in range(segments.shape[0]):
+        for i in range(6):
+            first, second = segments[c, i, 0], segments[c, i, 1]
+            for n in range(total):
+                segments[c, i, n] = first if n < _EARLY else second
+        found[c, :] = _FAR
+    checks = held_against(room, postures.limb.radii, near, total, places[0], room.places, room.turns, found)
+    early, late = _FAR, _FAR
+    for c in range(found.shape[0]):
+        for n in range(_EARLY):
+            early = min(early, found[c, n])
+        for n in range(_EARLY, total):
+            late = min(late, found[c, n])
+    return early, late, checks
+
+
+@inlined
+def _moments(
+    room: Workroom, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
+) -> int:
+    """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
+    rows, checks = room.blocks, 0
+    early[:], late[:] = _FAR, _FAR
+    for moment in range(1, _MOMENTS + 1):
+        place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
+        count = boxes_around(boxes, place, postures.reach, room.near)
+        if count == 0:
+            continue
+        for b in range(count):
+            box_in_frame(room.near[b], place, turn, room.framed[b])
+        rows[:] = _FAR
+        checks += lower_blocks_in(room.checks, room.tiles, room.spread, room.framed, count, rows)
+        if moment <= _EARLY:
+            _lower(early, rows)
+        if moment >= _LATE:
+            _lower(late, rows)
+    return checks
+
+
+@exact_lean_kernel
+def _lower(row: Floats32, blocks: Floats32) -> None:
+    """Lower the beginning of a row to what is in blocks (B, 16)."""
+    for b in range(blocks.shape[0]):
+        lanes, block = row[b * BLOCK : (b + 1) * BLOCK], blocks[b]
+        for i in range(np.uint64(BLOCK)):
+            lanes[i] = min(lanes[i], block[i])
+
+
+@exact_lean_kernel
+def held_clearance_in(
+    room: Workroom, postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
+) -> tuple[float, int]:
+    """`held_clearance` with room to work in."""
+    late = (_LATE, _MOMENTS + 1)
+    begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
+    near, segments = boxes_around(boxes, places[0], postures.reach + 0.5, room.near), room.segments
+    if near == 0:
+        return float(_FAR), 0
+    for i in range(configuration.shape[0]):
+        room.configurations[0, i] = configuration[i]
+    pose_into(postures.limb, room.limb, room.configurations, int(_ONE), int(_FIRST), segments)
+    total = end - begin
+    for n in range(total):
+        look = (begin + n) * _STRIDE
+        _set_frame(room, n, places, turns, look)
+    for c in range(segments.shape[0]):
+        for i in range(6):
+            for n in range(1, total):
+                segments[c, i, n] = segments[c, i, 0]
+        room.found[c, :] = _FAR
+    checks = held_against(room, postures.limb.radii, near, total, places[0], room.places, room.turns, room.found)
+    return least_of(room.found, room.checks.apart), checks
+
+
+@exact_kernel
+def held_clearance(
+    postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
+) -> tuple[float, int]:
+    """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
+    room = workroom(postures, postures.limb, boxes.shape[0])
+    clearance, checks = held_clearance_in(room, postures, configuration, places, turns, boxes, part)
+    return clearance, checks

@@ -1,0 +1,112 @@
+"""Whether a shown motion runs into the avatar's own body, at any moment.
+
+It is looked at as closely as need be (`own_looks`). An interval that was looked at for an earlier plan is known by its
+content. It is one compiled call.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL
+from elbowroom.body.kinematics import BodyModel
+from elbowroom.body.whole_body import whole_body
+from elbowroom.held import Held, hold
+from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_contents, set_millionths
+from elbowroom.planning.exact.memory.row_index import Known, admit, forget, new_known, place_of
+from elbowroom.planning.exact.sweep.own_samples import OwnParts, least_gaps
+from elbowroom.planning.model.self_pairs import SelfPairs
+from elbowroom.planning.root.path import RootPath
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
+_AFAR = 2.0  # times as much room is left far ahead: what was free from afar stays free when it is near
+_SOON = 4  # key intervals ahead until which a motion is near
+ROOM = 2048  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
+
+
+class Seen(NamedTuple):
+    """Key intervals that were looked at, by the content of both their ends."""
+
+    known: Known
+    arms: Indices  # (S,) the arm that comes nearest, and
+    gaps: Floats  # (S,) its gap, metres
+
+
+class OwnMotion:
+    """One avatar's motion among its own parts."""
+
+    def __init__(self, model: BodyModel, pairs: SelfPairs) -> None:
+        self._parts = hold(OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits))
+        known = new_known(ROOM, 2 * (CONTENT + 2 * LOCAL))
+        self._seen = hold(Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM)))
+
+    def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
+        """The arm, 0 or 1, that runs into the body in each interval (n,) of a shown motion, or -1.
+
+        `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times, the first of which
+        is `ahead` key intervals from now. Where both ends of an interval are as the `goals` (n+1, 11) have them, it
+        does not touch. It leaves room for what no look sees, and farther ahead as much again.
+        """
+        return _contacts(self._parts, self._seen, path.states, keys, rates, goals, path.interval, ahead)
+
+
+@exact_kernel
+def _contacts(
+    parts: Held[OwnParts], seen: Held[Seen], states: Floats, keys: Floats, rates: Floats, goals: Floats,
+    interval: float, ahead: int,
+) -> Indices:  # fmt: skip
+    """See `OwnMotion.contacts`."""
+    it, out = seen.value, np.empty(keys.shape[0] - 1, np.int64)
+    out[:] = -1
+    chosen = _beside(keys, goals)
+    if not chosen.shape[0]:
+        return out
+    width = CONTENT + 2 * LOCAL
+    names = np.empty(keys.shape[0] * width, np.int64)
+    contents = names.reshape(keys.shape[0], width)
+    set_contents(states, keys, contents)
+    for t in range(keys.shape[0]):
+        set_millionths(rates[t], contents[t, CONTENT + LOCAL :])
+    if 2 * it.known.taken[0] > it.gaps.shape[0]:
+        forget(it.known)
+    missing, count = np.empty(chosen.shape[0], np.int64), 0
+    for k in chosen:
+        place = place_of(it.known, names[k * width : (k + 2) * width])
+        if place < 0:
+            missing[count] = k
+            count += 1
+        elif _touches(it.gaps[place], ahead + k):
+            out[k] = it.arms[place]
+    if not count:
+        return out
+    gaps = least_gaps(parts, states, keys, rates, interval, missing[:count])
+    for i in range(count):
+        k, left, right = missing[i], gaps[0, i], min(gaps[1, i], gaps[2, i])
+        place = admit(it.known, names[k * width : (k + 2) * width])
+        it.arms[place], it.gaps[place] = 0 if left <= right else 1, min(left, right)
+        if _touches(it.gaps[place], ahead + k):
+            out[k] = it.arms[place]
+    return out
+
+
+@exact_inner_kernel
+def _beside(keys: Floats, goals: Floats) -> Indices:
+    """The intervals (K,) at whose ends the upper body (n+1, 11) is not as the goals (n+1, 11) have it."""
+    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0])
+    for k in range(chosen.shape[0]):
+        before, natural = natural, is_natural(keys[k + 1], goals[k + 1])
+        if not (before and natural):
+            chosen[count] = k
+            count += 1
+    return chosen[:count]
+
+
+@exact_lean_kernel
+def _touches(gap: float, ahead: int) -> bool:
+    """Whether a gap of parts is too little, so many key intervals ahead."""
+    return bool(gap < _UNSEEN * (1.0 if ahead < _SOON else _AFAR))

@@ -1,0 +1,231 @@
+"""Whether a limb's motion in a key interval is free of everything, at every moment and not only where it was looked at.
+
+Let c and c' be a capsule's clearances at two looks, and L a length such that no point of its axis moves farther between
+them. A point of the axis that has moved by s since the first look has yet to move L - s at most until the second; the
+distance from a set changes by no more than the point moves. So its clearance is at least c - s and at least
+c' - (L - s), and therefore never less than (c + c' - L) / 2. Where that is not enough the part is halved.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.posing import place_pelvis_into
+from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
+from elbowroom.planning.exact.memory.cache_index import admit, find
+from elbowroom.planning.exact.sweep.block_clearances import COMFORT, boxes_around, least_of
+from elbowroom.planning.exact.sweep.motion_bounds import (
+    SWEEP,
+    Chain,
+    Ends,
+    LimbWays,
+    carry,
+    configurations_into,
+    moves_into,
+)
+from elbowroom.planning.exact.sweep.scratch import HALVINGS, Parts, Workroom, held_against, workroom
+from elbowroom.planning.model.frames import compose_into
+from elbowroom.planning.model.limb import carry_frames, pose_into
+from elbowroom.planning.root.path import interpolate_between, rates_at
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+
+ENOUGH = 4e-4  # metres: proven clearance that counts as free; more than rounding, and than the bob's bend between looks
+_UNKNOWN = -np.inf
+_NONE, _UNPOSED = 0, False  # at first; not yet
+
+
+class Carrier(NamedTuple):
+    """What carries a limb through a key interval: a root way, or a waist's way on one."""
+
+    number: int
+    places: Floats  # (SWEEP+1, 3)
+    turns: Floats  # (SWEEP+1, 4)
+    sway: Floats  # (SWEEP,) metres
+    states: Floats  # (16,) the root way's key
+    heights: Floats  # (SWEEP+1, 3) the root way's places
+    waist: Floats  # the waist's way's key; not used where the limb is the waist
+
+
+@exact_lean_kernel
+def _looks(
+    room: Workroom, postures: Postures, posed: bool, count: int, places: Floats, turns: Floats, boxes: Floats,
+    out: Floats32,
+) -> int:  # fmt: skip
+    """Clearances (C, 16) of a motion's capsules, up to `COMFORT` or more; returns the capsules that were checked.
+
+    The first `count` configurations of the room are looked at, in the frames (N, 3), (N, 4); if they are `posed`, their
+    capsules are in the room too.
+    """
+    for c in range(out.shape[0]):
+        row = out[c]
+        for i in range(np.uint64(BLOCK)):
+            row[i] = COMFORT
+    near = boxes_around(boxes, places[0], postures.reach + 0.5, room.near)
+    if near == 0:
+        return 0
+    if not posed:
+        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
+    return int(held_against(room, postures.limb.radii, near, count, places[0], places, turns, out))
+
+
+@exact_lean_kernel
+def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, share: float, levers: Floats) -> float:
+    """The bound on the clearance between two looks that found `before` (C,) and `after` (C,).
+
+    They are `share` of a part of the interval apart, in which points are carried by `sway` and joints move by `moved`.
+    """
+    least = np.inf
+    for c in range(levers.shape[0]):
+        length = share * sway
+        for k in range(3):
+            length += levers[c, k] * (share * moved[k])
+        least = min(least, 0.5 * (before[c] + after[c] - length))
+    return least
+
+
+@inlined
+def _frames_between(room: Workroom, chain: Chain, is_waist: bool, carrier: Carrier, waist: Ends, count: int) -> None:
+    """The carrier's frames at the first `count` of the room's parts of an interval, into the room.
+
+    The pelvis' height is read between the looks; it bends by less than `ENOUGH` counts in there.
+    """
+    states, heights, places, shares = carrier.states, carrier.heights, room.places, room.shares
+    interval, begin, end = states[0], states[1:8], states[8:15]
+    rates = rates_at(begin, end)
+    for n in range(count):
+        interpolate_between(begin, end, rates, shares[n], interval, room.states[n])
+    place_pelvis_into(chain.hips, room.states, room.level, count, places, room.turns)
+    for n in range(count):
+        look = min(int(shares[n] * SWEEP), SWEEP - 1)
+        part = shares[n] * SWEEP - look
+        places[n, 1] = heights[look, 1] + part * (heights[look + 1, 1] - heights[look, 1])
+    if not is_waist:
+        configurations_into(waist, interval, shares, count, room.waists)
+        carry_frames(chain.waist, room.stem, room.waists, count)
+        compose_into(places, room.turns, room.stem.places, room.stem.turns, count, places, room.turns)
+
+
+@exact_lean_kernel
+def _enter(parts: Parts, now: int, n: int, at: float, look: int, before: Floats32, after: Floats32) -> None:
+    """Note a part that is not proven yet."""
+    parts.at[now, n], parts.look[now, n] = at, look
+    ends = parts.ends[now, n]
+    for c in range(before.shape[0]):
+        ends[0, c], ends[1, c] = before[c], after[c]
+
+
+@inlined
+def _refined(
+    room: Workroom, postures: Postures, levers: Floats, chain: Chain, carrier: Carrier, waist: Ends, ends: Ends,
+    boxes: Floats,
+) -> tuple[float, int]:  # fmt: skip
+    """The proven clearance of a motion whose looks found what is in the room, and the capsules checked.
+
+    Parts for which the bound is not enough are halved, up to `HALVINGS` times, sixteen looks at once.
+    """
+    is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], room.moves, carrier.sway
+    columns, found, parts, shares = room.coarse.T, room.found.T, room.parts, room.shares
+    open_parts, now, proven, checks, share = int(_NONE), int(_NONE), np.inf, 0, 1.0
+    for i in range(SWEEP):
+        low = _between(columns[i], columns[i + 1], sway[i], moved[i], 1.0, levers)
+        if low < ENOUGH:
+            _enter(parts, now, open_parts, i / SWEEP, i, columns[i], columns[i + 1])
+            open_parts += 1
+        else:
+            proven = min(proven, low)
+    for _ in range(HALVINGS):
+        share *= 0.5
+        left = int(_NONE)
+        for begin in range(0, open_parts, BLOCK):
+            batch = min(BLOCK, open_parts - begin)
+            for n in range(batch):
+                shares[n] = parts.at[now, begin + n] + share / SWEEP
+            _frames_between(room, chain, is_waist, carrier, waist, batch)
+            configurations_into(ends, interval, shares, batch, room.configurations)
+            checks += _looks(room, postures, bool(_UNPOSED), batch, room.places, room.turns, boxes, room.found)
+            for n in range(batch):
+                one, i = parts.ends[now, begin + n], parts.look[now, begin + n]
+                for half in range(2):
+                    before = one[0] if half == 0 else found[n]
+                    after = found[n] if half == 0 else one[1]
+                    low = _between(before, after, sway[i], moved[i], share, levers)
+                    if low >= ENOUGH:
+                        proven = min(proven, low)
+                        continue
+                    at = parts.at[now, begin + n] + half * share / SWEEP
+                    _enter(parts, 1 - now, left, at, i, before, after)
+                    left += 1
+        open_parts, now = left, 1 - now
+        if open_parts == 0:
+            return proven, checks
+    return 0.0, checks
+
+
+@exact_lean_kernel
+def _set_key(number: int, ends: Ends, key: Floats) -> None:
+    """Of a limb's way with the velocities and postures `ends` on the carrier's way `number`."""
+    first, velocity, last, next_velocity = ends
+    size = first.shape[0]
+    key[0] = number
+    for i in range(size):
+        key[1 + i], key[1 + size + i] = first[i], velocity[i]
+        key[1 + 2 * size + i], key[1 + 3 * size + i] = last[i], next_velocity[i]
+
+
+@exact_lean_kernel
+def limb_way_in(
+    room: Workroom, ways: LimbWays, postures: Postures, levers: Floats, chain: Chain, carrier: Carrier, ends: Ends,
+    boxes: Floats, wanted: float,
+) -> tuple[int, int]:  # fmt: skip
+    """`limb_way` with room to work in."""
+    _set_key(carrier.number, ends, room.key)
+    at = find(ways.slots, room.key)
+    if at >= 0 and (ways.proven[at] > _UNKNOWN or ways.least[at] < wanted):
+        return int(at), 0
+    if at < 0:
+        at = admit(ways.slots, room.key)
+    is_waist, interval, count = postures.limb.is_waist, carrier.states[0], SWEEP + 1
+    places, turns = carrier.places, carrier.turns
+    for i in range(count):
+        room.shares[i] = i / SWEEP
+    configurations_into(ends, interval, room.shares, count, room.configurations)
+    moves_into(ends, interval, SWEEP, room.rates, room.moves)
+    if is_waist:
+        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
+        carry(chain, room.limb, room.moves, places, turns, carrier.sway, ways.places[at], ways.turns[at], ways.sway[at])
+    checks = _looks(room, postures, is_waist, count, places, turns, boxes, room.coarse)
+    least = least_of(room.coarse, room.checks.apart)
+    ways.least[at], ways.proven[at] = least, _UNKNOWN
+    if least < wanted:
+        return int(at), checks
+    key = carrier.waist
+    size = (key.shape[0] - 1) // 4
+    waist = key[1 : 1 + size], key[1 + size : 1 + 2 * size], key[1 + 2 * size : 1 + 3 * size], key[1 + 3 * size :]
+    ways.proven[at], more = _refined(room, postures, levers, chain, carrier, waist, ends, boxes)
+    return int(at), checks + more
+
+
+@exact_kernel
+def limb_way(
+    ways: LimbWays,
+    postures: Postures,
+    levers: Floats,
+    chain: Chain,
+    carrier: Carrier,
+    ends: Ends,
+    boxes: Floats,
+    wanted: float,
+) -> tuple[int, int]:
+    """The slot of a limb's way through an interval, and the capsules that had to be checked for it.
+
+    It goes from posture to posture with the velocities `ends`, on what carries it. Where less than the `wanted`
+    clearance is found at the looks, what lies between them is not looked into.
+    """
+    room = workroom(postures, chain.waist, boxes.shape[0])
+    at, checks = limb_way_in(room, ways, postures, levers, chain, carrier, ends, boxes, wanted)
+    return at, checks

@@ -1,0 +1,117 @@
+"""What the kernels of a search work on, made once for a search: the smaller the work, the dearer new arrays are."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
+from elbowroom.planning.exact.sweep.block_clearances import (
+    CheckRoom,
+    capsule_clearances_in,
+    check_room,
+    place_capsules,
+    spread_balls,
+)
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
+from elbowroom.planning.model.limb import Limb, LimbRoom, limb_room
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+
+HALVINGS = 4  # of the parts of a key interval in a proof
+
+
+class Parts(NamedTuple):
+    """Parts of an interval that are not proven yet, in two sets that take turns."""
+
+    at: Floats  # (2, N) where they begin
+    look: Longs  # (2, N) the look before them
+    ends: Floats32  # (2, N, 2, C) clearances at both their ends
+
+
+class Workroom(NamedTuple):
+    """Room for sixteen looks at a limb with C capsules and d components, past B boxes."""
+
+    checks: CheckRoom
+    limb: LimbRoom
+    stem: LimbRoom  # of the limb that carries it
+    near: Floats  # (B, 15) boxes
+    framed: Floats  # (B, 15) boxes in the limb's frame
+    tiles: Floats32  # blocks of all postures, flat
+    spread: Floats32  # (5, W) balls around all postures, as `spread_balls` leaves them
+    blocks: Floats32  # (W/16, 16) of all postures
+    segments: Floats32  # (C, 6, 16) in the limb's frame
+    coarse: Floats32  # (C, 16) clearances at the looks
+    found: Floats32  # (C, 16) clearances between them
+    configurations: Floats  # (16, d)
+    waists: Floats  # (16, d of the waist)
+    states: Floats  # (16, 7) of the root
+    level: Floats  # (16, 2) zeros: hips that are not lowered
+    places: Floats  # (16, 3) of frames
+    turns: Floats  # (16, 4)
+    at: Floats  # (16, 3) places seen from the first
+    shares: Floats  # (16,) of the interval
+    moves: Floats  # (SWEEP, 3) of the joints, between looks
+    rates: Floats  # (SWEEP+2, 4) of the joints at the looks; the last row is for their jerks
+    key: Floats  # (1 + 4 d,) of a limb's way
+    axis: Floats  # (6,) of a capsule
+    parts: Parts
+
+
+@exact_inner_kernel
+def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
+    """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
+    limb, room = postures.limb, SWEEP << HALVINGS
+    count, size = limb.radii.shape[0], postures.configurations.shape[1]
+    checks = check_room(postures.lanes.shape[0] * count, count, boxes)
+    spread = np.empty(checks.spread.shape, np.float32)
+    spread_balls(postures.balls, spread)
+    return Workroom(
+        checks,
+        limb_room(limb, int(BLOCK)),
+        limb_room(stem, int(BLOCK)),
+        np.empty((boxes, 15)),
+        np.empty((boxes, 15)),
+        postures.lanes.reshape(postures.lanes.size),
+        spread,
+        np.empty((postures.lanes.shape[0], BLOCK), np.float32),
+        np.empty((count, 6, BLOCK), np.float32),
+        np.empty((count, BLOCK), np.float32),
+        np.empty((count, BLOCK), np.float32),
+        np.empty((BLOCK, size)),
+        np.empty((BLOCK, 3)),
+        np.empty((BLOCK, 7)),
+        np.zeros((BLOCK, 2)),
+        np.empty((BLOCK, 3)),
+        np.empty((BLOCK, 4)),
+        np.empty((BLOCK, 3)),
+        np.empty(BLOCK),
+        np.empty((SWEEP, 3)),
+        np.empty((SWEEP + 2, 4)),
+        np.empty(1 + 4 * size),
+        np.empty(6),
+        Parts(np.empty((2, room)), np.empty((2, room), np.int64), np.empty((2, room, 2, count), np.float32)),
+    )
+
+
+@exact_lean_kernel
+def held_against(
+    room: Workroom, radii: Floats32, near: int, count: int, origin: Floats, places: Floats, turns: Floats, out: Floats32
+) -> int:
+    """Lower `out` (C, 16) to the clearances of the room's first `count` capsules from its first `near` boxes.
+
+    The capsules are in frames at `places` (N, 3), `turns` (N, 4); all is reckoned from `origin`, a place near to them.
+    Returns the capsules that were checked.
+    """
+    at = room.at
+    for n in range(count):
+        for i in range(3):
+            at[n, i] = places[n, i] - origin[i]
+    for b in range(near):
+        for i in range(3):
+            room.near[b, i] -= origin[i]
+    place_capsules(room.segments, count, radii, at, turns, room.checks.lanes)
+    return int(capsule_clearances_in(room.checks, room.near, near, out))

@@ -1,0 +1,79 @@
+"""A recorded swing on a body that is not the recorded one: arms are lifted out of hips and trunk.
+
+A stride fits the build that it was recorded on. On broader hips, a thicker trunk or a bigger head its hands would pass
+through them. So at each phase the arms are abducted, as little as it takes, until they keep as clear of the body as in
+the stock walk; where that is not enough they go a part of the way back to the arm at rest.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import BodyModel, body_model
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.swing import KEYS, Swing, resting
+from elbowroom.planning.model.self_pairs import SelfPairs, self_clearances, self_pairs
+
+Floats = NDArray[np.float64]
+
+_ABDUCTION = 1  # component of an arm
+_LIFTS = np.deg2rad(np.arange(0.0, 42.0, 2.0))  # by which an arm may be abducted, the least first
+_EASES = (0.0, 0.25, 0.5, 0.75, 1.0)  # parts of the way back to rest, the least first
+_SPREAD, _SMOOTH = 5, 1.5  # keys to which a change reaches, and over which it is smoothed
+
+
+def fitted(motions: MotionSet, humanoid: Humanoid) -> MotionSet:
+    """The same motions with a swing that suits this body."""
+    if motions.swing is None:
+        return motions
+    model = body_model(humanoid)
+    return replace(motions, swing=_fitted(motions.swing, model, self_pairs(model)))
+
+
+def _fitted(swing: Swing, model: BodyModel, pairs: SelfPairs) -> Swing:
+    lifts, eases = np.zeros((2, KEYS)), np.zeros((2, KEYS))
+    settled = np.zeros((2, KEYS), np.bool_)
+    for ease in _EASES:
+        for lift in _LIFTS:
+            clear = _clear(swing, model, pairs, np.full((2, KEYS), lift), np.full((2, KEYS), ease)) & ~settled
+            lifts[clear], eases[clear] = lift, ease
+            settled |= clear
+        if settled.all():
+            break
+    eases[~settled] = 1.0
+    return replace(swing, keys=_changed(swing, _smooth(lifts), _smooth(eases)))
+
+
+def _clear(swing: Swing, model: BodyModel, pairs: SelfPairs, lifts: Floats, eases: Floats) -> NDArray[np.bool_]:
+    """Whether left and right arm keep clear of the body and of each other at each key, (2, KEYS)."""
+    roots = np.zeros((KEYS, ROOT_STATE))
+    roots[:, 3], roots[:, 6] = swing.speed, np.arange(KEYS) / KEYS
+    keys = _changed(swing, lifts, eases)
+    uppers = np.concatenate([keys[group] for group in LOCAL_GROUPS], axis=1)[:KEYS]
+    clear = self_clearances(model, pairs, roots, uppers) >= 0.0
+    both: NDArray[np.bool_] = clear[:2] & clear[2]
+    return both
+
+
+def _smooth(change: Floats) -> Floats:
+    """The same and more, without jumps along the stride."""
+    # Takes a tenth of a start to import, and most walk with the stock swing.
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    spread = maximum_filter1d(change, _SPREAD, axis=1, mode="wrap")
+    smooth: Floats = gaussian_filter1d(spread, _SMOOTH, axis=1, mode="wrap")
+    return smooth
+
+
+def _changed(swing: Swing, lifts: Floats, eases: Floats) -> dict[DofGroup, Floats]:
+    """The keys with the arms eased towards rest and lifted, each (2, KEYS) of left and right arm."""
+    keys = dict(swing.keys)
+    for group, lift, ease in zip(LOCAL_GROUPS[1:], lifts, eases, strict=True):
+        rows = keys[group] + np.append(ease, ease[0])[:, None] * (resting(group) - keys[group])
+        rows[:, _ABDUCTION] += np.append(lift, lift[0])
+        keys[group] = clamp(group, rows)
+    return keys

@@ -1,0 +1,93 @@
+"""The way that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.planning.root.hull import way_is_open
+from elbowroom.planning.root.line import TravelLine, straight_route
+from elbowroom.planning.root.lower_body import LowerBody, Neighbours
+from elbowroom.planning.root.plan import RootPlannerSettings
+from elbowroom.planning.root.route import find_route, route_points, shortened_route
+from elbowroom.world.walkable import WalkableMap, walkable_window
+
+Floats = NDArray[np.float64]
+
+_BEHIND = 0.64  # metres behind the start that a way round may use
+_MORE = 1e-3  # metres
+_LOOKS = 0.04  # metres between looks along a way
+
+
+class Way(NamedTuple):
+    """A way to go."""
+
+    route: Floats  # (m, 2) corner points, x and z
+    detour: bool  # whether it leads round something
+    ends: bool  # whether it ends before an obstacle
+    checks: int  # places whose clearance was computed
+
+
+class WayFinder:
+    """Finds ways for the standing figure of one body."""
+
+    def __init__(self, settings: RootPlannerSettings, body: LowerBody) -> None:
+        self._settings, self._body = settings, body
+        self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
+
+    def ahead(self, start: RootState, line: TravelLine, boxes: Neighbours, sight: float) -> Way:
+        """The way from a start along a line of travel among `boxes`, `sight` metres of it."""
+        straight = straight_route(float(start.x), float(start.z), line, sight)
+        if way_is_open(straight, self.half, boxes.ground):
+            return Way(straight, detour=False, ends=False, checks=0)
+        free, checks = self._free_length(straight, boxes)
+        if free >= sight:
+            return Way(straight, detour=False, ends=False, checks=checks)
+        return self._round(straight, free, line, boxes, sight, checks)
+
+    def _free_length(self, route: Floats, boxes: Neighbours) -> tuple[float, int]:
+        """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
+        points, along = route_points(route, _LOOKS)
+        clear = self._body.standing_clearance(boxes, points)
+        leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
+        blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
+        return float(along[blocked[0]]) if len(blocked) else math.inf, len(points)
+
+    def _round(
+        self,
+        straight: Floats,
+        free: float,
+        line: TravelLine,
+        boxes: Neighbours,
+        sight: float,
+        checks: int,
+    ) -> Way:
+        """The way round what stands `free` metres on in the straight way."""
+        s, (ahead, left) = self._settings, line.coordinates(*straight[0].tolist())
+        windows: dict[float, WalkableMap] = {}
+        for margin, cell in s.searches:
+            if cell not in windows:
+                windows[cell] = self._window(line, ahead, cell, boxes, sight)
+                checks += windows[cell].clearance.size
+            behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
+            route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
+            gained = line.coordinates(*route[-1])[0] - ahead
+            if gained > free + s.worth_it:
+                return Way(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
+        return Way(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
+
+    def _window(self, line: TravelLine, ahead: float, cell: float, boxes: Neighbours, sight: float) -> WalkableMap:
+        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
+        s = self._settings
+        behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
+        shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
+        origin = line.point(ahead - behind, -middle)
+        roomy = max(margin for margin, _ in s.searches) + s.route.roomy
+        return walkable_window(boxes.table, self._body.stance, origin, line.heading, shape, cell, roomy)
+
+
+def _cells(length: float, cell: float) -> float:
+    """`length` rounded up to whole cells, metres."""
+    return math.ceil(length / cell - 1e-9) * cell

@@ -1,0 +1,201 @@
+"""Past what the straight way leaves no room for: aside, turned sideways, or both, as cheaply as possible.
+
+Along the line of travel lies a grid of places, and at each of them the body may face the line's way or be turned away
+from it. The cheapest way through that grid, by dynamic programming over its rows, is an *evasion*: how far to the side
+to walk, and how far to turn the body, at each step ahead. Costs are seconds: sideways one walks slower, and every metre
+aside, every turn and every lack of room costs some.
+
+Legs and pelvis must be free, as they are posed in a stride of that direction. For the trunk and the hanging arms a lack
+of room is only dear, because they can bend: how dear is what tells one evasion from another.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.planning.root.grid_search import Prices, cheapest, pulled_taut
+from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line_rooms import Grid, LineRooms
+from elbowroom.planning.root.profile import Profile
+from elbowroom.planning.root.room import Room
+from elbowroom.planning.root.turned_body import TurnedBody
+from elbowroom.world.moving import MovingBoxes
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_SLOW = 0.1  # m/s along the line
+_GAIN = 2.0  # m/s^2, of speeding up
+
+
+@dataclass(frozen=True)
+class EvasionSettings:
+    """The grid and what things cost. Metres, radians, seconds."""
+
+    step: float = 0.1  # between rows
+    aside: float = 0.04  # between columns
+    sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
+    punctual: float = 0.2  # seconds before and after that a row may be reached in
+    polite: float = 0.05  # metres by which what moves is taken to be larger
+    cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
+    shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
+    widest: float = 0.48  # from the line of travel, to either side
+    turns: int = 4  # turned postures to either side
+    most: float = 0.5 * math.pi  # the body is turned by at most this
+    margin: float = 0.012  # clearance that legs and pelvis must have
+    swerving: float = 0.02  # more of it where the body turns on the way
+    comfort: float = 0.06  # clearance below which it costs
+    beside: float = 2.0  # of each metre walked, for the squared distance from the line
+    leftward: float = 0.5  # of each metre walked, for each metre to the left, where something moves: keep right
+    turned: float = 0.15  # of each metre walked, for the squared angle
+    shifting: float = 0.005  # of moving to the next column within a row
+    turning: float = 0.05  # of going to the next turn within a row
+    spot: float = 0.3  # of going to the next turn on the spot, before setting out
+    legs: float = 30.0  # of each metre walked, for each metre of room that the legs lack
+    # The same for the trunk and for hanging arms: an evasion for each pair.
+    bodies: tuple[tuple[float, float], ...] = ((60.0, 30.0), (60.0, 2.0))
+    keeping: float = 0.004  # of each row: what another way must be better than the one being followed
+    ends: tuple[float, float] = (3.0, 0.2)  # for the squared distance and the squared angle at the end
+    slack: float = 0.03  # clearance beyond which a way is free to be pulled taut
+
+    @property
+    def angles(self) -> Floats:
+        """The turns (T,) of the body from the line's facing."""
+        return np.linspace(-self.most, self.most, 2 * self.turns + 1)
+
+
+# Farther to the side, with more room, on a coarser grid that is no larger; as steep as the fine one.
+WIDE = EvasionSettings(
+    step=0.2, aside=0.08, widest=1.2, comfort=0.15, slack=0.12, shifting=0.01, turning=0.5, keeping=0.008,
+    cares=(0.0,), bodies=((40.0, 40.0),),
+)  # fmt: skip
+
+
+class Evasion(NamedTuple):
+    """A way through the grid."""
+
+    profile: Profile
+    whole: bool  # whether it leads to the last row
+    cost: float  # seconds
+
+
+class EvasionFinder:
+    """Finds evasions for one humanoid among some boxes. What it keeps is what it would find again."""
+
+    def __init__(self, humanoid: Humanoid, table: Floats, settings: EvasionSettings | None = None) -> None:
+        self.settings = s = settings or EvasionSettings()
+        grid = Grid(s.step, s.aside, 2 * round(s.widest / s.aside) + 1, s.comfort)
+        self._rooms = LineRooms(TurnedBody(humanoid), table, s.angles, grid)
+
+    def ahead_of(
+        self,
+        line: TravelLine,
+        start: RootState,
+        sight: float,
+        speeds: tuple[float, float],
+        moving: MovingBoxes,
+        time: float,
+    ) -> "EvasionGrid":
+        """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
+
+        The first row is that next to the start, of rows at whole steps from the line's first point: so they are found
+        again from plan to plan. Where something moves it is at the start itself. What moves is where it will be about
+        when a row is reached, by who speeds up at once.
+        """
+        s, ahead = self.settings, line.coordinates(start.x, start.z)[0]
+        first, rows = ahead / s.step if len(moving) else float(round(ahead / s.step)), math.ceil(sight / s.step) + 1
+        passing = self._passing(moving, time, s.step * np.arange(float(rows)), start, speeds[0])
+        room, slowness = self._rooms.ahead(line, speeds, first, rows, passing)
+        return EvasionGrid(s, line, start, slowness, first * s.step, room, len(moving) > 0)
+
+    def _passing(self, moving: MovingBoxes, time: float, ahead: Floats, start: RootState, speed: float) -> Floats:
+        """Rows (n, M, 15) of what moves about when places `ahead` (n,) metres are reached, a little larger."""
+        s, then = self.settings, time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)
+        rows = moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual)
+        rows[..., [12, 14]] += s.polite
+        return rows
+
+
+def _arrival(ahead: Floats, now: float, speed: float) -> Floats:
+    """Seconds (n,) until one is `ahead` (n,) metres on, who walks `now` m/s and speeds up to `speed`."""
+    gaining = max(speed - now, 0.0) / _GAIN
+    gained = 0.5 * (now + speed) * gaining
+    early = (np.sqrt(now * now + 2.0 * _GAIN * np.minimum(ahead, gained)) - now) / _GAIN
+    seconds: Floats = np.where(ahead < gained, early, gaining + (ahead - gained) / speed)
+    return seconds
+
+
+class EvasionGrid(NamedTuple):
+    """The clearance of the body along a line of travel."""
+
+    settings: EvasionSettings
+    line: TravelLine
+    start: RootState
+    slowness: Floats  # (T,) seconds for each metre, in each turn
+    first: float  # metres: the first row's place on the line
+    room: Room
+    passing: bool  # whether something moves
+
+    @property
+    def cells(self) -> int:
+        """The number of cells whose clearance was computed."""
+        return int(self.room.shift.size)
+
+    def cheapest(self, bodies: tuple[float, float], kept: Profile | None, care: float = 0.0) -> Evasion:
+        """The cheapest way, with `bodies` as in the settings; `kept` is the one being followed.
+
+        Legs keep `care` metres more than the settings ask for.
+        """
+        s, rows = self.settings, self.room.clear.shape[1]
+        standing = s.step * (self.slowness - self.slowness.min() + s.turned * s.angles**2)
+        ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
+        leftward = s.step * s.aside * s.leftward if self.passing else 0.0
+        prices = Prices(
+            s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, leftward, s.shifting, s.turning,
+            s.spot, (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
+        )  # fmt: skip
+        favoured = np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.first, s.step, rows))
+        left, turned = self._at_first_row()
+        begin = self._cells(np.array([left]), np.array([turned]))[0]
+        cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
+        places = pulled_taut(self.room, cells, left, s.aside, s.slack)
+        way = np.stack([places, s.angles[cells[:, 1]]], axis=1)
+        if cells[0, 1] == begin[1]:
+            way[0, 1] = turned
+        return Evasion(Profile(self.first, s.step, way), len(way) == rows, cost)
+
+    def _at_first_row(self) -> tuple[float, float]:
+        """Distance from the line and turn at the first row's place, of who moves on as the start does.
+
+        No steeper than the grid leads.
+        """
+        s, start, line = self.settings, self.start, self.line
+        ahead, left = line.coordinates(start.x, start.z)
+        turned = math.remainder(start.heading - line.facing, math.tau)
+        sine, cosine = math.sin(start.heading - line.heading), math.cos(start.heading - line.heading)
+        along, across = start.forward * cosine - start.lateral * sine, start.forward * sine + start.lateral * cosine
+        if along < _SLOW:
+            return left, turned
+        steps, swing = (self.first - ahead) / s.step, s.most / s.turns
+        aside = min(max(across / along * s.step, -s.aside), s.aside)
+        swung = min(max(start.turn / along * s.step, -swing), swing)
+        return left + steps * aside, turned + steps * swung
+
+    def _cells(self, left: Floats, turned: Floats) -> Indices:
+        """The columns and turns (N, 2) nearest to distances from the line and to turns (N,)."""
+        s, (columns, turns) = self.settings, self.room.clear.shape[2:]
+        column = np.clip(np.rint(left / s.aside) + columns // 2, 0, columns - 1)
+        turn = np.clip(np.rint(turned / s.most * s.turns) + s.turns, 0, turns - 1)
+        return np.stack([column, turn], axis=1).astype(np.int64)
+
+
+def _rows_at(profile: Profile, first: float, step: float, count: int) -> tuple[Floats, Floats]:
+    """Distance from the line and turn of a profile at rows of a grid, (count,) each."""
+    at = (first + step * np.arange(count) - profile.first) / profile.step
+    known = np.arange(len(profile.rows))
+    return np.interp(at, known, profile.rows[:, 0]), np.interp(at, known, profile.rows[:, 1])

@@ -1,0 +1,54 @@
+"""What the root planner remembers: the line of travel, where the last path led, and how it left the line."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.planning.command import Command
+from elbowroom.planning.root.line import TravelLine, asked_direction, new_line
+from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.profile import Profile
+
+Floats = NDArray[np.float64]
+
+Evading = tuple[Profile, TravelLine] | None  # the evasion being followed, and the line that it leads from
+
+_TURNED = 0.05  # radians
+_NEAR = 0.5  # metres: who is farther away than this does not go on from a path
+
+
+class RootMemory(NamedTuple):
+    """What is known of the plans before; nothing at first."""
+
+    line: TravelLine | None = None  # of the command that is being held
+    last: Floats | None = None  # (n+1, 7) states of the last path
+    evading: Evading = None
+
+    def travel_line(self, start: RootState, command: Command, motion: RootMotionSettings, widest: float) -> TravelLine:
+        """The line that is being followed, or a new one from here if the command or the place has changed.
+
+        `widest` is the breadth in metres of a way round. Who was turned aside by an evasion still means the way that it
+        led from.
+        """
+        line = self.line
+        if line is not None and line.asked == asked_direction(command) and self._continues(start, line, widest):
+            return line
+        if self.evading is not None and command.direction is None and self.still_turned(start, widest):
+            start = start._replace(heading=self.evading[1].facing, turn=0.0)
+        return new_line(start, command, motion)
+
+    def still_turned(self, start: RootState, widest: float) -> bool:
+        """Whether the body is turned away from where the user means it to face."""
+        if self.evading is None or not self._continues(start, self.evading[1], widest):
+            return False
+        return abs(math.remainder(start.heading - self.evading[1].facing, math.tau)) > _TURNED
+
+    def _continues(self, start: RootState, line: TravelLine, widest: float) -> bool:
+        """Whether a start goes on from the last path, within the breadth of a way round."""
+        if self.last is None or abs(line.coordinates(start.x, start.z)[1]) >= widest:
+            return False
+        places = self.last[:, :2].tolist()
+        return any(math.hypot(x - start.x, z - start.z) < _NEAR for x, z in places)

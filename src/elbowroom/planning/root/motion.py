@@ -1,0 +1,250 @@
+"""How a root can move: steps of constant acceleration from key frame to key frame, steered along a route or braked.
+
+Within a key interval the ground acceleration and the heading's are constant. `interpolate_root` shows such a step
+exactly, so every bound on speed and acceleration holds at all times and not only at key frames.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait import phase_rate
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
+_FIRST = 0
+_STILL = 1e-9  # lengths and speeds that are divided by are at least this
+_REST = 1e-6  # m/s and rad/s: what is slower stands
+_SIDLE = 0.6  # radians: the greatest angle between the way and the body's front when walking forward
+_RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
+_AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
+_NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
+
+
+@dataclass(frozen=True)
+class RootMotionSettings:
+    """What the legs can do. Metres, radians, seconds."""
+
+    walk_speed: float = 1.1
+    run_speed: float = 2.2
+    back_speed: float = 0.7
+    strafe_speed: float = 0.6
+    turn_rate: float = 2.5  # greatest heading rate
+    acceleration: float = 2.0
+    braking: float = 3.0
+    turn_acceleration: float = 14.0
+
+
+class MotionBounds(NamedTuple):
+    """The bounds that the kernels need."""
+
+    turn_rate: float
+    acceleration: float
+    braking: float
+    turn_acceleration: float
+    quickness: float = 1.0  # strides of the body for one of an average adult, see `body.gait`
+
+
+class Travel(NamedTuple):
+    """How a route is walked."""
+
+    speed: float  # wanted speed along the route, m/s
+    facing: float  # heading to hold; used unless `turns`
+    turns: bool  # whether the body turns to where it goes
+    stops: bool  # whether it must stand at the route's end
+
+
+@exact_inner_kernel
+def wrapped(angle: float) -> float:
+    """The same angle in [-pi, pi)."""
+    return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
+
+
+@inlined
+def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, quickness: float) -> None:
+    """Write state k+1: velocities change linearly from those of state k to (vx, vz) on the ground and `turn`."""
+    a, b = states[k], states[k + 1]
+    sine, cosine = np.sin(a[2]), np.cos(a[2])
+    b[0] = a[0] + 0.5 * interval * (a[3] * sine + a[4] * cosine + vx)
+    b[1] = a[1] + 0.5 * interval * (a[3] * cosine - a[4] * sine + vz)
+    b[2] = a[2] + 0.5 * interval * (a[5] + turn)
+    sine, cosine = np.sin(b[2]), np.cos(b[2])
+    b[3], b[4], b[5] = vx * sine + vz * cosine, vx * cosine - vz * sine, turn
+    b[6] = a[6]
+    strides, rates, between = 0.0, rates_at(a, b), np.empty(ROOT_STATE)
+    for i in range(_PHASE_STEPS):
+        interpolate_between(a, b, rates, (i + 0.5) / _PHASE_STEPS, interval, between)
+        strides += phase_rate(between[3], between[4], between[5])
+    b[6] = a[6] + quickness * strides * interval / _PHASE_STEPS
+
+
+@exact_inner_kernel
+def limited_step(
+    states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds
+) -> None:
+    """Step towards the wanted velocities as far as the accelerations allow."""
+    a = states[k]
+    sine, cosine = np.sin(a[2]), np.cos(a[2])
+    ux, uz = a[3] * sine + a[4] * cosine, a[3] * cosine - a[4] * sine
+    slows = vx * vx + vz * vz < ux * ux + uz * uz
+    most = (bounds.braking if slows else bounds.acceleration) * interval
+    dx, dz = vx - ux, vz - uz
+    change = np.sqrt(dx * dx + dz * dz)
+    part = min(1.0, most / max(change, _STILL))
+    swing = bounds.turn_acceleration * interval
+    rate = a[5] + min(max(turn - a[5], -swing), swing)
+    _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds.quickness)
+
+
+@exact_inner_kernel
+def turn_towards(state: Floats, heading: float, interval: float, bounds: MotionBounds) -> float:
+    """Heading rate at the end of the next step that brings the body round to `heading` without overshoot."""
+    error = wrapped(heading - state[2])
+    gain = min(_RESPONSE, 1.0 / interval)
+    rate: float = gain * (error - 0.5 * state[5] * interval) / (1.0 + 0.5 * gain * interval)
+    return min(max(rate, -bounds.turn_rate), bounds.turn_rate)
+
+
+@exact_kernel
+def brake(states: Floats, first: int, interval: float, bounds: MotionBounds) -> None:
+    """Fill the states after `first` by slowing down to a stand as fast as allowed."""
+    for k in range(first, states.shape[0] - 1):
+        limited_step(states, k, 0.0, 0.0, 0.0, interval, bounds)
+
+
+@exact_kernel
+def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds) -> None:
+    """Fill the states by holding `wanted` (3,): velocity forward and to the left in the body's axes, heading rate."""
+    for k in range(states.shape[0] - 1):
+        swing = bounds.turn_acceleration * interval
+        rate = states[k, 5] + min(max(wanted[2] - states[k, 5], -swing), swing)
+        heading = states[k, 2] + 0.5 * interval * (states[k, 5] + rate)
+        sine, cosine = np.sin(heading), np.cos(heading)
+        vx, vz = wanted[0] * sine + wanted[1] * cosine, wanted[0] * cosine - wanted[1] * sine
+        limited_step(states, k, vx, vz, wanted[2], interval, bounds)
+
+
+@inlined
+def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, float, float]:
+    """The point `look_ahead` metres along the route after the point nearest to (x, z), and the way left to its end."""
+    best, leg, part = np.inf, 0, 0.0
+    for i in range(route.shape[0] - 1):
+        dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
+        length = max(dx * dx + dz * dz, _STILL)
+        t = min(max(((x - route[i, 0]) * dx + (z - route[i, 1]) * dz) / length, 0.0), 1.0)
+        distance = (route[i, 0] + t * dx - x) ** 2 + (route[i, 1] + t * dz - z) ** 2
+        if distance < best:
+            best, leg, part = distance, i, t
+    left, ahead = 0.0, look_ahead
+    aim_x, aim_z = route[-1, 0], route[-1, 1]
+    found = False
+    for i in range(leg, route.shape[0] - 1):
+        dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
+        start = part if i == leg else 0.0
+        length = np.sqrt(dx * dx + dz * dz)
+        rest = (1.0 - start) * length
+        if not found and rest >= ahead:
+            t = start + ahead / max(length, _STILL)
+            aim_x, aim_z, found = route[i, 0] + t * dx, route[i, 1] + t * dz, True
+        ahead -= rest
+        left += rest
+    return aim_x, aim_z, left
+
+
+@exact_kernel
+def follow(states: Floats, route: Floats, travel: Travel, interval: float, bounds: MotionBounds) -> None:
+    """Fill the states by walking along `route` (m, 2), corner points x, z on the ground."""
+    look_ahead = _AIM + _AIM_LATER * travel.speed
+    for k in range(states.shape[0] - 1):
+        x, z, heading = states[k, 0], states[k, 1], states[k, 2]
+        aim_x, aim_z, left = _aim(route, x, z, look_ahead)
+        speed = travel.speed
+        if travel.stops:
+            now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
+            speed = min(speed, np.sqrt(bounds.acceleration * max(0.0, left - 0.5 * now * interval)))
+        way = heading
+        if (aim_x - x) ** 2 + (aim_z - z) ** 2 > 1e-6:
+            way = np.arctan2(aim_x - x, aim_z - z)
+        turn = turn_towards(states[k], way if travel.turns else travel.facing, interval, bounds)
+        if travel.turns:
+            front = heading + 0.5 * interval * (states[k, 5] + turn)
+            error = wrapped(way - front)
+            speed *= min(max(1.25 * np.cos(error), 0.0), 1.0)
+            way = front + min(max(error, -_SIDLE), _SIDLE)
+        limited_step(states, k, speed * np.sin(way), speed * np.cos(way), turn, interval, bounds)
+
+
+@exact_kernel
+def stopping_states(
+    states: Floats, interval: float, bounds: MotionBounds, spacing: float, wanted: Bools
+) -> tuple[Floats, Indices]:
+    """States (M, 7) of braking to a stand from key states but the first, and the key state of each (M,).
+
+    They are at most `spacing` seconds apart, in order of the key states; `wanted` (n,) says which of these have a stop.
+    """
+    count = int(np.ceil(interval / spacing))
+    longest = 0.0
+    for k in range(1, states.shape[0]):
+        longest = max(longest, np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2) / bounds.braking)
+        longest = max(longest, abs(states[k, 5]) / bounds.turn_acceleration)
+    steps = int(np.ceil(longest / interval)) + 1
+    out = np.empty(((states.shape[0] - 1) * steps * count, ROOT_STATE))
+    owner = np.empty(out.shape[0], np.int64)
+    tail = np.empty((steps + 1, ROOT_STATE))
+    used = 0
+    for k in range(1, states.shape[0]):
+        if not wanted[k - 1]:
+            continue
+        for c in range(ROOT_STATE):
+            tail[0, c] = states[k, c]
+        brake(tail, int(_FIRST), interval, bounds)
+        for i in range(steps):
+            if abs(tail[i, 3]) + abs(tail[i, 4]) + abs(tail[i, 5]) < _REST:
+                break
+            for j in range(count):
+                shown = interpolate_root(tail[i], tail[i + 1], (j + 1.0) / count, interval)
+                for c in range(ROOT_STATE):
+                    out[used, c] = shown[c]
+                owner[used] = k
+                used += 1
+    return out[:used], owner[:used]
+
+
+@exact_kernel
+def dense_states(states: Floats, interval: float, spacing: float, wanted: Bools) -> tuple[Floats, Indices]:
+    """The shown states (M, 7) on the way to key states but the first, and the key state of each (M,).
+
+    They are at most `spacing` seconds apart; `wanted` (n,) says which key intervals are asked for.
+    """
+    count = int(np.ceil(interval / spacing))
+    out = np.empty(((states.shape[0] - 1) * count, ROOT_STATE))
+    owner, used = np.empty(out.shape[0], np.int64), 0
+    for k in range(states.shape[0] - 1):
+        if not wanted[k]:
+            continue
+        for j in range(count):
+            shown = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
+            for c in range(ROOT_STATE):
+                out[used, c] = shown[c]
+            owner[used] = k + 1
+            used += 1
+    return out[:used], owner[:used]
+
+
+@exact_kernel
+def gets_nowhere(states: Floats) -> bool:
+    """Whether a path (n+1, 7) ends where it begins, and keeps its heading on the way."""
+    least, most = states[0, 2], states[0, 2]
+    for k in range(states.shape[0]):
+        least, most = min(least, states[k, 2]), max(most, states[k, 2])
+    gone = np.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
+    return bool(gone < _NOWHERE and most - least < _AWAY)

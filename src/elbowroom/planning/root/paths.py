@@ -1,0 +1,184 @@
+"""Root paths, each by itself: as commanded at some pace, past what is narrow, out of the way of what moves.
+
+Which of them are wanted, and in which order, is the root planner's business.
+"""
+
+from collections.abc import Iterator
+from time import perf_counter_ns
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowroom.body.dof import DOF
+from elbowroom.body.gait import quickness
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.held import hold
+from elbowroom.planning.command import Command
+from elbowroom.planning.root.ahead import WayFinder
+from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
+from elbowroom.planning.root.evasion import EvasionFinder
+from elbowroom.planning.root.leg_check import LegCheck
+from elbowroom.planning.root.line import TravelLine, wanted_speed, wanted_velocities
+from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.moving_legs import MovingAround
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root.profile import Profile
+from elbowroom.planning.root.query import Answer, RootQuery
+from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.scene import Scene
+
+_NEAR = 1.0  # metres
+
+
+class Asked(NamedTuple):
+    """What a path is asked for."""
+
+    start: RootState
+    command: Command
+    horizon: int  # key intervals
+    interval: float  # seconds
+    start_time: float  # seconds
+
+
+class RootPaths:
+    """Makes root paths for one humanoid in one scene. Nothing that it keeps changes a path."""
+
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings) -> None:
+        self.settings = settings
+        body, motion = LowerBody(humanoid, scene.boxes), settings.motion
+        strides = quickness(body.model.gait.scale)
+        self.bounds = MotionBounds(
+            motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
+        )
+        self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
+        self._ways = WayFinder(settings, body)
+        self._walker = hold(
+            Walker(self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings))
+        )
+        self.evasions = tuple(
+            EvasionFinder(humanoid, scene.boxes.table, grid) for grid in (settings.evasion, settings.wide)
+        )
+        self._figure = _figure(body.model)
+        self._scenes = scene.moving
+        self.others = MovingBoxes()
+        self._last: tuple[tuple[object, ...], RootQuery] | None = None
+
+    @property
+    def moving(self) -> MovingBoxes:
+        """All that moves."""
+        return self._moving
+
+    @property
+    def others(self) -> MovingBoxes:
+        """What moves besides the scene's own."""
+        return self._others
+
+    @others.setter
+    def others(self, others: MovingBoxes) -> None:
+        self._others, self._moving = others, self._scenes + others
+
+    def _query(self, asked: Asked) -> RootQuery:
+        """The paths from one start; the same while the same is asked for."""
+        key = (asked.start, *asked[2:], self._others)
+        if self._last is None or self._last[0] != key:
+            start, _, horizon, interval, start_time = asked
+            around = MovingAround(self._check.body, self._moving, start_time, horizon, interval)
+            reach = self._reach(horizon * interval)
+            self._last = key, RootQuery(self.settings, self._check, self._ways, start, horizon, interval, reach, around)
+        return self._last[1]
+
+    def _sight(self, asked: Asked, speed: float) -> float:
+        """How far ahead the way is looked at, metres."""
+        return max(self.settings.sight, speed * asked.horizon * asked.interval + self.settings.beyond)
+
+    def _reach(self, duration: float) -> float:
+        """Nothing farther from a start is met by a path of `duration` seconds, or by a way round; metres."""
+        s = self.settings
+        run = s.motion.run_speed * (duration + 1.0)
+        return max(s.sight + s.widest_detour, run + s.beyond) + 1.0
+
+    def stopped(self, asked: Asked) -> RootPlan:
+        """To a stand, or out of the way of what comes."""
+        began, query = perf_counter_ns(), self._query(asked)
+        looks, place = query.checks, (asked.start.x, asked.start.z)
+        answer = Answer(query.stop(), RootPlanKind.STRAIGHT, place, False)
+        return _plan(asked, answer, query.checks - looks, began)
+
+    def steered(self, asked: Asked, pace: float) -> RootPlan:
+        """As a user turns the body by hand."""
+        began, query = perf_counter_ns(), self._query(asked)
+        looks = query.checks
+        answer = query.steered(pace * wanted_velocities(asked.command, self.settings.motion))
+        return _plan(asked, answer, query.checks - looks, began)
+
+    def travelled(self, asked: Asked, line: TravelLine, pace: float) -> RootPlan:
+        """Along a line of travel."""
+        began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
+        sight = self._sight(asked, speed)
+        if not self._moving.tracks:
+            stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
+            start = asked.start.as_array()
+            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)
+            if free:
+                kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
+                return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
+        query = self._query(asked)
+        looks = query.checks
+        answer = query.travelled(line, pace * speed, sight)
+        return _plan(asked, answer, query.checks - looks, began, self._lost(asked, line, speed, answer))
+
+    def evaded(
+        self, asked: Asked, line: TravelLine, finder: EvasionFinder, kept: Profile | None
+    ) -> Iterator[tuple[RootPlan, Profile]]:
+        """Evasions from a line of travel, each once; `kept` is the one being followed."""
+        start, command, _, _, start_time = asked
+        began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(command, self.settings.motion)
+        evasion, looks = finder.settings, query.checks
+        speeds = (speed, min(speed, evasion.sideways))
+        grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self._moving, start_time)
+        profiles: list[Profile] = []
+        for bodies in evasion.bodies:
+            for care in evasion.cares:
+                way = grid.cheapest(bodies, kept, care)
+                if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
+                    break
+                profiles.append(way.profile)
+                answer = query.evaded(line, way, speed)
+                checks, lost = grid.cells + query.checks - looks, self._lost(asked, line, speed, answer)
+                yield _plan(asked, answer, checks, began, lost), way.profile
+                if answer.whole:
+                    break
+
+    def steps_aside(self, asked: Asked) -> Iterator[RootPlan]:
+        """Short ways out of the way of what moves."""
+        place = asked.start.x, asked.start.z
+        for states in self._query(asked).steps_aside():
+            yield _plan(asked, Answer(states, RootPlanKind.EVASION, place, False), 0, perf_counter_ns())
+
+    def is_faced(self, asked: Asked) -> bool:
+        """Whether something that could move stands near: to wait for it would be to wait for ever."""
+        around, place = self._query(asked).around, np.array([[asked.start.x, asked.start.z]])
+        return bool(around) and len(around.standing.around(place, _NEAR).table) > 0
+
+    def _lost(self, asked: Asked, line: TravelLine, speed: float, answer: Answer) -> float:
+        duration, around = asked.horizon * asked.interval, self._query(asked).around
+        return seconds_lost(
+            self.settings, line, speed, answer.states, duration, ends=answer.ends, around=around, figure=self._figure
+        )
+
+
+def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
+    path = RootPath(asked.start_time, asked.interval, answer.states)
+    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost)
+
+
+def _figure(model: BodyModel) -> Figure:
+    """Half the breadth of a body that stands with hanging arms, and its height, metres."""
+    ends = posture_capsules(model, np.zeros((1, DOF)), np.zeros((1, ROOT_STATE))).reshape(-1, 2, 3)
+    reach = np.abs(ends).max(axis=1) + model.body.radii[:, None]
+    return float(reach[:, 0].max()), float(reach[:, 1].max())

@@ -1,0 +1,72 @@
+"""What the root planner is told once, and what it hands back."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import NamedTuple
+
+from elbowroom.planning.root.evasion import WIDE, EvasionSettings
+from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.route import RouteSettings
+
+
+class RootPlanKind(Enum):
+    """How a root path answers its command."""
+
+    STRAIGHT = "straight"  # as commanded
+    EVASION = "evasion"  # aside of the line of travel, or with the body turned
+    DETOUR = "detour"  # round an obstacle, at full speed
+    SHORTENED = "shortened"  # slower than commanded, or ending early
+    STOPPED = "stopped"  # no way on
+
+
+@dataclass(frozen=True)
+class RootPlannerSettings:
+    """How far the root planner looks and how close it goes. Metres, seconds."""
+
+    motion: RootMotionSettings = field(default_factory=RootMotionSettings)
+    route: RouteSettings = field(default_factory=RouteSettings)
+    evasion: EvasionSettings = field(default_factory=EvasionSettings)
+    wide: EvasionSettings = WIDE
+    wide_from: float = 0.3  # seconds lost by what is known, from which on wide ways are thought of
+    sight: float = 3.2  # how far ahead the way is looked at, at least as far as one gets within the plan
+    beyond: float = 0.5  # and so much farther
+    widest_detour: float = 1.6  # how far from the line of travel a way round may lead
+    worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
+    # Searches for a way round, in turn: the clearance that it must have, and the cells of the map.
+    searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
+    margin: float = 0.01  # clearance of the straight way
+    skin: float = 0.01  # clearance that posed legs keep along a path
+    spacing: float = 0.0125  # seconds between checked states
+    untroubled: float = 0.15  # seconds lost below which nothing else is thought of
+    dead_end: float = 2.0  # seconds that a way costs that ends before an obstacle
+    aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
+    turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
+    polite: float = 0.15  # metres that are kept from what moves
+    wrong_side: float = 2.0  # seconds lost for each metre to the left of the line, where something moves
+    crowded: float = 4.0  # seconds that a path costs for each metre less
+    # Velocities forward and to the left with which to step out of the way of what moves, as they are liked.
+    steps_aside: tuple[tuple[float, float], ...] = (
+        *((-0.7, 0.0), (0.0, 0.6), (0.0, -0.6), (-0.5, 0.45), (-0.5, -0.45)),
+        *((1.1, 0.0), (0.8, 0.5), (0.8, -0.5)),
+    )
+    slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
+
+
+class RootPlan(NamedTuple):
+    """A root path and how it came about."""
+
+    path: RootPath
+    kind: RootPlanKind
+    goal: tuple[float, float]  # x, z of the short-term goal: where the looked-at route ends
+    checks: int  # postures and places whose clearance was computed
+    nanoseconds: int
+    lost: float = 0.0  # seconds that it costs against a walk as commanded, ways aside and turns included
+
+    def along(self, path: RootPath) -> "RootPlan":
+        """The same plan on another path."""
+        return RootPlan(path, self.kind, self.goal, self.checks, self.nanoseconds, self.lost)
+
+    def going_on(self, path: RootPath) -> "RootPlan":
+        """The same plan on a path for which nothing was searched any more."""
+        return RootPlan(path, self.kind, self.goal, 0, 0, self.lost)

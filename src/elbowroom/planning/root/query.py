@@ -1,0 +1,201 @@
+"""One root plan in the making: candidates in the order in which they are liked, and the first that is free."""
+
+import math
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.planning.root.ahead import Way, WayFinder
+from elbowroom.planning.root.evasion import Evasion
+from elbowroom.planning.root.leg_check import FreeLegs, LegCheck
+from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.lower_body import Neighbours
+from elbowroom.planning.root.motion import Travel, brake, follow, gets_nowhere, steer
+from elbowroom.planning.root.moving_legs import MovingAround
+from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root.profile import Course, follow_profile
+
+Floats = NDArray[np.float64]
+
+_TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
+
+
+class Answer(NamedTuple):
+    """What a path is going to be made of."""
+
+    states: Floats  # (n+1, 7)
+    kind: RootPlanKind
+    goal: tuple[float, float]  # x, z
+    ends: bool  # whether the way that was looked at ends before something
+    whole: bool = True  # whether it is walked as planned, to the end
+
+
+class RootQuery:
+    """All that is asked of one start: paths of `horizon` key intervals, `interval` seconds each."""
+
+    def __init__(
+        self,
+        settings: RootPlannerSettings,
+        check: LegCheck,
+        ways: WayFinder,
+        start: RootState,
+        horizon: int,
+        interval: float,
+        reach: float,
+        around: MovingAround,
+    ) -> None:
+        """`reach` is the metres from the start beyond which nothing is met."""
+        self.settings, self.bounds, self.around = settings, check.bounds, around
+        self.start, self.horizon, self.interval = start, horizon, interval
+        self._boxes = check.body.near(start.x, start.z, reach)
+        self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), ways
+        self._way: tuple[TravelLine, float, Way] | None = None
+        self._looks = 0
+
+    @property
+    def checks(self) -> int:
+        """The number of postures and places whose clearance was computed."""
+        return self._looks + self._legs.checks
+
+    @cached_property
+    def _mapped(self) -> Neighbours:
+        """What ways lead round: what stands, and what could move but stays where it is."""
+        return self._boxes + self.around.standing if self.around else self._boxes
+
+    def _blank(self) -> Floats:
+        states = np.empty((self.horizon + 1, ROOT_STATE))
+        states[0] = self.start
+        return states
+
+    def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, int]:
+        """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
+
+        Also its number where it is whole, else -1.
+        """
+        best, farthest = None, 0.0
+        for i, states in enumerate(candidates):
+            kept = self._legs.kept(states)
+            if kept == self.horizon:
+                return states, i
+            if self.around:
+                continue
+            brake(states, kept, self.interval, self.bounds)
+            if 2 * kept >= self.horizon:
+                return states, -1
+            progress = _length(states) + _TURN_WORTH * abs(float(states[-1, 2] - states[0, 2]))
+            if kept > 0 and progress > farthest:
+                best, farthest = states, progress
+        if self.around:
+            return self._given_way(), -1
+        return (best, -1) if best is not None else (self.stop(), -1)
+
+    def _given_way(self) -> Floats:
+        """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
+        best, longest = self._stopped(), -1
+        for states in (best, *self._steps_aside()):
+            kept = self._legs.kept(states)
+            if kept == self.horizon:
+                return states
+            if kept > longest:
+                best, longest = states, kept
+        return best
+
+    def steps_aside(self) -> Iterator[Floats]:
+        """Those short ways back, to both sides and on that are free, in the order in which they are liked."""
+        return (states for states in self._steps_aside() if self._legs.kept(states) == self.horizon)
+
+    def _steps_aside(self) -> Iterator[Floats]:
+        for forward, lateral in self.settings.steps_aside:
+            states, wanted = self._blank(), np.array([forward, lateral, 0.0])
+            steer(states, wanted, self.interval, self.bounds)
+            yield states
+
+    def stop(self) -> Floats:
+        """Stand, or step out of the way of what comes."""
+        return self._given_way() if self.around else self._stopped()
+
+    def _stopped(self) -> Floats:
+        """Brake, harder if need be; at last stand still at once."""
+        for hard in (1.0, 2.0, 4.0):
+            states = self._blank()
+            bounds = self.bounds._replace(
+                braking=hard * self.bounds.braking, turn_acceleration=hard * self.bounds.turn_acceleration
+            )
+            brake(states, 0, self.interval, bounds)
+            if not self._legs.touches(states):
+                return states
+        states = np.repeat(self._blank()[:1], self.horizon + 1, axis=0)
+        states[:, 3:6] = 0.0
+        return states
+
+    def steered(self, wanted: Floats) -> Answer:
+        """Hold the wanted velocities in the body's own axes, in a tighter turn or slower if need be."""
+        on_the_spot = not wanted[:2].any()
+
+        def candidate(share: float) -> Floats:
+            states = self._blank()
+            steer(states, wanted * np.array([share, share, share if on_the_spot else 1.0]), self.interval, self.bounds)
+            return states
+
+        states, number = self._best(candidate(share) for share in self.settings.slower)
+        return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
+
+    def travelled(self, line: TravelLine, speed: float, sight: float) -> Answer:
+        """Walk along the line of travel, of which `sight` metres are looked at, or round what stands in it."""
+        way = self._way_along(line, sight)
+
+        def candidate(share: float) -> Floats:
+            states = self._blank()
+            travel = Travel(share * speed, line.facing, line.turns, way.ends)
+            follow(states, way.route, travel, self.interval, self.bounds)
+            return states
+
+        states, number = self._best(candidate(share) for share in self.settings.slower)
+        kind = self._kind(states, whole=number == 0, detour=way.detour)
+        return Answer(states, kind, _place(way.route[-1]), way.ends)
+
+    def _way_along(self, line: TravelLine, sight: float) -> Way:
+        """The way along a line of travel; the same at every pace."""
+        if self._way is None or self._way[:2] != (line, sight):
+            self._way = line, sight, self._ways.ahead(self.start, line, self._mapped, sight)
+            self._looks += self._way[2].checks
+        return self._way[2]
+
+    def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
+        """Walk along an evasion from the line of travel, or as much of it as is free."""
+        profile, s = evasion.profile, self.settings.evasion
+
+        def candidate(share: float) -> Floats:
+            states, ahead = self._blank(), share * speed
+            course = Course(
+                line.x, line.z, line.heading, line.facing, ahead, min(ahead, share * s.sideways), not evasion.whole
+            )
+            follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
+            return states
+
+        states, number = self._best(candidate(share) for share in s.shares)
+        ahead = profile.first + profile.step * (len(profile.rows) - 1)
+        stands = self._kind(states, whole=True, detour=False) is RootPlanKind.STOPPED
+        kind = RootPlanKind.STOPPED if stands else RootPlanKind.EVASION
+        return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole, number >= 0)
+
+    def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
+        if gets_nowhere(states):
+            return RootPlanKind.STOPPED
+        if not whole:
+            return RootPlanKind.SHORTENED
+        return RootPlanKind.DETOUR if detour else RootPlanKind.STRAIGHT
+
+
+def _place(row: Floats) -> tuple[float, float]:
+    """The first two components of a state or of a route's point: x and z."""
+    return float(row[0]), float(row[1])
+
+
+def _length(states: Floats) -> float:
+    """Metres between the first place and the last."""
+    return math.hypot(states[-1, 0] - states[0, 0], states[-1, 1] - states[0, 1])
