@@ -1,5 +1,6 @@
 # make run    walk an avatar through a scene in the browser      make test   lint, types, all tests
-# make env    .venv with the `elbowroom` command                 make clean  forget .venv and the built client
+# make env    .venv with the `elbowroom` command                 make docs   pages and API reference, in site/
+# make clean  forget .venv, the built client and site/
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
@@ -11,10 +12,10 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test test-long lint types unit web-test browser clean format
+.PHONY: help env run test test-long lint types unit web-test browser docs clean format
 
 help:
-	@sed -n '1,2s/^# //p' Makefile
+	@sed -n '1,3s/^# //p' Makefile
 
 run: env
 	@$(BIN)/elbowroom play $(ARGS)
@@ -70,9 +71,13 @@ browser: $(VENV)/developer
 	@sh tools/install_judges.sh $(BIN)/python
 	@$(BIN)/python -m pytest -m browser $(ARGS)
 
+docs: $(VENV)/developer
+	@echo "==> Pages in site/index.html"
+	@$(BIN)/python -m mkdocs build --strict --quiet
+
 format: $(VENV)/developer
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
 clean:
-	rm -rf $(VENV) src/elbowroom/client web/node_modules dist
+	rm -rf $(VENV) src/elbowroom/client web/node_modules dist site

@@ -47,3 +47,8 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *_HOMES})
+
+
+def public_names() -> tuple[str, ...]:
+    """The names that programs may rely on; `docs/reference.md` shows each of them."""
+    return tuple(_HOMES)

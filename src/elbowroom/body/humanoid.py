@@ -39,12 +39,12 @@ class AvatarMeta:
 class Humanoid:
     """An avatar: skeleton, collision body, and the rig of the file that it came from."""
 
-    name: str
-    skeleton: Skeleton
-    capsules: Capsules
+    name: str  # of the file, or of the stock avatar
+    skeleton: Skeleton  # joints, their parents and places in the T-pose
+    capsules: Capsules  # the collision body: it holds the skin
     rig: Rig | None = None  # None for a humanoid that has no file
-    source: Path | None = None
-    meta: AvatarMeta = field(default_factory=AvatarMeta)
+    source: Path | None = None  # the file
+    meta: AvatarMeta = field(default_factory=AvatarMeta)  # title, author, licence, how each bone was found
     settings: LoadSettings = field(default_factory=LoadSettings)  # that it was read with; the bones that were told
     glb: bytes | None = None  # the file as one self-contained GLB, for a viewer; None without a file
 

@@ -11,8 +11,8 @@ ROOT_STATE = 7  # number of components of a root state array
 class RootState(NamedTuple):
     """One root state; as an array it has shape (7,) in this order. Metres, radians, seconds."""
 
-    x: float = 0.0
-    z: float = 0.0
+    x: float = 0.0  # metres
+    z: float = 0.0  # metres
     heading: float = 0.0  # about +Y, 0 faces +Z, positive turns left (towards +X); never wrapped along a path
     forward: float = 0.0  # velocity along the heading, m/s
     lateral: float = 0.0  # velocity to the left of the heading, m/s

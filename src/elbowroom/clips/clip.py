@@ -18,11 +18,11 @@ class Clip:
     """One motion of a BVH, glTF or VRMA file."""
 
     name: str  # within its file
-    file: str
+    file: str  # its name
     format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
     frames: int  # in the file
-    figure: Figure
-    motion: BodyMotion
+    figure: Figure  # whose motion it is, as it was recognised
+    motion: BodyMotion  # the figure's bones over time
 
     @classmethod
     def load(cls, reference: str | Path, told: Told | None = None) -> "Clip":

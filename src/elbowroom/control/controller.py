@@ -77,12 +77,12 @@ class Controller:
 
         Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
         """
-        self.humanoid = humanoid
-        self.scene = scene
-        self.settings = ControlSettings(planner, queue_size, interval, seed, assist)
-        self.start = scene.start if start is None else start
+        self.humanoid = humanoid  # who walks
+        self.scene = scene  # where
+        self.settings = ControlSettings(planner, queue_size, interval, seed, assist)  # what it was told, in one object
+        self.start = scene.start if start is None else start  # where it stands after a reset
         self._check = BodyCheck(humanoid, scene)
-        self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions
+        self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions  # how it walks and evades
         self._errands = Errands(desk or ImmediateDesk())
         self._worn = fitted(self.motions, humanoid)
         self._planners = Planners(planner, humanoid, scene, self._worn)

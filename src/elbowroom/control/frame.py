@@ -29,8 +29,8 @@ class PlanReport:
     number: int  # 1 for the first
     time: float  # seconds, when its result was taken over
     command: Command  # what it was made for
-    root: RootPlan
-    local: LocalPlan
+    root: RootPlan  # the path of the legs, and how it was found
+    local: LocalPlan  # the upper-body motion along it
 
     @property
     def found(self) -> bool:
@@ -45,7 +45,7 @@ class Frame:
     time: float  # seconds since the start, by the sum of all dt
     q: Floats  # (14,) the configuration, see `body.dof`
     root: Floats  # (7,) the root state, see `body.root`
-    phase: Phase
+    phase: Phase  # the flow that the last turn took
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
     stuck: bool  # the user pushes, and planning has found no way on for the root or for the limbs
     touching: bool  # part of the body is in an obstacle: with assistance off, or hit by what moves and leaves no way

@@ -125,7 +125,7 @@ class Recorder:
     """
 
     def __init__(self, path: str | Path, controller: Controller) -> None:
-        self.path = Path(path)
+        self.path = Path(path)  # of the recording
         self._pending: list[tuple[Any, ...]] = []
         header = RecordingHeader.of(controller).to_json()
         try:

@@ -35,14 +35,14 @@ class Gate:
 class Scene:
     """A place to walk through; it never changes. `Scene.load` reads one, stock or from a file."""
 
-    name: str
-    title: str
-    description: str
+    name: str  # as in `--scene NAME`
+    title: str  # shown to people
+    description: str  # a sentence or two; may be empty
     ground_center: tuple[float, float]  # x, z, metres
     ground_size: tuple[float, float]  # extent along x and z, metres
-    start: RootState
-    finish: Gate
-    boxes: Boxes
+    start: RootState  # where an avatar is put
+    finish: Gate  # the line that ends the walk
+    boxes: Boxes  # B obstacles that stand still
     box_names: tuple[str, ...]  # (B,)
     moving: MovingBoxes = field(default_factory=MovingBoxes)  # besides the boxes, which stand still
 
