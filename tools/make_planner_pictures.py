@@ -18,8 +18,8 @@ from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import Start
 from elbowroom.planning.exact.plan.pauses import finished
-from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody
-from elbowroom.planning.exact.plan.upper_body_search import Dressing
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.boxes import Boxes
@@ -40,10 +40,10 @@ def walk(horizon: int, begin: float) -> RootPath:
     return RootPath(0.0, INTERVAL, states)
 
 
-def dressing_of(body: UpperBody, path: RootPath) -> Dressing:
+def dressing_of(body: UpperBodyPlanner, path: RootPath) -> UpperBodySearch:
     """A plan's dressing along a path that begins in the natural walk; nothing searched yet."""
     start = body.goals(path)[0]
-    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
+    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).search
 
 
 def shade(share: float) -> str:
@@ -79,14 +79,14 @@ def picture(width: float, height: float, *parts: str) -> str:
 
 def slice_table(humanoid: Humanoid) -> str:
     """Left arm in scene D: key times across, postures down, the nearest to hanging on top."""
-    body, path = UpperBody(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
+    body, path = UpperBodyPlanner(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
     ways = finished(dressing.apart()).ways
-    way, points_of = ways[1], dressing.shelves.group(DofGroup.LEFT_ARM).postures.configurations
+    way, points_of = ways[1], dressing.caches.group(DofGroup.LEFT_ARM).postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
-    free = np.isfinite(way.price[:, order]).T
-    cost = np.where(free, way.price[:, order].T, 0.0).astype(np.float64)
+    free = np.isfinite(way.cost[:, order]).T
+    cost = np.where(free, way.cost[:, order].T, 0.0).astype(np.float64)
     wide, high, left, top = 34.0, 2.2, 70.0, 46.0
     body_of_table = cells(free, np.clip(cost / 3.0, 0.0, 1.0), left, top, (wide, high))
     nearest = [int(np.argmin(np.linalg.norm(points_of[order] - key, axis=1))) for key in way.keys]
@@ -117,11 +117,11 @@ def random_scene(seed: int) -> Scene:
     return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(count)))
 
 
-def failed_alone(humanoid: Humanoid) -> tuple[Dressing, JointStep, NDArray[np.int64]]:
+def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArray[np.int64]]:
     """The first random scene where an arm has no way under the waist's, and all together have one; and that way."""
     path = walk(12, 0.0)
     for seed in range(TRIES):
-        dressing = dressing_of(UpperBody(humanoid, random_scene(seed), ExactSettings()), path)
+        dressing = dressing_of(UpperBodyPlanner(humanoid, random_scene(seed), ExactSettings()), path)
         alone = finished(dressing.apart())
         if alone.failed is None or not alone.ways:
             continue
@@ -147,7 +147,7 @@ def joint_picture(humanoid: Humanoid) -> str:
     wide, high, left, top = 2.0, 12.0, 150.0, 62.0
     parts, x = [], left
     for side, name in enumerate(("left arm", "right arm")):
-        prices = step.prices[side][depth, rows]
+        prices = step.costs[side][depth, rows]
         columns = np.flatnonzero(np.isfinite(step.nodes[1 + side].prices_alone[depth]))
         columns = columns[np.argsort(step.nodes[1 + side].prices_alone[depth, columns], kind="stable")]
         free = np.isfinite(prices[:, columns])

@@ -10,7 +10,7 @@ from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.upper_body import UpperBody
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.goal import natural_walk
@@ -74,7 +74,7 @@ def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, floa
     return float(clearance(capsules, MODEL.roots.radii, made.boxes.table).min()), float(q[:, LOWERING].max())
 
 
-def planned(made: Scene, body: UpperBody) -> tuple[float, float] | None:
+def planned(made: Scene, body: UpperBodyPlanner) -> tuple[float, float] | None:
     start = natural_walk()(walk(speed=0.0))[0]
     plan = body.plan(walk(), Start(start, np.zeros(LOCAL))).plan
     return shown_legs(made, walk(), plan.configurations) if plan.status is PlanStatus.FOUND else None
@@ -86,7 +86,7 @@ def test_bent_knees_touch_nothing_and_would_if_nobody_looked() -> None:
         made = scene(seed)
         if not leaves_upright_legs_alone(made):
             continue
-        body = UpperBody(HUMANOID, made, ExactSettings())
+        body = UpperBodyPlanner(HUMANOID, made, ExactSettings())
         found = planned(made, body)
         if found is not None:
             assert found[0] > 0.0, seed
@@ -146,9 +146,9 @@ def test_in_the_end_nobody_crouches() -> None:
 
 def test_every_node_has_its_lowering() -> None:
     rng = np.random.default_rng(0)
-    postures, goals, kept, start = (rng.uniform(size=shape) for shape in ((5, 3), (4, 3), (4, 3), (3,)))
-    found = node_lowerings(postures, goals, kept, start)
+    postures, goals, previous, start = (rng.uniform(size=shape) for shape in ((5, 3), (4, 3), (4, 3), (3,)))
+    found = node_lowerings(postures, goals, previous, start)
     assert found.shape == (4, 9)
     for t in range(4):
         np.testing.assert_array_equal(found[t, :5], postures[:, 2])
-        assert found[t, 5:].tolist() == [goals[t, 2], kept[t, 2], start[2], max(start[2], goals[t, 2])]
+        assert found[t, 5:].tolist() == [goals[t, 2], previous[t, 2], start[2], max(start[2], goals[t, 2])]

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_way, settle_backward, widen
-from elbowroom.planning.exact.lattice.lattice import BACK, HOLD, OWN, Lattice, Work, new_work
+from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
+from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, HOLD, Lattice, Work, new_work
 from elbowroom.planning.exact.lattice.paths import traced
 from elbowroom.planning.exact.lattice.postures import BLOCK, spans_of
 
@@ -27,22 +27,22 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
     squares = np.sum((postures[:, None] - postures) ** 2, axis=2)
     moves = np.full((size, lanes), INF)
     moves[:, :size] = np.where(squares <= STEP**2, squares, np.inf)
-    price = rng.uniform(0.0, 1.0, (horizon + 1, lanes + OWN)).astype(np.float32)
-    price[rng.random(price.shape) < rng.uniform(0.0, 0.6)] = INF
-    price[:, size:lanes], price[:, lanes + own :] = INF, INF
-    closed = rng.random((horizon, lanes + OWN, lanes + OWN)) < rng.choice([0.0, 0.4])
+    cost = rng.uniform(0.0, 1.0, (horizon + 1, lanes + EXTRA)).astype(np.float32)
+    cost[rng.random(cost.shape) < rng.uniform(0.0, 0.6)] = INF
+    cost[:, size:lanes], cost[:, lanes + own :] = INF, INF
+    closed = rng.random((horizon, lanes + EXTRA, lanes + EXTRA)) < rng.choice([0.0, 0.4])
     columns = np.ascontiguousarray(postures[np.minimum(np.arange(lanes), size - 1)].T, np.float32)
     return Lattice(
         postures=postures,
         columns=columns,
         moves=moves.astype(np.float32),
         spans=spans_of(moves.astype(np.float32)),
-        own=rng.uniform(-0.5, 0.5, (horizon + 1, OWN, width)),
+        own=rng.uniform(-0.5, 0.5, (horizon + 1, EXTRA, width)),
         goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
-        price=price,
+        cost=cost,
         masks=np.where(rng.random(horizon) < 0.6, np.arange(horizon), -1),
         closed=closed,
-        kept=rng.integers(0, size, horizon + 1).astype(np.int32),
+        previous=rng.integers(0, size, horizon + 1).astype(np.int32),
         step=STEP,
         weight=WEIGHT,
     )
@@ -56,7 +56,7 @@ def posture_of(lattice: Lattice, depth: int, node: int) -> NDArray[np.float64]:
 
 
 def work_for(lattice: Lattice) -> Work:
-    return new_work(*lattice.price.shape)
+    return new_work(*lattice.cost.shape)
 
 
 def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
@@ -66,13 +66,13 @@ def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
     if np.linalg.norm(b - a) > STEP or (mask >= 0 and lattice.closed[mask, source, target]):
         return np.inf
     change = (b - lattice.goals[depth + 1]) - (a - lattice.goals[depth])
-    return float(lattice.price[depth + 1, target] + WEIGHT * change @ change)
+    return float(lattice.cost[depth + 1, target] + WEIGHT * change @ change)
 
 
 def every_way(lattice: Lattice) -> tuple[int, float]:
     """The deepest depth that has a way, and the least cost of a way to it."""
     horizon, size = len(lattice.goals) - 1, len(lattice.postures)
-    nodes = [*range(size), *range(BLOCK, BLOCK + OWN)]
+    nodes = [*range(size), *range(BLOCK, BLOCK + EXTRA)]
     start = BLOCK + HOLD
     costs = {
         (depth, a, b): step_price(lattice, depth, a, b)
@@ -93,7 +93,7 @@ def every_way(lattice: Lattice) -> tuple[int, float]:
 def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
     lattice = random_lattice(seed)
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0, False)
+    reached, _ = cheapest_path(lattice, work, 0, False)
     expected, cost = every_way(lattice)
     assert reached == expected
     way = traced(lattice, work, reached)
@@ -108,13 +108,13 @@ def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
 def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> None:
     lattice = random_lattice(seed, size=40)
     work = work_for(lattice)
-    if cheapest_way(lattice, work, 0, False)[0] < HORIZON:
+    if cheapest_path(lattice, work, 0, False)[0] < HORIZON:
         return
     lattice.masks[1] = 1
     lattice.closed[1] = np.random.default_rng(seed).random(lattice.closed[1].shape) < 0.5
-    resumed, _ = cheapest_way(lattice, work, 1, False)
+    resumed, _ = cheapest_path(lattice, work, 1, False)
     fresh = work_for(lattice)
-    anew, _ = cheapest_way(lattice, fresh, 0, False)
+    anew, _ = cheapest_path(lattice, fresh, 0, False)
     assert resumed == anew
     assert np.array_equal(traced(lattice, work, anew), traced(lattice, fresh, anew))
     assert work.costs[anew].min() == fresh.costs[anew].min()
@@ -123,14 +123,14 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
 def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
-    lattice = random_lattice(seed, size=70, own=OWN, horizon=6)
+    lattice = random_lattice(seed, size=70, own=EXTRA, horizon=6)
     near = np.where(lattice.moves <= 0.1, lattice.moves, INF)
     lattice = lattice._replace(moves=near, spans=spans_of(near))
     assert np.ptp(lattice.spans, axis=1).min() < near.shape[1]
     found = []
     for spans in (lattice.spans, np.tile([0, near.shape[1]], (len(near), 1))):
         work, everywhere = work_for(lattice), lattice._replace(spans=spans)
-        reached, _ = cheapest_way(everywhere, work, 0, False)
+        reached, _ = cheapest_path(everywhere, work, 0, False)
         settle_backward(everywhere, work, 0, np.inf if reached < 6 else float(work.costs[6].min()) + 0.5)
         found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.left))
     for one, other in zip(*found, strict=True):
@@ -145,11 +145,11 @@ def widened(lattice: Lattice, work: Work) -> int:
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 10_000), st.sampled_from([0.02, 0.3, 1.0]))
 def test_what_a_glance_finds_is_the_cheapest_way_and_can_be_made_whole(seed: int, dear: float) -> None:
-    lattice = random_lattice(seed, size=70, own=OWN, horizon=6)
-    lattice = lattice._replace(price=np.float32(dear) * lattice.price)
+    lattice = random_lattice(seed, size=70, own=EXTRA, horizon=6)
+    lattice = lattice._replace(cost=np.float32(dear) * lattice.cost)
     glanced, whole = work_for(lattice), work_for(lattice)
-    reached, _ = cheapest_way(lattice, glanced, 0, True)
-    assert reached == cheapest_way(lattice, whole, 0, False)[0]
+    reached, _ = cheapest_path(lattice, glanced, 0, True)
+    assert reached == cheapest_path(lattice, whole, 0, False)[0]
     assert np.array_equal(traced(lattice, glanced, reached), traced(lattice, whole, reached))
     event(f"all was seen at a glance: {np.array_equal(glanced.costs[: reached + 1], whole.costs[: reached + 1])}")
     widened(lattice, glanced)
@@ -159,9 +159,9 @@ def test_what_a_glance_finds_is_the_cheapest_way_and_can_be_made_whole(seed: int
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
 def test_costs_from_both_ends_meet(seed: int) -> None:
-    lattice = random_lattice(seed, size=40, own=OWN, horizon=6)
+    lattice = random_lattice(seed, size=40, own=EXTRA, horizon=6)
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0, False)
+    reached, _ = cheapest_path(lattice, work, 0, False)
     if reached < 6:
         return
     best = float(work.costs[6].min())
@@ -172,12 +172,12 @@ def test_costs_from_both_ends_meet(seed: int) -> None:
 
 def test_who_follows_the_goal_pays_nothing() -> None:
     lattice = random_lattice(3)
-    own, price = lattice.own.copy(), np.ones_like(lattice.price)
+    own, cost = lattice.own.copy(), np.ones_like(lattice.cost)
     own[:, BACK], own[0, HOLD] = lattice.goals, lattice.goals[0]
-    price[:, BLOCK + BACK] = 0.0
-    lattice = lattice._replace(own=own, price=price, masks=np.full(HORIZON, -1))
+    cost[:, BLOCK + BACK] = 0.0
+    lattice = lattice._replace(own=own, cost=cost, masks=np.full(HORIZON, -1))
     work = work_for(lattice)
-    reached, _ = cheapest_way(lattice, work, 0, False)
+    reached, _ = cheapest_path(lattice, work, 0, False)
     assert reached == HORIZON
     assert work.costs[HORIZON].min() < 1e-6
     assert np.all(traced(lattice, work, reached)[1:] == BLOCK + BACK)

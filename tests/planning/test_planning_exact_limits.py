@@ -12,9 +12,9 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.full_plan import Whole
-from elbowroom.planning.exact.plan.recent_plans import Recent, after
-from elbowroom.planning.exact.plan.upper_body import UpperBody, UpperPlan
+from elbowroom.planning.exact.plan.full_plan import FullPlan
+from elbowroom.planning.exact.plan.recent_plans import RecentPlans, after
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner, UpperPlan
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
@@ -49,8 +49,8 @@ def walk() -> RootPath:
 
 
 @pytest.fixture(scope="module")
-def body() -> UpperBody:
-    return UpperBody(HUMANOID, beside(), LIMITS)
+def body() -> UpperBodyPlanner:
+    return UpperBodyPlanner(HUMANOID, beside(), LIMITS)
 
 
 def at_speed(rng: np.random.Generator, share: float) -> Floats:
@@ -78,7 +78,9 @@ def asked(plan: UpperPlan) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
-def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(body: UpperBody, share: float) -> None:
+def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(
+    body: UpperBodyPlanner, share: float
+) -> None:
     rng, start = np.random.default_rng(7), natural_walk()(walk())[0]
     found = harder = 0
     for _ in range(8):
@@ -98,7 +100,7 @@ def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(bod
         assert found == 8
 
 
-def planned() -> tuple[Whole, Whole]:
+def planned() -> tuple[FullPlan, FullPlan]:
     """A plan, and one that goes on from its first key time."""
     planner, roots, wholes = ExactPlanner(HUMANOID, beside()), RootPlanner(HUMANOID, beside()), []
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
@@ -119,7 +121,7 @@ def planned() -> tuple[Whole, Whole]:
 
 def test_who_changes_the_wish_before_a_plan_begins_still_knows_the_motion_until_then() -> None:
     earlier, last = planned()
-    recent = Recent()
+    recent = RecentPlans()
     recent.take(earlier)
     recent.take(last)
     joined = recent.since(0.4 * T)
@@ -131,13 +133,13 @@ def test_who_changes_the_wish_before_a_plan_begins_still_knows_the_motion_until_
     assert joined.asked is not None
     assert last.asked is not None
     assert np.array_equal(joined.asked.margins[:, 1:], last.asked.margins)
-    kept = recent.kept(RootPath(0.4 * T, T, last.root.path.states[:5]))
-    assert kept is not None
+    previous = recent.previous(RootPath(0.4 * T, T, last.root.path.states[:5]))
+    assert previous is not None
     for k in range(5):  # on the curves of both plans
         keys, velocities = joined.local.configurations[k : k + 2], joined.local.velocities
         assert velocities is not None
         shown, _ = hermite(np.array([0.0, T]), keys, velocities[k : k + 2], 0.4 * T)
-        assert np.allclose(kept.keys[k], shown, atol=1e-12)
+        assert np.allclose(previous.keys[k], shown, atol=1e-12)
     assert recent.since(last.root.path.start_time) is last
 
 

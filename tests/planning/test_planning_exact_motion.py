@@ -14,8 +14,8 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
-from elbowroom.planning.exact.memory.previous_plan import Kept, Start
-from elbowroom.planning.exact.plan.upper_body import UpperBody
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, Start
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
@@ -78,23 +78,23 @@ def played(humanoid: Humanoid, scene: Scene, count: int) -> tuple[Floats, Floats
 
 
 def test_what_was_computed_before_changes_no_plan(humanoid: Humanoid) -> None:
-    body = UpperBody(humanoid, posts(), ExactSettings())
+    body = UpperBodyPlanner(humanoid, posts(), ExactSettings())
     start = natural_walk()(walk(1, speed=0.0))[0]
-    kept, velocity, checks = None, np.zeros(LOCAL), []
+    previous, velocity, checks = None, np.zeros(LOCAL), []
     for first in range(6):
         path = walk(16, first)
-        plan = body.plan(path, Start(start, velocity), kept).plan
-        fresh = UpperBody(humanoid, posts(), ExactSettings())
-        anew = fresh.plan(path, Start(start, velocity), kept).plan
+        plan = body.plan(path, Start(start, velocity), previous).plan
+        fresh = UpperBodyPlanner(humanoid, posts(), ExactSettings())
+        anew = fresh.plan(path, Start(start, velocity), previous).plan
         assert len(plan.configurations) == 17
         assert plan.velocities is not None
         assert anew.velocities is not None
         assert np.allclose(plan.configurations, anew.configurations, atol=1e-9)
         assert np.allclose(plan.velocities, anew.velocities, atol=1e-9)
-        again = UpperBody(humanoid, posts(), ExactSettings()).plan(path, Start(start, velocity), kept).plan
+        again = UpperBodyPlanner(humanoid, posts(), ExactSettings()).plan(path, Start(start, velocity), previous).plan
         assert np.array_equal(anew.configurations, again.configurations)
         checks.append((plan.checks, anew.checks))
-        kept = Kept.freely(np.concatenate([plan.configurations[1:], plan.configurations[-1:]]))
+        previous = PreviousPlan.freely(np.concatenate([plan.configurations[1:], plan.configurations[-1:]]))
         start, velocity = plan.configurations[1], plan.velocities[1]
     assert sum(known for known, _ in checks[1:]) < 0.5 * sum(anew for _, anew in checks[1:])
 

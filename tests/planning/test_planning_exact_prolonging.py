@@ -74,8 +74,8 @@ def test_the_last_plan_is_played_until_it_gets_short_and_only_its_end_is_new(hum
         known, motion = motion.local, planner.plan_motion(roots, query)
         local = motion.local
         assert len(local.configurations) == LONG + 1
-        kept = LONG + SPARE - round(SETTINGS.revisited / T)
-        assert np.allclose(local.configurations[:kept], known.configurations[1:][:kept], atol=1e-12)
+        previous = LONG + SPARE - round(SETTINGS.revisited / T)
+        assert np.allclose(local.configurations[:previous], known.configurations[1:][:previous], atol=1e-12)
         changed.append(not np.allclose(local.configurations[:LONG], known.configurations[1:], atol=1e-6))
         evading = max(evading, float(np.abs(local.configurations - local.goals).max()))
     assert any(changed[::4])  # the end was not just added to

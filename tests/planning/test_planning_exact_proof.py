@@ -14,18 +14,18 @@ from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
-    Chain,
-    LimbWays,
-    RootWays,
+    KinematicChain,
+    LimbSweeps,
+    RootSweeps,
     chain_of,
     configurations_at,
     levers_of,
     moves_between,
-    new_limb_ways,
-    new_root_ways,
-    root_ways,
+    new_limb_sweeps,
+    new_root_sweeps,
+    root_sweeps,
 )
-from elbowroom.planning.exact.sweep.proof import Carrier, limb_way
+from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.boxes import Boxes
@@ -53,20 +53,20 @@ class Body:
             points = clamp(group, rng.uniform(-0.6, 0.9, (20, group.size)))
             self.postures[group] = postures_of(limb_of(self.model, group), points, 0.75)
         waist = self.postures[DofGroup.WAIST].limb
-        self.chain: Chain = chain_of(self.model, waist, self.postures[ARM].reach)
+        self.chain: KinematicChain = chain_of(self.model, waist, self.postures[ARM].reach)
         self.levers = {group: levers_of(self.model, self.postures[group].limb) for group in LOCAL_GROUPS}
-        self.roots: RootWays = new_root_ways(8)
-        self.waists: LimbWays = new_limb_ways(8, DofGroup.WAIST.size, carries=True)
-        self.arms: LimbWays = new_limb_ways(8, ARM.size, carries=False)
+        self.roots: RootSweeps = new_root_sweeps(8)
+        self.waists: LimbSweeps = new_limb_sweeps(8, DofGroup.WAIST.size, carries=True)
+        self.arms: LimbSweeps = new_limb_sweeps(8, ARM.size, carries=False)
 
     def way(self, group: DofGroup, root: int, carrier: int, ends: Ends, boxes: Floats) -> int:
         is_waist, roots = group is DofGroup.WAIST, self.roots
         ways, above, on = (self.waists, roots, root) if is_waist else (self.arms, self.waists, carrier)
         carried_by = Carrier(
-            above.slots.ids[on], above.places[on], above.turns[on], above.sway[on], roots.slots.keys[root],
-            roots.places[root], above.slots.keys[on],
+            above.entries.ids[on], above.places[on], above.turns[on], above.sway[on], roots.entries.keys[root],
+            roots.places[root], above.entries.keys[on],
         )  # fmt: skip
-        at, _ = limb_way(
+        at, _ = limb_sweep(
             ways, self.postures[group], self.levers[group], self.chain, carried_by, ends, boxes, 0.0
         )  # fmt: skip
         return at
@@ -112,8 +112,8 @@ def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
     for _ in range(12):
         a, b = random_roots(rng)
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
-        root = root_ways(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
-        begin_round(body.roots.slots)
+        root = root_sweeps(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
+        begin_round(body.roots.entries)
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         trunk, limb = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
         waist_moves, arm_moves = moves_between(waist, T, SWEEP), moves_between(arm, T, SWEEP)
@@ -153,9 +153,9 @@ def test_what_is_proven_is_free_at_every_moment(humanoid: Humanoid) -> None:
     for _ in range(60):
         a, b = random_roots(rng)
         waist, arm = random_ends(rng, DofGroup.WAIST), random_ends(rng, ARM)
-        for slots in (body.roots.slots, body.waists.slots, body.arms.slots):
-            begin_round(slots)
-        root = root_ways(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
+        for entries in (body.roots.entries, body.waists.entries, body.arms.entries):
+            begin_round(entries)
+        root = root_sweeps(body.roots, body.chain, np.array([a, b]), T, np.zeros(1))[0]
         states = np.array([interpolate_root(a, b, u, T) for u in np.linspace(0, 1, DENSE + 1)])
         _, points = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
         # A small box beside the hand's way, so that about half of the motions touch it.

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.planning.exact.lattice.extra_nodes import alone_at
-from elbowroom.planning.exact.lattice.lattice import OWN
+from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
+from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded, folded_prices
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, own_body_costs, touches_body
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import axis_distance
@@ -71,25 +71,25 @@ class Case:
         self.natural, self.start = rng.uniform(size=ROWS) < 0.4, drawn(rng, group, 1, 0.7)[0]
         self.walk = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
         self.mine = mine = drawn(rng, group, ROWS, 0.7)
-        self.kept = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
+        self.previous = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
         self.settled = seed % 3 > 0
         known, step = self.postures, self.postures.step
-        self.own, self.needed, _ = alone_at(
-            known.configurations, known.columns, step, mine, self.kept, self.start, self.settled
+        self.own, self.needed, _ = extra_nodes(
+            known.configurations, known.columns, step, mine, self.previous, self.start, self.settled
         )
 
-    def prices(self, body: OwnBody = BODY) -> Floats:
-        folding = body.folding(self.side, self.postures)
-        prices = folded_prices(
-            folding, self.mine, self.kept, self.start, self.settled, self.walk, self.uppers, self.states
+    def costs(self, body: OwnBody = BODY) -> Floats:
+        own_body_nodes = body.own_body_nodes(self.side, self.postures)
+        costs = own_body_costs(
+            own_body_nodes, self.mine, self.previous, self.start, self.settled, self.walk, self.uppers, self.states
         )
-        return prices.astype(np.float64)
+        return costs.astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:
         """Which nodes are ruled out (ROWS, W + OWN), and of which that is sure."""
         known = self.postures.configurations
         width = len(self.postures.lanes) * BLOCK
-        out, sure = np.zeros((ROWS, width + OWN), np.bool_), np.ones((ROWS, width + OWN), np.bool_)
+        out, sure = np.zeros((ROWS, width + EXTRA), np.bool_), np.ones((ROWS, width + EXTRA), np.bool_)
         out[:, :width] = BODY.resting(self.side, self.postures)
         filled = np.minimum(np.arange(width), len(known) - 1)
         for t in range(ROWS):
@@ -97,7 +97,7 @@ class Case:
                 continue
             gaps = gaps_of(self.side, np.concatenate([known, self.own[t]]), self.uppers[t], self.states[t])
             nodes = np.concatenate([gaps[: len(known)][filled], gaps[len(known) :]]) - SPARE
-            looked = np.ones(width + OWN, np.bool_)
+            looked = np.ones(width + EXTRA, np.bool_)
             if self.natural[t]:
                 looked[: width + 1] = False
             out[t] |= looked & (nodes < 0.0)
@@ -110,7 +110,7 @@ def test_ruled_out_is_what_touches_and_nothing_else(side: int) -> None:
     counts = np.zeros(2, np.int64)
     for seed in range(12):
         case = Case(side, seed)
-        found, (expected, sure) = np.isinf(case.prices()), case.twin()
+        found, (expected, sure) = np.isinf(case.costs()), case.twin()
         assert np.array_equal(found[sure], expected[sure])
         assert sure.mean() > 0.99
         counts += [expected.sum(), (~expected).sum()]
@@ -119,11 +119,11 @@ def test_ruled_out_is_what_touches_and_nothing_else(side: int) -> None:
 
 def test_what_was_looked_at_is_known_again_among_new_surroundings() -> None:
     body, case, other = OwnBody(MODEL, natural_walk()), Case(1, 7), Case(1, 8)
-    first = case.prices(body)
+    first = case.costs(body)
     other.uppers[2], other.states[2], other.states[2, :3] = case.uppers[2], case.states[2], 0.0  # wherever it stands
-    mixed = other.prices(body)
-    assert np.array_equal(mixed, other.prices(OwnBody(MODEL, natural_walk())))
-    assert np.array_equal(case.prices(body), first)
+    mixed = other.costs(body)
+    assert np.array_equal(mixed, other.costs(OwnBody(MODEL, natural_walk())))
+    assert np.array_equal(case.costs(body), first)
     assert not np.array_equal(mixed, first)
 
 
@@ -132,7 +132,7 @@ def test_no_ball_hides_a_posture() -> None:
     rng, postures = np.random.default_rng(11), POSTURES[0]
     axes = rng.uniform(-0.6, 0.6, (12, 6)).astype(np.float32)
     allowed = rng.uniform(-0.05, 0.15, (postures.segments.shape[0], 12)).astype(np.float32)
-    found = folded(postures.lanes, postures.balls, axes, allowed, SPARE)
+    found = touches_body(postures.lanes, postures.balls, axes, allowed, SPARE)
     for v in range(len(postures.configurations)):
         gaps = [
             axis_distance(postures.segments[c, :, v].astype(np.float64), axes[p].astype(np.float64))

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.planning.exact.joint.bounds import Problem, bounds_of
-from elbowroom.planning.exact.joint.product import joint_way
+from elbowroom.planning.exact.joint.product import joint_path
 from elbowroom.planning.result import PlanStatus
 
 INF = np.float32(np.inf)
@@ -69,7 +69,7 @@ def whole_product(problem: Problem) -> tuple[int, float]:
 @given(st.integers(0, 100_000))
 def test_same_feasibility_and_optimum_as_the_whole_product(seed: int) -> None:
     problem = random_problem(seed, (2, 3, 3) if seed % 2 else (1, 2, 5))
-    way = joint_way(problem)
+    way = joint_path(problem)
     reached, cost = whole_product(problem)
     assert (way.status is PlanStatus.FOUND) == np.isfinite(cost)
     if way.status is PlanStatus.FOUND:
@@ -89,7 +89,7 @@ def test_same_feasibility_and_optimum_as_the_whole_product(seed: int) -> None:
 def test_leaving_out_what_cannot_matter_changes_nothing(seed: int) -> None:
     """Larger than the first selection: the widening search against one sweep over everything."""
     problem = random_problem(seed, (11, 30, 27), 5)
-    way, (found, cost) = joint_way(problem), _everything(problem)
+    way, (found, cost) = joint_path(problem), _everything(problem)
     assert (way.status is PlanStatus.FOUND) == found
     assert not found or np.isclose(way.cost, cost, atol=1e-5)
 
@@ -118,7 +118,7 @@ def _everything(problem: Problem) -> tuple[bool, float]:
 @given(st.integers(0, 100_000))
 def test_bounds_never_exceed_what_a_way_costs(seed: int) -> None:
     problem = random_problem(seed)
-    way = joint_way(problem)
+    way = joint_path(problem)
     if way.status is PlanStatus.FOUND:
         for group, through in enumerate(bounds_of(problem).through):
             assert np.all(through[np.arange(len(way.nodes)), way.nodes[:, group]] <= way.cost + 1e-5)
@@ -126,4 +126,4 @@ def test_bounds_never_exceed_what_a_way_costs(seed: int) -> None:
 
 def test_the_budget_ends_a_search() -> None:
     problem = random_problem(3, (11, 30, 27), 5)
-    assert joint_way(problem, budget=100).status is PlanStatus.OUT_OF_BUDGET
+    assert joint_path(problem, budget=100).status is PlanStatus.OUT_OF_BUDGET

@@ -13,8 +13,8 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import Start
 from elbowroom.planning.exact.plan.pauses import finished
-from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody
-from elbowroom.planning.exact.plan.upper_body_search import Dressing
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk
@@ -56,13 +56,13 @@ def walk(horizon: int = 8) -> RootPath:
     return RootPath(0.0, 0.15, states)
 
 
-def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> Dressing:
-    body = UpperBody(humanoid, scene, SETTINGS)
+def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> UpperBodySearch:
+    body = UpperBodyPlanner(humanoid, scene, SETTINGS)
     start = natural_walk()(path)[0]
-    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).dressing
+    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).search
 
 
-def step_of(dressing: Dressing) -> JointStep:
+def step_of(dressing: UpperBodySearch) -> JointStep:
     assert dressing._waist is not None
     return dressing.joint_step(dressing._waist)
 
@@ -88,7 +88,7 @@ def test_its_tables_say_what_the_posed_body_says(humanoid: Humanoid) -> None:
         contact = self_clearances(model, pairs, path.states[depth : depth + 1], upper[None])[:, 0]
         moments = len(step.around.places[depth])
         for side in range(2):
-            free = np.isfinite(step.prices[side][depth, nodes[0], nodes[1 + side]])
+            free = np.isfinite(step.costs[side][depth, nodes[0], nodes[1 + side]])
             near = min(arm_clearance(humanoid, step, depth, i, upper, side) for i in range(moments))
             margin = step.nodes[1 + side].margins[depth]
             if abs(near - margin) > 1e-4 and abs(contact[side] - SPARE) > 1e-3:
@@ -167,7 +167,7 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     start = natural_walk()(path)[0]
     plans = []
     for _ in range(2):
-        body = UpperBody(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
+        body = UpperBodyPlanner(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
         coarse = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
         plans.append(body.plan(path, Start(start, np.zeros_like(start))))
         body.reset()

@@ -95,10 +95,10 @@ def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
         rates = rates + 10.0 * rng.uniform(-wild, wild, rates.shape)
         found = looked_at(parts, path.states, keys, rates, np.arange(path.horizon))
         for k in range(path.horizon):
-            for step, room in zip(STEPS, ROOMS, strict=True):
-                looks = np.arange(step, MOMENTS + 1, step) / MOMENTS * T
-                expected = least_of_looks(path, keys, rates, k, looks)
-                if expected.min() < 0.0 or expected.min() >= room:
+            for step, scratch in zip(STEPS, ROOMS, strict=True):
+                samples = np.arange(step, MOMENTS + 1, step) / MOMENTS * T
+                expected = least_of_looks(path, keys, rates, k, samples)
+                if expected.min() < 0.0 or expected.min() >= scratch:
                     break
             near += 0.0 <= expected.min() < ROOMS[0]
             if expected.min() < CLEAR[-1]:

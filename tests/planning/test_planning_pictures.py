@@ -26,6 +26,6 @@ def parts(picture: Path) -> Counter[str]:
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_has_what_the_kept_one_has(drawn: Path, name: str) -> None:
-    now, kept = parts(drawn / name), parts(ROOT / "docs/images" / name)
-    assert set(now) == set(kept)
-    assert sum(now.values()) == pytest.approx(sum(kept.values()), rel=0.05)
+    now, previous = parts(drawn / name), parts(ROOT / "docs/images" / name)
+    assert set(now) == set(previous)
+    assert sum(now.values()) == pytest.approx(sum(previous.values()), rel=0.05)

@@ -26,16 +26,16 @@ def test_they_fill_the_joints_range_evenly() -> None:
 
 def test_the_cheapest_that_differ_are_chosen() -> None:
     rng = np.random.default_rng(0)
-    postures, prices, known = rng.uniform(-1, 1, (200, 3)), rng.uniform(0, 1, 200), rng.uniform(-1, 1, (5, 3))
-    prices[rng.random(200) < 0.3] = np.inf
-    taken = chosen(postures, prices, known, 0.4, 12)
-    assert np.all(np.isfinite(prices[taken]))
-    assert np.all(np.diff(prices[taken]) >= 0.0)
+    postures, costs, known = rng.uniform(-1, 1, (200, 3)), rng.uniform(0, 1, 200), rng.uniform(-1, 1, (5, 3))
+    costs[rng.random(200) < 0.3] = np.inf
+    taken = chosen(postures, costs, known, 0.4, 12)
+    assert np.all(np.isfinite(costs[taken]))
+    assert np.all(np.diff(costs[taken]) >= 0.0)
     together = np.concatenate([known, postures[taken]])
     for n in range(len(known), len(together)):
         assert np.linalg.norm(together[:n] - together[n], axis=1).min() >= 0.4
     if len(taken) < 12:  # whatever is left is like one that is there
-        left = [n for n in range(200) if n not in taken and np.isfinite(prices[n])]
+        left = [n for n in range(200) if n not in taken and np.isfinite(costs[n])]
         assert all(np.linalg.norm(together - postures[n], axis=1).min() < 0.4 for n in left)
 
 

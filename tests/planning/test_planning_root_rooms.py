@@ -41,14 +41,14 @@ def test_rows_that_are_kept_are_those_that_would_be_found_anew(seed: int) -> Non
     table = rows_near(LINE, seed, 6)
     walking = LineRooms(BODY, table, ANGLES, GRID)
     for first in (0, 2, 3, 9, 1, 40):
-        kept = walking.ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
+        previous = walking.ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
         fresh = LineRooms(BODY, table, ANGLES, GRID).ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
-        np.testing.assert_array_equal(kept.clear, fresh.clear)
-        np.testing.assert_array_equal(kept.shift, fresh.shift)
+        np.testing.assert_array_equal(previous.clear, fresh.clear)
+        np.testing.assert_array_equal(previous.shift, fresh.shift)
     other = LINE._replace(heading=0.9, facing=0.9)
-    kept = walking.ahead(other, SPEEDS, 2, 8, NOTHING)[0]
+    previous = walking.ahead(other, SPEEDS, 2, 8, NOTHING)[0]
     np.testing.assert_array_equal(
-        kept.clear, LineRooms(BODY, table, ANGLES, GRID).ahead(other, SPEEDS, 2, 8, NOTHING)[0].clear
+        previous.clear, LineRooms(BODY, table, ANGLES, GRID).ahead(other, SPEEDS, 2, 8, NOTHING)[0].clear
     )
 
 
@@ -57,7 +57,7 @@ def test_the_room_is_the_clearance_of_the_body_moved_to_each_place(first: float)
     """The twin: every capsule at every place against every box; what passes counts in its own row alone."""
     table, passing = rows_near(LINE, 7, 5), np.stack([rows_near(LINE, 20 + i, 2) for i in range(8)])
     grid = GRID._replace(aside=1e-9)  # so narrow that each place is its own best
-    room = LineRooms(BODY, table, ANGLES, grid).ahead(LINE, SPEEDS, first, 8, passing)[0]
+    scratch = LineRooms(BODY, table, ANGLES, grid).ahead(LINE, SPEEDS, first, 8, passing)[0]
     capsules = BODY.along(LINE, ANGLES, SPEEDS).capsules.astype(np.float64)
     for i in range(8):
         x, z = LINE.point(grid.step * (first + i))
@@ -67,7 +67,7 @@ def test_the_room_is_the_clearance_of_the_body_moved_to_each_place(first: float)
             for g in range(3):
                 part = slice(BODY.groups[g], BODY.groups[g + 1])
                 wanted = min(float(clearance(posed[part, :, None], BODY.radii[part], boxes)[0]), grid.comfort)
-                np.testing.assert_allclose(room.clear[g, i, :, t], wanted, atol=2e-6)
+                np.testing.assert_allclose(scratch.clear[g, i, :, t], wanted, atol=2e-6)
 
 
 def test_boxes_that_pass_leave_nothing_behind() -> None:

@@ -238,7 +238,7 @@ def pose_legs(
     return out
 
 
-class PoseRoom(NamedTuple):
+class PoseScratch(NamedTuple):
     """What the posing of one chain of joints works on."""
 
     local: Floats  # (J, 4) rotations in the parents' frames, those in T-pose where a chain moves nothing
@@ -249,9 +249,9 @@ class PoseRoom(NamedTuple):
 
 
 @inner_kernel
-def pose_room(base: Floats, offsets: Floats) -> PoseRoom:
+def pose_scratch(base: Floats, offsets: Floats) -> PoseScratch:
     """Room to pose chains of joints with the rotations `base` (J, 4) in T-pose."""
-    return PoseRoom(base.copy(), np.empty(base.shape), np.empty(offsets.shape), np.empty((2, 4)), np.empty((1, 6)))
+    return PoseScratch(base.copy(), np.empty(base.shape), np.empty(offsets.shape), np.empty((2, 4)), np.empty((1, 6)))
 
 
 @lean_kernel
@@ -268,7 +268,7 @@ def pose_trunk_into(
     half_leg: float,
     waist: Floats,
     count: int,
-    room: PoseRoom,
+    room: PoseScratch,
     first: int,
     out: Segments,
     chest_places: Floats,
@@ -314,7 +314,7 @@ def pose_trunk(
     chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
     pose_trunk_into(
         parents, offsets, order, spine, spine_weights, gaze, gaze_weights, joints, ends, half_leg, waist, len(waist),
-        pose_room(base, offsets), int(_FIRST), out, chest_places, chest_rotations,
+        pose_scratch(base, offsets), int(_FIRST), out, chest_places, chest_rotations,
     )  # fmt: skip
     return out, chest_places, chest_rotations
 
@@ -331,7 +331,7 @@ def pose_arm_into(
     ends: Floats,
     arm: Floats,
     count: int,
-    room: PoseRoom,
+    room: PoseScratch,
     first: int,
     out: Segments,
 ) -> None:
@@ -369,7 +369,7 @@ def pose_arm(
         ends,
         arm,
         len(arm),
-        pose_room(base, offsets),
+        pose_scratch(base, offsets),
         int(_FIRST),
         out,
     )

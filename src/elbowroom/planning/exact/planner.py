@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.attempts import Turns, same_place
-from elbowroom.planning.exact.plan.extension import Walk, prolonged, rest_of, settled
-from elbowroom.planning.exact.plan.farther import Farther
-from elbowroom.planning.exact.plan.full_plan import Stand, Whole, costing, first_part, stands
+from elbowroom.planning.exact.plan.attempts import AttemptOrder, same_place
+from elbowroom.planning.exact.plan.extension import OngoingPlan, extended, rest_of, settled
+from elbowroom.planning.exact.plan.farther import AheadOfTime
+from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, costing, first_part, stands
 from elbowroom.planning.exact.plan.pauses import Pausing, finished
-from elbowroom.planning.exact.plan.recent_plans import Recent
-from elbowroom.planning.exact.plan.upper_body import Effort, UpperBody, UpperPlan
+from elbowroom.planning.exact.plan.recent_plans import RecentPlans
+from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner, UpperPlan
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
@@ -54,17 +54,17 @@ class ExactPlanner:
         self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None, motions: MotionSet = STOCK
     ) -> None:
         self.settings = settings or ExactSettings()
-        self._body = UpperBody(humanoid, scene, self.settings, motions)
+        self._body = UpperBodyPlanner(humanoid, scene, self.settings, motions)
         self.reset()
 
     def reset(self) -> None:
         """Forget the last plan, what was thought through, and the postures that were added."""
-        self._recent = Recent()
-        self._stand: Stand | None = None
-        self._walk: Walk | None = None
-        self._farther: Farther | None = None
+        self._recent = RecentPlans()
+        self._stand: StandingPlan | None = None
+        self._walk: OngoingPlan | None = None
+        self._farther: AheadOfTime | None = None
         self._blockade: Blockade | None = None
-        self._turns = Turns()
+        self._turns = AttemptOrder()
         self._body.reset()
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
@@ -82,11 +82,13 @@ class ExactPlanner:
             self._farther = None
             whole = self._answered(left, root_planner, query, alone=alone)
             lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
-            self._walk = Walk(query, whole) if alone and lasts else None
+            self._walk = OngoingPlan(query, whole) if alone and lasts else None
         self._recent.take(whole)
         return first_part(whole, query.horizon)
 
-    def _answered(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> Whole:
+    def _answered(
+        self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool
+    ) -> FullPlan:
         """What is planned, or still known from when the avatar stood here; `alone`: nothing moves or is in a hurry."""
         stand = self._stand
         again = alone and stand is not None and stand.answers(query, self._body.version)
@@ -96,13 +98,13 @@ class ExactPlanner:
         whole = self._whole(left, root_planner, query)
         turns = stand.left - 1 if again and stand is not None else self._turns.left
         known = alone and self._body.version == before and stands(whole, query)
-        self._stand = Stand(query, before, whole, turns) if known else None
+        self._stand = StandingPlan(query, before, whole, turns) if known else None
         return whole
 
     def _horizon(self, query: MotionQuery) -> int:
         return max(query.horizon, round(self.settings.look_ahead / query.interval))
 
-    def _gone_on(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Whole | None:
+    def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
 
         One that evades something is kept for a while, and then planned anew.
@@ -111,47 +113,47 @@ class ExactPlanner:
         if not _is_commanded(left, root_planner):
             return left if known >= horizon - self._spare(query) else None
         if known >= horizon:
-            self._farther = self._farther or Farther(query, self._prolonging(left, root_planner, query))
+            self._farther = self._farther or AheadOfTime(query, self._extending(left, root_planner, query))
             self._farther.do_part(query.go_on)
             return costing(left, self._farther.costs())
         begun, self._farther = self._farther, None
         found = None if begun is None else self._taken_on(begun, query)
         if found is not None or (begun is not None and begun.searched):
             return found
-        return self._taken_on(Farther(query, self._prolonging(left, root_planner, query)), query)
+        return self._taken_on(AheadOfTime(query, self._extending(left, root_planner, query)), query)
 
-    def _taken_on(self, farther: Farther, query: MotionQuery) -> Whole | None:
+    def _taken_on(self, farther: AheadOfTime, query: MotionQuery) -> FullPlan | None:
         """What was found farther on becomes the walk; None if there is nothing."""
         self._walk = farther.walk(query.go_on)
         left = None if self._walk is None else self._walk.left(query)
         return None if left is None else costing(left, farther.costs())
 
-    def _prolonging(self, left: Whole, root_planner: RootPlanner, query: MotionQuery) -> Pausing[Whole | None]:
+    def _extending(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> Pausing[FullPlan | None]:
         """What is left of a walk, prolonged to where it has to lead when it has become too short."""
         near = max(left.root.path.horizon + 1, self._horizon(query))
         far = near + self._spare(query)
         root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
-        whole = yield from self._prolonged(left, root, query, Effort.QUICK)
+        whole = yield from self._extended(left, root, query, Effort.QUICK)
         if whole is None:
             shorter = root.along(root.path.until(near))
-            whole = yield from self._prolonged(left, shorter, query, Effort.QUICK)
+            whole = yield from self._extended(left, shorter, query, Effort.QUICK)
         return whole
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)
 
-    def _prolonged(self, left: Whole, root: RootPlan, query: MotionQuery, effort: Effort) -> Pausing[Whole | None]:
+    def _extended(self, left: FullPlan, root: RootPlan, query: MotionQuery, effort: Effort) -> Pausing[FullPlan | None]:
         """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
-        kept = settled(left, root.path, round(self.settings.revisited / root.path.interval))
-        if kept is None:
+        previous = settled(left, root.path, round(self.settings.revisited / root.path.interval))
+        if previous is None:
             return None
-        path = rest_of(root.path, kept.at)
-        rest = yield from self._body.planning(path, kept.begins, self._recent.kept(path), query.others, effort)
-        return prolonged(kept, rest, root) if rest.reached == path.horizon else None
+        path = rest_of(root.path, previous.at)
+        rest = yield from self._body.planning(path, previous.begins, self._recent.previous(path), query.others, effort)
+        return extended(previous, rest, root) if rest.reached == path.horizon else None
 
-    def _whole(self, left: Whole | None, root_planner: RootPlanner, query: MotionQuery) -> Whole:
+    def _whole(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery) -> FullPlan:
         """A motion from where the avatar is; `left` is what is left of a walk that has no new end at first sight."""
         horizon = self._horizon(query)
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
@@ -165,7 +167,7 @@ class ExactPlanner:
             if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
                 refined = None
                 if left is not None:
-                    refined = finished(self._prolonged(left, root, query, Effort.REFINED), query.go_on)
+                    refined = finished(self._extended(left, root, query, Effort.REFINED), query.go_on)
                 if refined is not None:
                     self._turns.found()
                     return refined
@@ -174,7 +176,7 @@ class ExactPlanner:
                 if not tried:
                     self._turns.found()
                 cheaper = None if query.hurry else self._cheaper(root_planner, query, tried, root)
-                return cheaper or Whole(root, upper.plan, upper.asked)
+                return cheaper or FullPlan(root, upper.plan, upper.asked)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _way(root.path, min(upper.reached + 1, horizon)))
         found = None if query.hurry else self._thought_through(root_planner, query, tried)
@@ -182,27 +184,27 @@ class ExactPlanner:
 
     def _cheaper(
         self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]", than: RootPlan
-    ) -> Whole | None:
+    ) -> FullPlan | None:
         """A path that costs much less than the one that was found, and on which all groups together have a way."""
         for root, _ in sorted(tried, key=lambda one: one.root.lost):
             if root.lost + _WORTH < than.lost:
                 upper = self._dress(root.path, query, Effort.GLANCE)
                 if upper.reached == root.path.horizon:
                     root_planner.follow(root)
-                    return Whole(root, upper.plan, upper.asked)
+                    return FullPlan(root, upper.plan, upper.asked)
         return None
 
-    def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole | None:
+    def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> FullPlan | None:
         """A path on which all groups together have a way after all."""
         for number, effort in self._turns.efforts([one.upper.reached for one in tried]):
             root = tried[number].root
             upper = self._dress(root.path, query, effort)
             if upper.reached == root.path.horizon:
                 root_planner.follow(root)
-                return Whole(root, upper.plan, upper.asked)
+                return FullPlan(root, upper.plan, upper.asked)
         return None
 
-    def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> Whole:
+    def _stop(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> FullPlan:
         """Walk on while there is a way, then brake, and say why; or do what the last plan had in mind.
 
         Only if that is of no use either may the upper body begin as hard as it takes.
@@ -213,12 +215,12 @@ class ExactPlanner:
         whole, last = self._braked(root, upper.reached, root_planner, query), self._recent.continued(query)
         if whole is None and (last is None or len(root_planner.moving)):
             whole = self._braked(root, upper.reached, root_planner, query, harsh=True)
-        whole = whole or last or Whole(root, upper.plan)
+        whole = whole or last or FullPlan(root, upper.plan)
         return whole._replace(local=whole.local._replace(blockade=why))
 
     def _braked(
         self, root: RootPlan, reached: int, root_planner: RootPlanner, query: MotionQuery, *, harsh: bool = False
-    ) -> Whole | None:
+    ) -> FullPlan | None:
         """The path of a root, braked as late as there is a way; the upper body came as far as `reached` on it."""
         brakings = [(moving, Effort.QUICK) for moving in _moving(reached)]
         brakings += [] if query.hurry else [(0, Effort.JOINT)]
@@ -229,7 +231,7 @@ class ExactPlanner:
             stopping = self._dress(path, query, effort, harsh=harsh)
             if stopping.reached == path.horizon:
                 kind = RootPlanKind.STOPPED if _way(path, path.horizon) < _STANDING else RootPlanKind.SHORTENED
-                return Whole(root._replace(path=path, kind=kind), stopping.plan, stopping.asked)
+                return FullPlan(root._replace(path=path, kind=kind), stopping.plan, stopping.asked)
         return None
 
     def _why(self, upper: UpperPlan, query: MotionQuery) -> Blockade | None:
@@ -239,7 +241,7 @@ class ExactPlanner:
         anew. Near the end of a way it is now and then only the motion between free postures that touches: the earlier
         answer, which names obstacles, says more.
         """
-        path, depth, last = upper.dressing.path, upper.dressing.blocked[1], self._blockade
+        path, depth, last = upper.search.path, upper.search.blocked[1], self._blockade
         place, moves = _place(upper), bool(query.root.forward or query.root.lateral)
         near = last is not None and same_place(place, last.place)
         if moves and not near and depth * path.interval > _FAR_OFF:
@@ -247,7 +249,7 @@ class ExactPlanner:
         if last is not None and near and moves:
             why = replace(last, time=path.start_time + path.interval * depth, ahead=_way(path, depth))
         else:
-            why = upper.dressing.blockade()
+            why = upper.search.blockade()
             if last is not None and near and why.kind is BlockadeKind.MOTION:
                 why = replace(last, time=why.time, ahead=why.ahead)
         self._blockade = why
@@ -256,23 +258,23 @@ class ExactPlanner:
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         query.go_on()
         begins = Start(query.upper, query.velocity, harsh=harsh)
-        work = self._body.planning(path, begins, self._recent.kept(path), query.others, effort)
+        work = self._body.planning(path, begins, self._recent.previous(path), query.others, effort)
         return finished(work, query.go_on)
 
 
-def _is_commanded(whole: Whole, root_planner: RootPlanner) -> bool:
+def _is_commanded(whole: FullPlan, root_planner: RootPlanner) -> bool:
     """Whether a motion follows the path as commanded, and the upper body has a way along it."""
     return whole.asked is not None and whole.root.lost < root_planner.settings.untroubled
 
 
-def _is_evasion(whole: Whole) -> bool:
+def _is_evasion(whole: FullPlan) -> bool:
     """Whether a motion leads aside of the path as commanded, or with the body turned, on a way that was found."""
     return whole.asked is not None and whole.root.kind is RootPlanKind.EVASION
 
 
 def _place(upper: UpperPlan) -> tuple[float, float]:
     """Where the root is, x and z, at the key time that the upper body did not reach."""
-    x, z = upper.dressing.path.states[upper.dressing.blocked[1], :2].tolist()
+    x, z = upper.search.path.states[upper.search.blocked[1], :2].tolist()
     return x, z
 
 

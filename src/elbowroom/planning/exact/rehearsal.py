@@ -14,20 +14,20 @@ from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.joint.bounds import Problem
-from elbowroom.planning.exact.joint.product import joint_way
+from elbowroom.planning.exact.joint.product import joint_path
 from elbowroom.planning.exact.joint.reachability import stepped_triples
 from elbowroom.planning.exact.lattice.postures import postures_of
 from elbowroom.planning.exact.memory.own_contacts import rule_out_near
 from elbowroom.planning.exact.memory.previous_plan import Start, jolts
 from elbowroom.planning.exact.plan.extension import leads_to
 from elbowroom.planning.exact.plan.pauses import finished
-from elbowroom.planning.exact.plan.upper_body import UpperBody
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_ways
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import folded_prices
+from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
-from elbowroom.planning.exact.sweep.proof import Carrier, limb_way
+from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
@@ -48,11 +48,11 @@ def rehearse(humanoid: Humanoid) -> None:
     """Plan once each way, joint step, added postures and certificate included; once for each humanoid."""
     path = _straight_on()
     for box in (_BESIDE, _WALL):
-        body = UpperBody(humanoid, _scene_with(*box), ExactSettings())
+        body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
         start = body.goals(path)[0]
-        dressing = body.plan(path, Start(start, np.zeros_like(start))).dressing
-        finished(dressing.together(1))
-        dressing.blockade()
+        search = body.plan(path, Start(start, np.zeros_like(start))).search
+        finished(search.together(1))
+        search.blockade()
     rehearse_own_body(humanoid)
     rehearse_detour(humanoid)
     rehearse_crouch(humanoid)
@@ -74,10 +74,10 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     model, arm, path = body_model(humanoid), DofGroup.LEFT_ARM, _straight_on()
     body, count = OwnBody(model, natural_walk()), len(path.states)
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
-    kept, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
+    previous, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
     goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
-    rule_out_near(np.zeros(2, np.float32), kept[:1], kept[1:2], kept[0], 0.0)
-    folded_prices(body.folding(0, postures), kept, kept, kept[0], True, goals, waists, path.states)
+    rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
+    own_body_costs(body.own_body_nodes(0, postures), previous, previous, previous[0], True, goals, waists, path.states)
     OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
@@ -105,11 +105,11 @@ def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
 def rehearse_product() -> None:
     """Search a product of a few postures of each group that has a way, and one that has none."""
     depths, size = 3, 4
-    prices, steps = np.zeros((depths, size), np.float32), np.zeros((depths - 1, size, size), np.float32)
+    costs, steps = np.zeros((depths, size), np.float32), np.zeros((depths - 1, size, size), np.float32)
     under = np.zeros((depths, size, size), np.float32)
-    problem = Problem(prices, under, under, steps, steps, steps, np.ones(under.shape, np.bool_))
-    joint_way(problem)
-    joint_way(problem._replace(apart=np.zeros(under.shape, np.bool_)))
+    problem = Problem(costs, under, under, steps, steps, steps, np.ones(under.shape, np.bool_))
+    joint_path(problem)
+    joint_path(problem._replace(apart=np.zeros(under.shape, np.bool_)))
     stepped_triples(problem, 0, np.ones((size, size, size), np.bool_))
 
 
@@ -119,7 +119,7 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     limb = limb_of(model, DofGroup.WAIST)
     rest = np.zeros((1, DofGroup.WAIST.size))
     postures = postures_of(limb, rest, 1.0)
-    ways, chain = new_limb_ways(1, DofGroup.WAIST.size, carries=True), chain_of(model, limb, postures.reach)
+    ways, chain = new_limb_sweeps(1, DofGroup.WAIST.size, carries=True), chain_of(model, limb, postures.reach)
     places, turns, states = np.zeros((SWEEP + 1, 3)), np.zeros((SWEEP + 1, 4)), np.zeros(16)
     turns[:, 3], states[0] = 1.0, _INTERVAL
     carrier = Carrier(0, places, turns, np.full(SWEEP, 0.1), states, places, states)
@@ -127,4 +127,4 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     boxes[0, 3:12:4], boxes[0, 12:] = 1.0, 0.01
     boxes[0, 0] = postures.reach
     ends = (rest[0], rest[0], rest[0], rest[0])
-    limb_way(ways, postures, levers_of(model, limb), chain, carrier, ends, boxes, 0.0)
+    limb_sweep(ways, postures, levers_of(model, limb), chain, carrier, ends, boxes, 0.0)

@@ -23,7 +23,7 @@ class ExactSettings:
     waist_acceleration: float = 60.0  # rad/s^2: half a radian in 0.22 s
     arm_acceleration: float = 150.0  # rad/s^2: a radian in 0.2 s, as in a reach as fast as can be
     margin: float = 0.008  # clearance of a posture around its key time
-    skin: float = 0.005  # clearance of the motion that is shown
+    motion_margin: float = 0.005  # clearance of the motion that is shown
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
     soon_share: float = 0.5  # of margin and skin, at this moment
     spare: float = 0.45  # seconds beyond the look-ahead, or within it on a way aside, in which a plan is kept

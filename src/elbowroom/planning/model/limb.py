@@ -86,20 +86,20 @@ def _trunk_limits(model: BodyModel, group: DofGroup) -> tuple[Floats, Floats]:
     return trunk, allowed_distances(hanging, radii, trunk, model.capsules_of(DofGroup.WAIST).radii)
 
 
-class LimbRoom(NamedTuple):
+class LimbScratch(NamedTuple):
     """What the posing of a limb works on; it belongs to that limb."""
 
-    joints: posing.PoseRoom
+    joints: posing.PoseScratch
     places: Floats  # (N, 3) of the frames that the waist's limb carries
     turns: Floats  # (N, 4)
     none: Floats32  # (0, 6, 0) no capsules
 
 
 @exact_inner_kernel
-def limb_room(limb: Limb, count: int) -> LimbRoom:
+def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     """Room to pose a limb in `count` configurations at once."""
-    return LimbRoom(
-        posing.pose_room(limb.base, limb.offsets),
+    return LimbScratch(
+        posing.pose_scratch(limb.base, limb.offsets),
         np.empty((count, 3)),
         np.empty((count, 4)),
         np.empty((0, 6, 0), np.float32),
@@ -107,7 +107,7 @@ def limb_room(limb: Limb, count: int) -> LimbRoom:
 
 
 @exact_lean_kernel
-def pose_into(limb: Limb, room: LimbRoom, configurations: Floats, count: int, first: int, out: Floats32) -> None:
+def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int, first: int, out: Floats32) -> None:
     """`pose` for the first `count` configurations (N, d), written to `out` (C, 6 or more, M) from `first` on.
 
     The frames that the waist's limb carries are written to the room.
@@ -115,23 +115,23 @@ def pose_into(limb: Limb, room: LimbRoom, configurations: Floats, count: int, fi
     if limb.is_waist:
         posing.pose_trunk_into(
             limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
-            limb.joints, limb.ends, limb.half_leg, configurations, count, room.joints, first, out,
-            room.places, room.turns,
+            limb.joints, limb.ends, limb.half_leg, configurations, count, scratch.joints, first, out,
+            scratch.places, scratch.turns,
         )  # fmt: skip
     else:
         posing.pose_arm_into(
             limb.parents, limb.offsets, limb.order, limb.spine[len(limb.spine) - 1], limb.arm_joints, limb.mirror,
-            limb.joints, limb.ends, configurations, count, room.joints, first, out,
+            limb.joints, limb.ends, configurations, count, scratch.joints, first, out,
         )  # fmt: skip
 
 
 @exact_lean_kernel
-def carry_frames(limb: Limb, room: LimbRoom, configurations: Floats, count: int) -> None:
+def carry_frames(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int) -> None:
     """The frames that the waist's limb carries, the chest's, in the pelvis frame, into the room; no capsules."""
     posing.pose_trunk_into(
         limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
-        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, room.joints, int(_FIRST), room.none,
-        room.places, room.turns,
+        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, scratch.joints, int(_FIRST), scratch.none,
+        scratch.places, scratch.turns,
     )  # fmt: skip
 
 
@@ -140,5 +140,5 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
     """Capsule end points (C, 6, N) for configurations (N, d), in the pelvis frame (waist) or the chest frame (arms)."""
     count = configurations.shape[0]
     out = np.empty((limb.joints.shape[0], 6, count), np.float32)
-    pose_into(limb, limb_room(limb, count), configurations, count, int(_FIRST), out)
+    pose_into(limb, limb_scratch(limb, count), configurations, count, int(_FIRST), out)
     return out

@@ -53,11 +53,11 @@ def _possible(step: JointStep, depth: int) -> Bools:
     """The triples (W, L, R) that the body itself allows in a slice, whatever is near."""
     waist, left, right = step.nodes
     usable = [np.isfinite(group.prices_alone[depth]) for group in (waist, left, right)]
-    folded = [step.folded(side, depth, np.flatnonzero(usable[0])) for side in range(2)]
+    touches_body = [step.touches_body(side, depth, np.flatnonzero(usable[0])) for side in range(2)]
     apart = step.apart_at(depth)
     possible: Bools = np.zeros((len(usable[0]), len(usable[1]), len(usable[2])), np.bool_)
     for row, w in enumerate(np.flatnonzero(usable[0])):
-        both = (usable[1] & ~folded[0][row])[:, None] & (usable[2] & ~folded[1][row])
+        both = (usable[1] & ~touches_body[0][row])[:, None] & (usable[2] & ~touches_body[1][row])
         possible[w] = both & apart
     return possible
 

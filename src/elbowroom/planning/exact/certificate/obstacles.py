@@ -27,7 +27,7 @@ class SliceContacts(NamedTuple):
 
 
 @exact_kernel
-def _all_closed(contacts: SliceContacts, kept: Bools) -> bool:
+def _all_closed(contacts: SliceContacts, previous: Bools) -> bool:
     """Whether the kept boxes (B,) close every candidate."""
     _, waists, lefts = contacts.left.shape
     rights = contacts.right.shape[2]
@@ -35,8 +35,8 @@ def _all_closed(contacts: SliceContacts, kept: Bools) -> bool:
     for w in range(waists):
         closed = False
         left[:], right[:] = False, False
-        for b in range(kept.shape[0]):
-            if kept[b]:
+        for b in range(previous.shape[0]):
+            if previous[b]:
                 closed |= contacts.waist[b, w]
                 left |= contacts.left[b, w]
                 right |= contacts.right[b, w]
@@ -52,12 +52,12 @@ def _all_closed(contacts: SliceContacts, kept: Bools) -> bool:
 
 @exact_kernel
 def _needed(contacts: SliceContacts) -> Bools:
-    kept = np.empty(contacts.waist.shape[0], np.bool_)
-    kept[:] = True
-    for b in range(kept.shape[0]):
-        kept[b] = False
-        kept[b] = not _all_closed(contacts, kept)
-    return kept
+    previous = np.empty(contacts.waist.shape[0], np.bool_)
+    previous[:] = True
+    for b in range(previous.shape[0]):
+        previous[b] = False
+        previous[b] = not _all_closed(contacts, previous)
+    return previous
 
 
 def blocking_boxes(contacts: SliceContacts) -> Indices | None:

@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
-from elbowroom.planning.exact.group.caches import Shelves
+from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.path_problem import PathProblem
-from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, own_postures
+from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, extra_postures
 from elbowroom.planning.exact.joint.guide import Guide
-from elbowroom.planning.exact.memory.own_contacts import SelfContacts, rule_out_near
-from elbowroom.planning.exact.plan.evidence import Ledger
+from elbowroom.planning.exact.memory.own_contacts import OwnContacts, rule_out_near
+from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import folded_prices
+from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
 
 Floats = NDArray[np.float64]
@@ -28,14 +28,14 @@ _NO_KEYS = np.zeros((0, LOCAL))
 class Ways(NamedTuple):
     """The ways of the groups, in order, as far as they were found; and the one that ended it."""
 
-    ways: tuple[GroupWay, ...]
-    failed: GroupWay | None
+    ways: tuple[GroupPath, ...]
+    failed: GroupPath | None
     reached: int  # the key time that all groups reached
     keys: Floats = _NO_KEYS  # the key postures of the groups side by side, (n+1, 11) if none failed, and
     velocities: Floats = _NO_KEYS  # the velocities there
 
     @staticmethod
-    def joined(ways: list[GroupWay], reached: int) -> "Ways":
+    def joined(ways: list[GroupPath], reached: int) -> "Ways":
         """The ways of all groups."""
         keys = np.concatenate([way.keys for way in ways], axis=1)
         velocities = np.concatenate([way.velocities for way in ways], axis=1)
@@ -47,18 +47,18 @@ class Arms:
 
     def __init__(
         self,
-        shelves: Shelves,
+        caches: PlanCaches,
         problem: PathProblem,
         own_body: OwnBody,
         own_motion: OwnMotion,
-        contacts: SelfContacts,
+        contacts: OwnContacts,
         rounds: int,
     ) -> None:
         """At most `rounds` motions may turn out to run into the body."""
-        self._shelves, self._problem, self._contacts, self._rounds = shelves, problem, contacts, rounds
+        self._shelves, self._problem, self._contacts, self._rounds = caches, problem, contacts, rounds
         self._own_body, self._own_motion = own_body, own_motion
 
-    def under(self, waist: GroupWay, guides: list[Guide] | None, ledger: Ledger) -> Pausing[Ways]:
+    def under(self, waist: GroupPath, guides: list[Guide] | None, evidence_log: EvidenceLog) -> Pausing[Ways]:
         """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
         horizon = self._problem.path.horizon
         if waist.reached < horizon:
@@ -68,7 +68,7 @@ class Arms:
             del ways[1 + first :]
             for side in range(first, len(_ARMS)):
                 way = yield from self._way(
-                    side, ways, None if guides is None else guides[1 + side], ledger, whole=whole
+                    side, ways, None if guides is None else guides[1 + side], evidence_log, whole=whole
                 )
                 if way.reached < horizon:
                     return Ways(tuple(ways), way, way.reached)
@@ -83,35 +83,42 @@ class Arms:
         return Ways(tuple(ways[:-1]), ways[-1], touching)
 
     def _way(
-        self, side: int, ways: list[GroupWay], follow: Guide | None, ledger: Ledger, *, whole: bool
-    ) -> Pausing[GroupWay]:
+        self, side: int, ways: list[GroupPath], follow: Guide | None, evidence_log: EvidenceLog, *, whole: bool
+    ) -> Pausing[GroupPath]:
         """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
-        task = self._problem.task(_ARMS[side], ways[0].slots, None if whole else self._resting(side), follow)
+        task = self._problem.task(_ARMS[side], ways[0].entries, None if whole else self._resting(side), follow)
         if whole:
-            folded = self._folded(side, ways, task)
-            task = task._replace(extra=folded if follow is None else folded + task.extra)
-        return (yield from ledger.search(_ARMS[side], task))
+            touches_body = self._folded(side, ways, task)
+            task = task._replace(extra=touches_body if follow is None else touches_body + task.extra)
+        return (yield from evidence_log.search(_ARMS[side], task))
 
     def _resting(self, side: int) -> Floats32:
         """Infinite where a node touches the naturally walking body."""
         postures, most = self._shelves.group(_ARMS[side]).postures, self._shelves.horizon + 1
-        return self._own_body.resting_prices(side, postures, most)[: len(self._problem.goals)]
+        return self._own_body.resting_costs(side, postures, most)[: len(self._problem.goals)]
 
-    def _folded(self, side: int, ways: list[GroupWay], task: GroupTask) -> Floats32:
+    def _folded(self, side: int, ways: list[GroupPath], task: GroupTask) -> Floats32:
         """Infinite where a node touches the body on its ways, or is near to one that did."""
         problem, made = self._problem, self._shelves.group(_ARMS[side])
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
-        folding = self._own_body.folding(side, made.postures)
-        prices = folded_prices(
-            folding, task.goals, task.kept, task.start, task.settled, problem.goals, around, problem.path.states
+        own_body_nodes = self._own_body.own_body_nodes(side, made.postures)
+        costs = own_body_costs(
+            own_body_nodes,
+            task.goals,
+            task.previous,
+            task.start,
+            task.settled,
+            problem.goals,
+            around,
+            problem.path.states,
         )
         for t, contact in self._contacts.of(side, problem.path.times):
             if t > 0 and contact.happens(around[t]):
-                own, _, _ = own_postures(made, task)
-                rule_out_near(prices[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
-        return prices
+                own, _, _ = extra_postures(made, task)
+                rule_out_near(costs[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
+        return costs
 
-    def _remember(self, ways: list[GroupWay], side: int, interval: int) -> None:
+    def _remember(self, ways: list[GroupPath], side: int, interval: int) -> None:
         """Remember what an arm did at both ends of an interval in which it ran into the body."""
         for t in range(max(interval, 1), interval + 2):
             around = np.concatenate([way.keys[t] for way in ways[: 1 + side]])

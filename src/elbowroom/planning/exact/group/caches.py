@@ -12,39 +12,43 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group.problem import Group
 from elbowroom.planning.exact.lattice.lattice import Work
 from elbowroom.planning.exact.memory.cache_index import begin_round
-from elbowroom.planning.exact.sweep.motion_bounds import Chain, LimbWays, RootWays, root_ways
+from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, LimbSweeps, RootSweeps, root_sweeps
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 
-class Shelf(NamedTuple):
+class GroupCache(NamedTuple):
     """What the searches of one group look at and write down, whatever they are asked for."""
 
     group: Group
-    roots: RootWays
-    waists: LimbWays
-    chain: Chain
+    roots: RootSweeps
+    waists: LimbSweeps
+    chain: KinematicChain
     work: Work
 
 
-class Shelves(NamedTuple):
+class PlanCaches(NamedTuple):
     """All that depends on the interval, with room for so many of them."""
 
-    held: Mapping[DofGroup, Held[Shelf]]
+    held: Mapping[DofGroup, Held[GroupCache]]
     horizon: int  # the greatest number of key intervals that there is room for
 
     @staticmethod
     def of(
-        groups: Mapping[DofGroup, Group], works: Mapping[DofGroup, Work], roots: RootWays, chain: Chain, horizon: int
-    ) -> "Shelves":
+        groups: Mapping[DofGroup, Group],
+        works: Mapping[DofGroup, Work],
+        roots: RootSweeps,
+        chain: KinematicChain,
+        horizon: int,
+    ) -> "PlanCaches":
         """The shelves of these groups, one of which is the waist."""
         waists = groups[DofGroup.WAIST].ways
-        made = {group: hold(Shelf(groups[group], roots, waists, chain, works[group])) for group in groups}
-        return Shelves(made, horizon)
+        made = {group: hold(GroupCache(groups[group], roots, waists, chain, works[group])) for group in groups}
+        return PlanCaches(made, horizon)
 
     @property
-    def roots(self) -> RootWays:
+    def roots(self) -> RootSweeps:
         """The ways of the root."""
         return self.held[DofGroup.WAIST].value.roots
 
@@ -57,15 +61,15 @@ class Shelves(NamedTuple):
         """What is known of a group."""
         return self.held[group].value.group
 
-    def with_group(self, group: DofGroup, made: Group, room: Work) -> "Shelves":
+    def with_group(self, group: DofGroup, made: Group, scratch: Work) -> "PlanCaches":
         """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
         old = self.held[group].value
-        shelf = old._replace(group=made._replace(ways=old.group.ways), work=room)
-        return self._replace(held={**self.held, group: hold(shelf)})
+        cache = old._replace(group=made._replace(ways=old.group.ways), work=scratch)
+        return self._replace(held={**self.held, group: hold(cache)})
 
 
 @exact_kernel
-def begun_ways(shelf: Held[Shelf], states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The `root_ways` of a new plan: the slots (n,) between key states (n+1, 7), each with its stamp (n,)."""
-    begin_round(shelf.value.roots.slots)
-    return root_ways(shelf.value.roots, shelf.value.chain, states, interval, stamps)
+def begin_root_sweeps(cache: Held[GroupCache], states: Floats, interval: float, stamps: Floats) -> Longs:
+    """The `root_sweeps` of a new plan: the slots (n,) between key states (n+1, 7), each with its stamp (n,)."""
+    begin_round(cache.value.roots.entries)
+    return root_sweeps(cache.value.roots, cache.value.chain, states, interval, stamps)

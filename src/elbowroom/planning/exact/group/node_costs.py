@@ -7,18 +7,18 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.group.problem import GroupTask, Weights
-from elbowroom.planning.exact.lattice.lattice import BACK, OWN, squares_from
+from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, squares_from
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.node_clearances import (
     HELD_AT_START,
     HELD_EARLY,
     HELD_LATE,
-    Tables,
+    NodeClearances,
     held_clearance_in,
-    table_of,
+    interval_clearances,
 )
-from elbowroom.planning.exact.sweep.scratch import Workroom
+from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import Limb, pose_into
 from elbowroom.planning.model.self_contact import is_clear_of_trunk
 from elbowroom.planning.paper.activity_graph import squared_distance
@@ -41,41 +41,50 @@ class Carriers(NamedTuple):
 
 
 @exact_inner_kernel
-def carriers_at(ids: Longs, places: Floats, turns: Floats, slots: Longs) -> Carriers:
+def carriers_at(ids: Longs, places: Floats, turns: Floats, entries: Longs) -> Carriers:
     """The ways at `slots` (n,), one after the other."""
-    count = slots.shape[0]
+    count = entries.shape[0]
     out = Carriers(np.empty(count, np.int64), np.empty((count, SWEEP + 1, 3)), np.empty((count, SWEEP + 1, 4)))
     for k in range(count):
-        at = slots[k]
+        at = entries[k]
         out.ids[k] = ids[at]
-        for look in range(SWEEP + 1):
+        for sample in range(SWEEP + 1):
             for i in range(3):
-                out.places[k, look, i] = places[at, look, i]
+                out.places[k, sample, i] = places[at, sample, i]
             for i in range(4):
-                out.turns[k, look, i] = turns[at, look, i]
+                out.turns[k, sample, i] = turns[at, sample, i]
     return out
 
 
 @inlined
 def _clearances(
-    room: Workroom, tables: Tables, postures: Postures, carriers: Carriers, goals: Floats, boxes: Floats, own: Floats,
-    needed: Bools, clear: Floats32,
-) -> int:  # fmt: skip
+    scratch: Scratch,
+    tables: NodeClearances,
+    postures: Postures,
+    carriers: Carriers,
+    goals: Floats,
+    boxes: Floats,
+    own: Floats,
+    needed: Bools,
+    clear: Floats32,
+) -> int:
     """The clearances of the nodes into `clear` (n+1, W+OWN); returns the capsules that had to be checked for them."""
     width = postures.columns.shape[1]
     clear[:] = _INFINITE
     checks = 0
     for k in range(goals.shape[0] - 1):
         places, turns, around = carriers.places[k], carriers.turns[k], boxes[k]
-        at, count = table_of(room, tables, postures, carriers.ids[k], places, turns, goals[k : k + 2], around)
+        at, count = interval_clearances(
+            scratch, tables, postures, carriers.ids[k], places, turns, goals[k : k + 2], around
+        )
         checks += count
         _lower(clear[k], tables.early[at])
         _lower(clear[k + 1], tables.late[at])
-        for e in range(1, OWN):
+        for e in range(1, EXTRA):
             for end in range(2):
                 if needed[k + end, e]:
                     part = HELD_EARLY if end == 0 else HELD_LATE
-                    found, count = held_clearance_in(room, postures, own[k + end, e], places, turns, around, part)
+                    found, count = held_clearance_in(scratch, postures, own[k + end, e], places, turns, around, part)
                     checks += count
                     clear[k + end, width + e] = min(clear[k + end, width + e], found)
     return checks
@@ -89,10 +98,18 @@ def _lower(row: Floats32, other: Floats32) -> None:
 
 
 @inlined
-def _priced(
-    columns: Floats32, goals: Floats, own: Floats, clear: Floats32, extras: Floats32, margins: Floats, most: float,
-    weights: Weights, kept: Longs, price: Floats32,
-) -> None:  # fmt: skip
+def _costs(
+    columns: Floats32,
+    goals: Floats,
+    own: Floats,
+    clear: Floats32,
+    extras: Floats32,
+    margins: Floats,
+    most: float,
+    weights: Weights,
+    previous: Longs,
+    price: Floats32,
+) -> None:
     """Squared distance from the goal and the lack of comfort, for nodes with the clearances `clear` (n+1, W+OWN).
 
     Infinite where there is less than the margin, or than `most`. What is `kept` (n+1,) costs less, but near the goal
@@ -103,45 +120,54 @@ def _priced(
     for t in range(price.shape[0]):
         row, free, extra = price[t], clear[t], extras[t]
         squares_from(columns, goals[t], row[:width])
-        for e in range(OWN):
+        for e in range(EXTRA):
             row[width + e] = squared_distance(own[t, e], goals[t])
-        row[kept[t]] -= min(np.float32(weights.keeping), np.float32(0.5) * row[kept[t]])
+        row[previous[t]] -= min(np.float32(weights.keeping), np.float32(0.5) * row[previous[t]])
         margin = np.float32(min(margins[t], most))
-        for node in range(np.uint64(width + OWN)):
+        for node in range(np.uint64(width + EXTRA)):
             lack = max(comfort - free[node], np.float32(0.0))
             cost = row[node] + near * lack * lack + extra[node]
             row[node] = cost if free[node] >= margin else _INFINITE
 
 
 @inlined
-def _unfold(room: Workroom, limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
+def _unfold(scratch: Scratch, limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
     """Rule out ways back that lead through the trunk."""
-    width = price.shape[1] - OWN
+    width = price.shape[1] - EXTRA
     for t in range(own.shape[0]):
         if needed[t, BACK]:
-            pose_into(limb, room.limb, own[t, BACK : BACK + 1], int(_ONE), int(_FIRST), room.segments)
-            if not is_clear_of_trunk(room.segments, int(_FIRST), limb.trunk, limb.allowed, room.axis):
+            pose_into(limb, scratch.limb, own[t, BACK : BACK + 1], int(_ONE), int(_FIRST), scratch.segments)
+            if not is_clear_of_trunk(scratch.segments, int(_FIRST), limb.trunk, limb.allowed, scratch.axis):
                 price[t, width + BACK] = _INFINITE
 
 
 @exact_lean_kernel
 def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
     """Lanes that only fill up the last block, and postures of a key time alone that are not needed, are no nodes."""
-    width = price.shape[1] - OWN
+    width = price.shape[1] - EXTRA
     for t in range(price.shape[0]):
         row = price[t]
         for node in range(size, width):
             row[node] = _INFINITE
-        for e in range(1, OWN):
+        for e in range(1, EXTRA):
             if not needed[t, e]:
                 row[width + e] = _INFINITE
 
 
 @exact_lean_kernel
-def node_prices(
-    room: Workroom, tables: Tables, postures: Postures, carriers: Carriers, task: GroupTask, weights: Weights,
-    own: Floats, needed: Bools, kept: Longs, clear: Floats32, price: Floats32,
-) -> tuple[float, int]:  # fmt: skip
+def node_costs(
+    scratch: Scratch,
+    tables: NodeClearances,
+    postures: Postures,
+    carriers: Carriers,
+    task: GroupTask,
+    weights: Weights,
+    own: Floats,
+    needed: Bools,
+    previous: Longs,
+    clear: Floats32,
+    price: Floats32,
+) -> tuple[float, int]:
     """The prices (n+1, W+OWN) of all nodes, infinite where one is not free, into `price`; `clear` like it is scratch.
 
     Returns the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
@@ -150,12 +176,12 @@ def node_prices(
     most, checks = np.inf, 0
     if not task.settled:
         clearance, checks = held_clearance_in(
-            room, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
+            scratch, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
         )
         most = max(0.5 * clearance, 0.0)
-    checks += _clearances(room, tables, postures, carriers, goals, boxes, own, needed, clear)
-    _priced(columns, goals, own, clear, task.extra, task.margins, most, weights, kept, price)
+    checks += _clearances(scratch, tables, postures, carriers, goals, boxes, own, needed, clear)
+    _costs(columns, goals, own, clear, task.extra, task.margins, most, weights, previous, price)
     _rule_out(price, postures.configurations.shape[0], needed)
     if not limb.is_waist:
-        _unfold(room, limb, own, needed, price)
+        _unfold(scratch, limb, own, needed, price)
     return most, checks

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
-from elbowroom.planning.exact.group.caches import Shelves
+from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.problem import GroupTask
 from elbowroom.planning.exact.joint.guide import Guide
-from elbowroom.planning.exact.lattice.lattice import OWN
-from elbowroom.planning.exact.memory.previous_plan import Asked, Kept, Start
+from elbowroom.planning.exact.lattice.lattice import EXTRA
+from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start
 from elbowroom.planning.exact.sweep.near_boxes import NearBoxes
 from elbowroom.planning.root.path import RootPath
 
@@ -26,8 +26,8 @@ class PathProblem(NamedTuple):
 
     path: RootPath
     goals: Floats  # (n+1, 11)
-    last: Kept | None  # the last plan
-    kept: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
+    last: PreviousPlan | None  # the last plan
+    previous: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
     begins: Start
     roots: Longs  # (n,) slots of the root ways
     near: NearBoxes
@@ -36,7 +36,13 @@ class PathProblem(NamedTuple):
 
     @staticmethod
     def of(
-        path: RootPath, goals: Floats, last: Kept | None, begins: Start, roots: Longs, near: NearBoxes, anew: Asked
+        path: RootPath,
+        goals: Floats,
+        last: PreviousPlan | None,
+        begins: Start,
+        roots: Longs,
+        near: NearBoxes,
+        anew: Asked,
     ) -> "PathProblem":
         """What is asked for on a path among what is `near`, in view of the `last` plan.
 
@@ -45,8 +51,8 @@ class PathProblem(NamedTuple):
         if last is None:
             return PathProblem(path, goals, None, goals, begins, roots, near, anew, anew)
         reached = last.known if begins.ahead else len(goals)
-        kept = np.concatenate([last.keys[:reached], goals[reached:]])
-        return PathProblem(path, goals, last, kept, begins, roots, near, anew, anew.beside(last.asked))
+        previous = np.concatenate([last.keys[:reached], goals[reached:]])
+        return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.asked))
 
     def task(
         self, group: DofGroup, carriers: Longs, extra: Floats32 | None = None, follow: Guide | None = None
@@ -56,16 +62,26 @@ class PathProblem(NamedTuple):
         `extra` (n+1, W+OWN) is added to the prices of its nodes; it may `follow` a guide, which has prices of its own.
         """
         at, number, begins = columns_of(group), LOCAL_GROUPS.index(group), self.begins
-        kept = self.kept[:, at] if follow is None else follow.keys
+        previous = self.previous[:, at] if follow is None else follow.keys
         own = _NONE if extra is None else extra
-        prices = own if follow is None else follow.extra if extra is None else follow.extra + own
+        costs = own if follow is None else follow.extra if extra is None else follow.extra + own
         return GroupTask(
-            np.ascontiguousarray(self.goals[:, at]), np.ascontiguousarray(kept), begins.upper[at], begins.velocity[at],
-            self.asked.margins[number], self.asked.skins[number], prices, self.roots, carriers,
-            self.near.intervals, self.path.interval, begins.harsh, begins.ahead > 0,
-        )  # fmt: skip
+            np.ascontiguousarray(self.goals[:, at]),
+            np.ascontiguousarray(previous),
+            begins.upper[at],
+            begins.velocity[at],
+            self.asked.margins[number],
+            self.asked.motion_margins[number],
+            costs,
+            self.roots,
+            carriers,
+            self.near.intervals,
+            self.path.interval,
+            begins.harsh,
+            begins.ahead > 0,
+        )
 
 
-def no_prices(shelves: Shelves, group: DofGroup, horizon: int) -> Floats32:
+def no_costs(caches: PlanCaches, group: DofGroup, horizon: int) -> Floats32:
     """Nothing (n+1, W+OWN) to be added to the prices of a group's nodes."""
-    return np.zeros((horizon + 1, shelves.group(group).postures.moves.shape[1] + OWN), np.float32)
+    return np.zeros((horizon + 1, caches.group(group).postures.moves.shape[1] + EXTRA), np.float32)

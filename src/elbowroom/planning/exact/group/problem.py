@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice.closed_edges import Masks
-from elbowroom.planning.exact.lattice.extra_nodes import alone_at
+from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges
+from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import Postures
-from elbowroom.planning.exact.sweep.motion_bounds import LimbWays
-from elbowroom.planning.exact.sweep.node_clearances import Tables
+from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
+from elbowroom.planning.exact.sweep.node_clearances import NodeClearances
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -25,9 +25,9 @@ class Group(NamedTuple):
     limits: Floats  # (d, 2) of the joints
     speed: float  # the greatest over all components together, rad/s, and
     acceleration: float  # rad/s^2
-    tables: Tables
-    ways: LimbWays
-    masks: Masks
+    tables: NodeClearances
+    ways: LimbSweeps
+    masks: ClosedEdges
 
 
 class Weights(NamedTuple):
@@ -44,11 +44,11 @@ class GroupTask(NamedTuple):
     """What one group has to do."""
 
     goals: Floats  # (n+1, d)
-    kept: Floats  # (n+1, d) what the last plan had
+    previous: Floats  # (n+1, d) what the last plan had
     start: Floats  # (d,)
     velocity: Floats  # (d,) there
     margins: Floats  # (n+1,) clearance of a node; less where the start has less, so that who stands close by can go
-    skins: Floats  # (n,) clearance of the motion at the looks; less where the start has less
+    motion_margins: Floats  # (n,) clearance of the motion at the looks; less where the start has less
     extra: Floats32  # (n+1, W+OWN) added to the nodes' prices
     roots: Longs  # (n,) slots of the root ways
     carriers: Longs  # (n,) slots of the waist's ways, for an arm
@@ -58,26 +58,26 @@ class GroupTask(NamedTuple):
     settled: bool  # whether it goes on from a way that is proven: then the start lowers no clearance
 
 
-class GroupWay(NamedTuple):
+class GroupPath(NamedTuple):
     """What was found."""
 
     reached: int  # n if there is a way, else the depth that none got beyond
     keys: Floats  # (reached+1, d)
     velocities: Floats  # (reached+1, d) of the curve
-    slots: Longs  # (n,) of the ways through the intervals
-    price: Floats32  # (n+1, W+OWN) of the nodes, infinite where one is not free
+    entries: Longs  # (n,) of the ways through the intervals
+    cost: Floats32  # (n+1, W+OWN) of the nodes, infinite where one is not free
     most: float  # metres: no greater clearance was asked for, since the start has less
     checks: int  # capsules checked
     nodes: int
     rounds: int  # motions that were tried
 
 
-def own_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Longs]:
+def extra_postures(group: Group, task: GroupTask) -> tuple[Floats, Bools, Longs]:
     """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
 
     A posture that is among the others already needs no node of its own.
     """
     postures = group.postures
-    return alone_at(
-        postures.configurations, postures.columns, postures.step, task.goals, task.kept, task.start, task.settled
+    return extra_nodes(
+        postures.configurations, postures.columns, postures.step, task.goals, task.previous, task.start, task.settled
     )  # fmt: skip

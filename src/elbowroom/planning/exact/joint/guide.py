@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.group.problem import Group, GroupTask, GroupWay, own_postures
+from elbowroom.planning.exact.group.problem import Group, GroupPath, GroupTask, extra_postures
 from elbowroom.planning.exact.joint.step import GroupNodes, Surroundings
-from elbowroom.planning.exact.lattice.lattice import HOLD, KEPT, OWN
+from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, KEPT
 from elbowroom.planning.exact.lattice.postures import BLOCK
-from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, RootWays
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, RootSweeps
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -33,10 +33,10 @@ class Guide(NamedTuple):
     extra: Floats32  # (n+1, W+OWN) what its search has to pay for leaving it
 
 
-def waist_nodes(group: Group, task: GroupTask, way: GroupWay, keeping: float) -> GroupNodes:
+def waist_nodes(group: Group, task: GroupTask, way: GroupPath, keeping: float) -> GroupNodes:
     """The waist's nodes, priced as in its own search."""
     own, alone = _alone(group, task, keeping)
-    base = way.price.copy()
+    base = way.cost.copy()
     _only_start(base)
     return GroupNodes(group.postures, own, base, alone, task.goals, task.margins)
 
@@ -52,38 +52,38 @@ def arm_nodes(group: Group, task: GroupTask, keeping: float, most: float) -> Gro
 
 def _alone(group: Group, task: GroupTask, keeping: float) -> tuple[Floats, Floats32]:
     """The postures (n+1, OWN, d) of each key time alone, and the prices (n+1, W+OWN) of all nodes in the open."""
-    own, needed, kept = own_postures(group, task)
+    own, needed, previous = extra_postures(group, task)
     known = group.postures.configurations
     depths, width = len(own), len(group.postures.lanes) * BLOCK
-    base = np.full((depths, width + OWN), np.inf, np.float32)
+    base = np.full((depths, width + EXTRA), np.inf, np.float32)
     base[:, : len(known)] = np.sum((known - task.goals[:, None]) ** 2, axis=2)
     base[:, width:] = np.where(needed, np.sum((own - task.goals[:, None]) ** 2, axis=2), np.inf)
-    last = np.arange(depths), kept
+    last = np.arange(depths), previous
     base[last] -= np.minimum(np.float32(keeping), np.float32(0.5) * base[last])
     return own, base
 
 
 def _only_start(base: Floats32) -> None:
     base[0] = np.inf
-    base[0, base.shape[1] - OWN + HOLD] = 0.0
+    base[0, base.shape[1] - EXTRA + HOLD] = 0.0
 
 
-def surroundings(states: Floats, ways: RootWays, roots: Indices, boxes: Floats) -> Surroundings:
+def surroundings(states: Floats, ways: RootSweeps, roots: Indices, boxes: Floats) -> Surroundings:
     """The pelvis at the moments around each key time, where its postures have to be free."""
     count, moments = len(states), len(_LATE_LOOKS) + len(_EARLY_LOOKS)
     places, turns = np.empty((count, moments, 3)), np.empty((count, moments, 4))
     for t in range(count):
-        looks = [(t - 1, look) for look in _LATE_LOOKS] if t > 0 else []
-        looks += [(t, look) for look in _EARLY_LOOKS] if t < count - 1 else [(t - 1, SWEEP)]
+        samples = [(t - 1, sample) for sample in _LATE_LOOKS] if t > 0 else []
+        samples += [(t, sample) for sample in _EARLY_LOOKS] if t < count - 1 else [(t - 1, SWEEP)]
         for i in range(moments):
-            interval, look = looks[min(i, len(looks) - 1)]
-            places[t, i], turns[t, i] = ways.places[roots[interval], look], ways.turns[roots[interval], look]
+            interval, sample = samples[min(i, len(samples) - 1)]
+            places[t, i], turns[t, i] = ways.places[roots[interval], sample], ways.turns[roots[interval], sample]
     return Surroundings(states, places, turns, boxes)
 
 
 def guide(nodes: GroupNodes, chosen: Indices) -> Guide:
     """The guide of a group for its nodes (n+1,) of the joint way."""
-    width, depths = nodes.base.shape[1] - OWN, np.arange(len(chosen))
+    width, depths = nodes.base.shape[1] - EXTRA, np.arange(len(chosen))
     keys = np.empty_like(nodes.goals)
     extra = np.full(nodes.base.shape, _DEARER, np.float32)
     for t, node in enumerate(chosen):

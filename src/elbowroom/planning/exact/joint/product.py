@@ -34,7 +34,7 @@ _FEW = 24  # postures of each: if so many lead nowhere, it is asked first whethe
 _ROUNDING = 1e-4  # squared radians: more than the rounding of a sum in single precision
 
 
-class JointWay(NamedTuple):
+class JointPath(NamedTuple):
     """The outcome."""
 
     status: PlanStatus
@@ -47,7 +47,7 @@ class JointWay(NamedTuple):
 _NONE = np.empty((0, 3), np.int64)
 
 
-def joint_way(problem: Problem, budget: int = 4_000_000) -> JointWay:
+def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
     """The cheapest way from depth 0 to the last, or the proof that there is none.
 
     At most `budget` triples are settled; the proof is made once the first few selections have found nothing.
@@ -55,38 +55,38 @@ def joint_way(problem: Problem, budget: int = 4_000_000) -> JointWay:
     bounds = bounds_of(problem)
     everyone = [np.isfinite(through) for through in bounds.through]
     possible = all(bool(mask.any(axis=1).all()) for mask in everyone)
-    states, kept, proved = 0, _FIRST, False
+    states, previous, proved = 0, _FIRST, False
     while True:
-        if not proved and (not possible or kept > _FEW):
+        if not proved and (not possible or previous > _FEW):
             deepest, proved = reach(problem), True
             if deepest.depth < len(problem.waist_steps):
-                return JointWay(PlanStatus.EXHAUSTED, deepest, np.inf, _NONE, states)
-        chosen = [_cheapest(through, kept) for through in bounds.through]
+                return JointPath(PlanStatus.EXHAUSTED, deepest, np.inf, _NONE, states)
+        chosen = [_cheapest(through, previous) for through in bounds.through]
         states += _size(chosen)
         if states > budget:
             return _stopped(states)
         cost, nodes = sweep(problem, *chosen)
         if np.isfinite(cost):
             break
-        kept *= _GROWTH
+        previous *= _GROWTH
     needed = [through <= cost + _ROUNDING for through in bounds.through]
     if not all(bool((mask >= need).all()) for mask, need in zip(chosen, needed, strict=True)):
         states += _size(needed)
         if states > budget:
             return _stopped(states)
         cost, nodes = sweep(problem, *needed)
-    return JointWay(PlanStatus.FOUND, None, cost, nodes, states)
+    return JointPath(PlanStatus.FOUND, None, cost, nodes, states)
 
 
-def _stopped(states: int) -> JointWay:
-    return JointWay(PlanStatus.OUT_OF_BUDGET, None, np.inf, _NONE, states)
+def _stopped(states: int) -> JointPath:
+    return JointPath(PlanStatus.OUT_OF_BUDGET, None, np.inf, _NONE, states)
 
 
-def _cheapest(through: Floats32, kept: int) -> Bools:
+def _cheapest(through: Floats32, previous: int) -> Bools:
     """The `kept` cheapest postures of every slice, and what costs the same as the dearest of them."""
-    if kept >= through.shape[1]:
+    if previous >= through.shape[1]:
         return np.isfinite(through)
-    most = np.partition(through, kept - 1, axis=1)[:, kept - 1 : kept]
+    most = np.partition(through, previous - 1, axis=1)[:, previous - 1 : previous]
     chosen: Bools = np.isfinite(through) & (through <= most)
     return chosen
 

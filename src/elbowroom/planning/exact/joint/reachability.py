@@ -70,13 +70,13 @@ def _free(problem: Problem, depth: int) -> Bits:
 @exact_inner_kernel
 def _keep(known: Bits, free: Bits) -> bool:
     """Keep those triples of `known` that are free; whether there are any."""
-    kept = np.uint64(0)
+    previous = np.uint64(0)
     for w in range(known.shape[0]):
         for n in range(known.shape[1]):
             for i in range(known.shape[2]):
                 known[w, n, i] &= free[w, n, i]
-                kept |= known[w, n, i]
-    return bool(kept != 0)
+                previous |= known[w, n, i]
+    return bool(previous != 0)
 
 
 @exact_inner_kernel

@@ -16,11 +16,11 @@ from elbowroom.body.kinematics import chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.exact.joint.bounds import Problem, way_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
-from elbowroom.planning.exact.joint.product import JointWay, joint_way
+from elbowroom.planning.exact.joint.product import JointPath, joint_path
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
 from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.axis_distances import arm_clearances
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import pose
@@ -84,11 +84,11 @@ class JointStep:
         self._body = body
         depths, waists = waist.base.shape
         self.filled = np.zeros((depths, waists), np.bool_)
-        self.prices = [np.full((depths, waists, arm.base.shape[1]), _INFINITE, np.float32) for arm in arms]
+        self.costs = [np.full((depths, waists, arm.base.shape[1]), _INFINITE, np.float32) for arm in arms]
         self._lanes: dict[tuple[int, int], Lanes] = {}
         self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
 
-    def search(self) -> Pausing[JointWay]:
+    def search(self) -> Pausing[JointPath]:
         """The cheapest way for all three groups; nodes count as in `GroupNodes`."""
         for g in range(len(self.nodes)):
             if g not in self._alone:
@@ -117,18 +117,18 @@ class JointStep:
     def _spent(self) -> bool:
         return self.checks > self.settings.checks
 
-    def _among(self, waists: Bools) -> JointWay:
+    def _among(self, waists: Bools) -> JointPath:
         """The cheapest way among some waists (n+1, W+E), filled in first."""
         for depth in range(len(waists)):
             self.fill(depth, waists[depth])
-        way = joint_way(self.problem(), self.settings.budget - self.states)
+        way = joint_path(self.problem(), self.settings.budget - self.states)
         self.states += way.states
         return way
 
     def problem(self) -> Problem:
         """The product as far as it is filled in."""
         waist = np.where(self.filled, self.nodes[0].base, _INFINITE)
-        return Problem(waist, self.prices[0], self.prices[1], self.steps[0], self.steps[1], self.steps[2], self.apart)
+        return Problem(waist, self.costs[0], self.costs[1], self.steps[0], self.steps[1], self.steps[2], self.apart)
 
     def fill(self, depth: int, waists: Bools) -> None:
         """Look up the arms under some waists (W+E,) of a slice, those that are not yet known."""
@@ -145,20 +145,20 @@ class JointStep:
             self.checks += checks
             clear = clear[:, : group.base.shape[1]]
             if depth > 0:
-                clear[self.folded(side, depth, chosen)] = -np.inf
+                clear[self.touches_body(side, depth, chosen)] = -np.inf
             lack = np.maximum(np.float32(self.settings.comfort) - clear, np.float32(0.0))
             price = group.base[depth] + np.float32(self.settings.near) * np.minimum(lack, 1.0) ** 2
             price[clear < group.margins[depth]] = _INFINITE
-            self.prices[side][depth, chosen] = price
+            self.costs[side][depth, chosen] = price
 
-    def folded(self, side: int, depth: int, waists: Indices) -> Bools:
+    def touches_body(self, side: int, depth: int, waists: Indices) -> Bools:
         """Which nodes of an arm touch the body under some waists (F,) of a slice, (F, W+E)."""
         states = np.repeat(self.around.states[depth : depth + 1], len(waists), axis=0)
         parts = self._body.parts(side, self.configurations(0, depth)[waists], states, None)
         lanes, size = self.lanes(1 + side, depth), self.nodes[1 + side].base.shape[1]
         out = np.empty((len(waists), size), np.bool_)
         for row, axes in enumerate(parts.axes):
-            out[row] = folded(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
+            out[row] = touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
         return out
 
     def configurations(self, group: int, depth: int) -> Floats:
@@ -204,7 +204,7 @@ class JointStep:
     def apart(self) -> Bools:
         """Which arms keep clear of each other, (n+1, L, R); at the start they are as they are."""
         depths = range(1, len(self.filled))
-        start = np.ones((1, self.prices[0].shape[2], self.prices[1].shape[2]), np.bool_)
+        start = np.ones((1, self.costs[0].shape[2], self.costs[1].shape[2]), np.bool_)
         return np.concatenate([start, *(self.apart_at(depth)[None] for depth in depths)])
 
     @cached_property
@@ -216,7 +216,7 @@ class JointStep:
         """Which arms keep clear of each other in a slice, (L, R)."""
         segments, known = self._known_apart
         own = [np.ascontiguousarray(pose(group.postures.limb, group.own[depth])) for group in self.nodes[1:]]
-        apart = np.empty((self.prices[0].shape[2], self.prices[1].shape[2]), np.bool_)
+        apart = np.empty((self.costs[0].shape[2], self.costs[1].shape[2]), np.bool_)
         apart[: known.shape[0], : known.shape[1]] = known
         every, between = np.concatenate([segments[1], own[1]], axis=2), self._body.pairs.between
         apart[known.shape[0] :] = arm_clearances(own[0], every, between) >= SPARE

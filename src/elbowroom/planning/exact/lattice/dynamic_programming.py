@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
 from elbowroom.planning.exact.lattice.lattice import (
+    EXTRA,
     HOLD,
-    OWN,
     Lattice,
     Work,
     least_in,
@@ -67,11 +67,11 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     out[:] = _INFINITE
     base, limit = work.base, np.float32(most)
     square, known = np.float32(slopes_of(lattice, depth, depth, base)), work.costs[depth]
-    for node in range(np.uint64(width + OWN)):
+    for node in range(np.uint64(width + EXTRA)):
         base[node] = known[node] + base[node] + square if known[node] <= limit else _INFINITE
     mask = lattice.masks[depth]
     closed = lattice.closed[mask]
-    for node in range(width + OWN):
+    for node in range(width + EXTRA):
         if base[node] == _INFINITE:
             continue
         row = lattice.moves[node] if node < size else work.squares[depth, node - width]
@@ -88,12 +88,12 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
             )
         else:
             _relax(targets[low:high], target_origins[low:high], base[node], row[low:high], lattice.weight, node)
-    for f in range(OWN):
-        if lattice.price[depth + 1, width + f] < _INFINITE:
+    for f in range(EXTRA):
+        if lattice.cost[depth + 1, width + f] < _INFINITE:
             out[width + f], origins[width + f] = _settle_own(lattice, work, depth, f, base)
     slopes_of(lattice, depth, depth + 1, base)
-    price, count = lattice.price[depth + 1], 0
-    for node in range(np.uint64(width + OWN)):
+    price, count = lattice.cost[depth + 1], 0
+    for node in range(np.uint64(width + EXTRA)):
         out[node] += price[node] - base[node]
         count += out[node] < _INFINITE
     return count
@@ -106,7 +106,7 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
     mask = lattice.masks[depth]
     closed = lattice.closed[mask]
-    for node in range(width + OWN):
+    for node in range(width + EXTRA):
         if base[node] >= best or (mask >= 0 and closed[node, width + f]):
             continue
         move = row[node] if node < width else np.float32(own_move(lattice, depth, node - width, f))
@@ -136,7 +136,7 @@ def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple
 
 
 @exact_kernel
-def cheapest_way(lattice: Lattice, work: Work, begin: int, glance: bool) -> tuple[int, int]:
+def cheapest_path(lattice: Lattice, work: Work, begin: int, glance: bool) -> tuple[int, int]:
     """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
 
     Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
@@ -150,7 +150,7 @@ def cheapest_way(lattice: Lattice, work: Work, begin: int, glance: bool) -> tupl
     most = min(own_way(lattice, work.few), kept_way(lattice)) + _SLACK
     least[depths - 1] = 0.0
     for depth in range(depths - 2, -1, -1):
-        price = least_in(lattice.price[depth + 1])
+        price = least_in(lattice.cost[depth + 1])
         least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
     if most > work.most[0]:
         begin = 0  # what was left out may be needed
@@ -183,14 +183,14 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
     work.left[lattice.goals.shape[0] - 1] = 0.0
     for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
         out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]
-        targets, price, mask = out[:width], lattice.price[depth + 1], lattice.masks[depth]
+        targets, price, mask = out[:width], lattice.cost[depth + 1], lattice.masks[depth]
         closed = lattice.closed[mask]
         out[:] = _INFINITE
         square = np.float32(slopes_of(lattice, depth, depth + 1, slopes))
-        for node in range(np.uint64(width + OWN)):
+        for node in range(np.uint64(width + EXTRA)):
             base[node] = after[node] + price[node] - slopes[node] + square
             base[node] = base[node] if known[node] + after[node] <= limit else _INFINITE
-        for node in range(width + OWN):
+        for node in range(width + EXTRA):
             if base[node] == _INFINITE:
                 continue
             row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
@@ -202,11 +202,11 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
                 _relax_open(targets[low:high], origins[low:high], base[node], row[low:high], weight, node, near)
             else:
                 _relax(targets[low:high], origins[low:high], base[node], row[low:high], weight, node)
-            for e in range(OWN):
+            for e in range(EXTRA):
                 if work.costs[depth, width + e] < _INFINITE and not (mask >= 0 and closed[width + e, node]):
                     move = work.squares[depth, e, node] if node < size else own_move(lattice, depth, e, node - width)
                     cost = np.float32(base[node] + weight * move)
                     out[width + e] = min(out[width + e], cost)
         slopes_of(lattice, depth, depth, slopes)
-        for node in range(np.uint64(width + OWN)):
+        for node in range(np.uint64(width + EXTRA)):
             out[node] += slopes[node]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_inner_kernel, exact_kernel
-from elbowroom.planning.exact.lattice.lattice import BACK, GOAL, HOLD, KEPT, OWN, place_of_least, squares_from
+from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, GOAL, HOLD, KEPT, place_of_least, squares_from
 from elbowroom.planning.paper.activity_graph import squared_distance
 
 Floats = NDArray[np.float64]
@@ -17,7 +17,7 @@ _SAME = 1e-9  # radians
 
 
 @exact_kernel
-def alone_at(
+def extra_nodes(
     known: Floats, columns: Floats32, step: float, goals: Floats, last: Floats, start: Floats, settled: bool
 ) -> tuple[Floats, Bools, Longs]:
     """The postures of each key time alone (n+1, OWN, d), which of them are needed, and the last plan's nodes (n+1,).
@@ -28,8 +28,8 @@ def alone_at(
     """
     width = columns.shape[1]
     count, size = goals.shape
-    own, needed = np.empty((count, OWN, size)), np.empty((count, OWN), np.bool_)
-    kept, squares = np.empty(count, np.int64), np.empty(width, np.float32)
+    own, needed = np.empty((count, EXTRA, size)), np.empty((count, EXTRA), np.bool_)
+    previous, squares = np.empty(count, np.int64), np.empty(width, np.float32)
     length, pace = _distance(goals[0], start), _BACK_STEP * step
     start_is_known = _known(known, columns, start, squares) >= 0
     for t in range(count):
@@ -39,14 +39,14 @@ def alone_at(
             own[t, GOAL, i], own[t, KEPT, i], own[t, HOLD, i] = goal[i], last[t, i], start[i]
             own[t, BACK, i] = start[i] + part * (goal[i] - start[i])
         if _near(last[t], goal):
-            kept[t] = width + GOAL
+            previous[t] = width + GOAL
         else:
             at = _known(known, columns, last[t], squares)
-            kept[t] = at if at >= 0 else width + KEPT
-        needed[t, GOAL], needed[t, KEPT] = True, kept[t] == width + KEPT
+            previous[t] = at if at >= 0 else width + KEPT
+        needed[t, GOAL], needed[t, KEPT] = True, previous[t] == width + KEPT
         needed[t, BACK] = not settled and part < 1.0 and length > _SAME
         needed[t, HOLD] = not settled and not start_is_known and not _near(start, goal)
-    return own, needed, kept
+    return own, needed, previous
 
 
 @exact_inner_kernel

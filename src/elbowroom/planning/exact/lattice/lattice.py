@@ -20,8 +20,8 @@ Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-OWN = 4  # postures of a key time alone
-GOAL, KEPT, HOLD, BACK = range(OWN)  # the goal, what the last plan had, the start, on the way from there to the goal
+EXTRA = 4  # postures of a key time alone
+GOAL, KEPT, HOLD, BACK = range(EXTRA)  # the goal, what the last plan had, the start, on the way from there to the goal
 _ROUNDING = 1.0 + 1e-6
 _INFINITE = np.float32(np.inf)
 
@@ -35,10 +35,10 @@ class Lattice(NamedTuple):
     spans: Longs  # (V, 2) the lanes of `moves` beyond which all of a posture's steps are infinite
     own: Floats  # (n+1, OWN, d); in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
-    price: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
+    cost: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
     masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its steps are open
     closed: Bools  # (M, W+OWN, W+OWN) which steps are closed
-    kept: Longs  # (n+1,) the nodes that the last plan had
+    previous: Longs  # (n+1,) the nodes that the last plan had
     step: float  # radians
     weight: float  # w
 
@@ -65,14 +65,14 @@ def new_work(depths: int, nodes: int) -> Work:
         np.empty((depths, nodes), np.float32),
         np.empty((depths, nodes), np.int32),
         np.empty((depths, nodes), np.float32),
-        np.empty((depths, OWN, nodes - OWN), np.float32),
+        np.empty((depths, EXTRA, nodes - EXTRA), np.float32),
         np.zeros(2),
         np.zeros(depths),
         np.empty(nodes, np.float32),
         np.empty(nodes, np.float32),
-        np.empty(nodes - OWN, np.bool_),
+        np.empty(nodes - EXTRA, np.bool_),
         np.empty(nodes, np.int32),
-        np.empty((2, OWN)),
+        np.empty((2, EXTRA)),
     )
 
 
@@ -99,8 +99,8 @@ def measure_own(lattice: Lattice, work: Work) -> None:
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
     longest = np.float32(lattice.step * lattice.step * _ROUNDING)
     for depth in range(lattice.own.shape[0]):
-        for e in range(OWN):
-            if lattice.price[depth, width + e] == _INFINITE and (depth > 0 or e != HOLD):
+        for e in range(EXTRA):
+            if lattice.cost[depth, width + e] == _INFINITE and (depth > 0 or e != HOLD):
                 continue
             row = work.squares[depth, e]
             squares_from(lattice.columns, lattice.own[depth, e], row)
@@ -132,7 +132,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
         factor, column = np.float32(2.0 * weight * way), lattice.columns[i]
         for v in range(np.uint64(width)):
             known[v] += factor * column[v]
-        for e in range(OWN):
+        for e in range(EXTRA):
             out[width + e] += factor * np.float32(lattice.own[row, e, i])
     return square
 

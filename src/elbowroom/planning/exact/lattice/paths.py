@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, exact_lean_kernel
-from elbowroom.planning.exact.lattice.lattice import HOLD, OWN, Lattice, Work, component_of, place_of_least, step_cost
+from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, Lattice, Work, component_of, place_of_least, step_cost
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -19,20 +19,20 @@ def own_way(lattice: Lattice, few: Floats) -> float:
     `few` (2, OWN) is scratch.
     """
     width, last = lattice.moves.shape[1], lattice.goals.shape[0] - 1
-    for e in range(OWN):
+    for e in range(EXTRA):
         few[0, e] = 0.0 if e == HOLD else np.inf
     for depth in range(last):
         known, found = few[depth % 2], few[1 - depth % 2]
         found[:] = np.inf
-        for f in range(OWN):
-            price = lattice.price[depth + 1, width + f]
-            if price == _INFINITE:
+        for f in range(EXTRA):
+            cost = lattice.cost[depth + 1, width + f]
+            if cost == _INFINITE:
                 continue
-            for e in range(OWN):
+            for e in range(EXTRA):
                 if known[e] < np.inf:
-                    found[f] = min(found[f], known[e] + price + step_cost(lattice, depth, width + e, width + f))
+                    found[f] = min(found[f], known[e] + cost + step_cost(lattice, depth, width + e, width + f))
     least = np.inf
-    for e in range(OWN):
+    for e in range(EXTRA):
         least = min(least, few[last % 2, e])
     return least
 
@@ -42,8 +42,8 @@ def kept_way(lattice: Lattice) -> float:
     """The cost of the last plan's way, infinite where it is not free."""
     total, before = 0.0, lattice.moves.shape[1] + HOLD
     for depth in range(lattice.goals.shape[0] - 1):
-        node = lattice.kept[depth + 1]
-        total += lattice.price[depth + 1, node] + step_cost(lattice, depth, before, node)
+        node = lattice.previous[depth + 1]
+        total += lattice.cost[depth + 1, node] + step_cost(lattice, depth, before, node)
         if total == np.inf:
             break
         before = node

@@ -17,7 +17,7 @@ from elbowroom.jit import exact_kernel, leaf
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-_LOOKS = 16  # parts of an interval at whose ends its speed is looked at
+_SAMPLES = 16  # parts of an interval at whose ends its speed is looked at
 _PAST = 8.0 / 27.0  # of velocity times interval: with this much room at both its ends a segment leaves no range
 
 
@@ -73,12 +73,12 @@ def peak_speed(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, in
     most, bend = 0.0, 0.0
     for i in range(a.shape[0]):
         bend += (velocity[i] - 2.0 * _middle(a, velocity, b, next_velocity, interval, i) + next_velocity[i]) ** 2
-    for look in range(_LOOKS + 1):
-        late = look / _LOOKS
+    for sample in range(_SAMPLES + 1):
+        late = sample / _SAMPLES
         early, square = 1.0 - late, 0.0
         for i in range(a.shape[0]):
             middle = _middle(a, velocity, b, next_velocity, interval, i)
             rate = early * early * velocity[i] + 2.0 * early * late * middle + late * late * next_velocity[i]
             square += rate * rate
         most = max(most, square)
-    return float(np.sqrt(most) + np.sqrt(bend) / (4.0 * _LOOKS * _LOOKS))
+    return float(np.sqrt(most) + np.sqrt(bend) / (4.0 * _SAMPLES * _SAMPLES))

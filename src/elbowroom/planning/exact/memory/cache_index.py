@@ -19,7 +19,7 @@ SAME = 1e-6  # keys this near to each other, in each component, are one
 _NEXT, _ROUND, _HAND = range(3)
 
 
-class Slots(NamedTuple):
+class CacheIndex(NamedTuple):
     """Numbered places for results: their keys, and which were asked for of late."""
 
     keys: Floats  # (S, K)
@@ -28,45 +28,45 @@ class Slots(NamedTuple):
     clock: Longs  # (3,) next id, round, place that is looked at first when one is needed
 
 
-def new_slots(count: int, width: int) -> Slots:
+def new_cache_index(count: int, width: int) -> CacheIndex:
     """Empty slots for keys of `width` numbers."""
-    return Slots(np.zeros((count, width)), np.full(count, -1), np.zeros(count, np.int64), np.zeros(3, np.int64))
+    return CacheIndex(np.zeros((count, width)), np.full(count, -1), np.zeros(count, np.int64), np.zeros(3, np.int64))
 
 
 @exact_kernel
-def begin_round(slots: Slots) -> None:
+def begin_round(entries: CacheIndex) -> None:
     """What is asked for from now on stays until the next round begins."""
-    slots.clock[_ROUND] += 1
+    entries.clock[_ROUND] += 1
 
 
 @exact_lean_kernel
-def find(slots: Slots, key: Floats) -> int:
+def find(entries: CacheIndex, key: Floats) -> int:
     """The slot under `key` (K,), or -1."""
-    for s in range(slots.ids.shape[0]):
-        if slots.ids[s] < 0:
+    for s in range(entries.ids.shape[0]):
+        if entries.ids[s] < 0:
             continue
         same = True
         for i in range(key.shape[0]):
-            if abs(slots.keys[s, i] - key[i]) > SAME:
+            if abs(entries.keys[s, i] - key[i]) > SAME:
                 same = False
                 break
         if same:
-            slots.rounds[s] = slots.clock[_ROUND]
+            entries.rounds[s] = entries.clock[_ROUND]
             return s
     return -1
 
 
 @exact_lean_kernel
-def admit(slots: Slots, key: Floats) -> int:
+def admit(entries: CacheIndex, key: Floats) -> int:
     """A slot for a new result under `key`: one that this round has not asked for, of which there must be one."""
-    count = slots.ids.shape[0]
-    s = slots.clock[_HAND]
-    while slots.ids[s] >= 0 and slots.rounds[s] == slots.clock[_ROUND]:
+    count = entries.ids.shape[0]
+    s = entries.clock[_HAND]
+    while entries.ids[s] >= 0 and entries.rounds[s] == entries.clock[_ROUND]:
         s = (s + 1) % count
-    slots.clock[_HAND] = (s + 1) % count
+    entries.clock[_HAND] = (s + 1) % count
     for k in range(key.shape[0]):
-        slots.keys[s, k] = key[k]
-    slots.ids[s] = slots.clock[_NEXT]
-    slots.clock[_NEXT] += 1
-    slots.rounds[s] = slots.clock[_ROUND]
+        entries.keys[s, k] = key[k]
+    entries.ids[s] = entries.clock[_NEXT]
+    entries.clock[_NEXT] += 1
+    entries.rounds[s] = entries.clock[_ROUND]
     return int(s)

@@ -31,21 +31,21 @@ class Contact(NamedTuple):
 
 
 @exact_kernel
-def rule_out_near(prices: Floats32, known: Floats, own: Floats, posture: Floats, near: float) -> None:
+def rule_out_near(costs: Floats32, known: Floats, own: Floats, posture: Floats, near: float) -> None:
     """Make infinite what nodes cost that are `near` to a posture (d,), radians: `prices` (W + E,) of a key time.
 
     The first nodes are the postures `known` (V, d), the last ones those of the key time alone, `own` (E, d).
     """
-    width = prices.shape[0] - own.shape[0]
+    width = costs.shape[0] - own.shape[0]
     for node in range(known.shape[0]):
         if np.sqrt(squared_distance(known[node], posture)) < near:
-            prices[node] = np.inf
+            costs[node] = np.inf
     for node in range(own.shape[0]):
         if np.sqrt(squared_distance(own[node], posture)) < near:
-            prices[width + node] = np.inf
+            costs[width + node] = np.inf
 
 
-class SelfContacts:
+class OwnContacts:
     """Postures of the arms at key times at which they ran into the body."""
 
     def __init__(self) -> None:

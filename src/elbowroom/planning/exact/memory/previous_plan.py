@@ -24,29 +24,32 @@ class Asked(NamedTuple):
     """Clearances that a plan asked for, in metres; rows: waist, left arm, right arm."""
 
     margins: Floats  # (3, n+1) of postures around key times
-    skins: Floats  # (3, n) of the motion in the key intervals
+    motion_margins: Floats  # (3, n) of the motion in the key intervals
 
     def since(self, first: int, horizon: int) -> "Asked":
         """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
-        margins, skins = self.margins[:, first:], self.skins[:, first:]
+        margins, motion_margins = self.margins[:, first:], self.motion_margins[:, first:]
         if margins.shape[1] <= horizon:
             beyond = np.full((3, horizon + 1), np.inf)
-            margins, skins = np.concatenate([margins, beyond], axis=1), np.concatenate([skins, beyond], axis=1)
-        return Asked(margins[:, : horizon + 1], skins[:, :horizon])
+            margins, motion_margins = (
+                np.concatenate([margins, beyond], axis=1),
+                np.concatenate([motion_margins, beyond], axis=1),
+            )
+        return Asked(margins[:, : horizon + 1], motion_margins[:, :horizon])
 
     def beside(self, other: "Asked") -> "Asked":
         """The lesser of two."""
-        return Asked(np.minimum(self.margins, other.margins), np.minimum(self.skins, other.skins))
+        return Asked(np.minimum(self.margins, other.margins), np.minimum(self.motion_margins, other.motion_margins))
 
     def at_most(self, most: list[float]) -> "Asked":
         """No more than so much for each group."""
         rows = np.array(most)[:, None]
-        return Asked(np.minimum(self.margins, rows), np.minimum(self.skins, rows))
+        return Asked(np.minimum(self.margins, rows), np.minimum(self.motion_margins, rows))
 
     def then(self, at: int, later: "Asked") -> "Asked":
         """These until the key time `at`, and `later` ones, which begin there."""
         margins = np.concatenate([self.margins[:, :at], later.margins], axis=1)
-        return Asked(margins, np.concatenate([self.skins[:, :at], later.skins], axis=1))
+        return Asked(margins, np.concatenate([self.motion_margins[:, :at], later.motion_margins], axis=1))
 
 
 class Start(NamedTuple):
@@ -58,7 +61,7 @@ class Start(NamedTuple):
     harsh: bool = False  # whether it may exceed the limits of speed and acceleration at first, if need be
 
 
-class Kept(NamedTuple):
+class PreviousPlan(NamedTuple):
     """The last plan at the key times of a path."""
 
     keys: Floats  # (n+1, 11) upper bodies; the last one known is repeated
@@ -66,16 +69,18 @@ class Kept(NamedTuple):
     asked: Asked  # infinite elsewhere
 
     @staticmethod
-    def freely(keys: Floats) -> "Kept":
+    def freely(keys: Floats) -> "PreviousPlan":
         """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
-        return Kept(keys, len(keys), Asked(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf)))
+        return PreviousPlan(
+            keys, len(keys), Asked(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf))
+        )
 
 
 def clearances(settings: ExactSettings, interval: float, count: int) -> Asked:
     """What is asked for in the next key intervals, so many of `interval` seconds: less soon than later."""
     shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
     row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
-    return Asked(settings.margin * row, settings.skin * row[:, :-1])
+    return Asked(settings.margin * row, settings.motion_margin * row[:, :-1])
 
 
 @exact_kernel

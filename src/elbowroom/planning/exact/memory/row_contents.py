@@ -1,4 +1,4 @@
-"""Key times known again by what the body does there, wherever it stands: rows for `Known`."""
+"""Key times known again by what the body does there, wherever it stands: rows for `RowIndex`."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -14,7 +14,7 @@ _SEED, _FACTOR = np.uint64(0xCBF29CE484222325), np.uint64(0x100000001B3)  # of t
 _HIGH = np.uint64(40)  # its best mixed bits are those from this one on
 
 
-class Known(NamedTuple):
+class RowIndex(NamedTuple):
     """Which rows are known, and where."""
 
     rows: Longs  # (S, K) by their places
@@ -22,14 +22,14 @@ class Known(NamedTuple):
     taken: Longs  # (1,) how many places are taken: the first ones
 
 
-def new_known(count: int, width: int) -> Known:
+def new_row_index(count: int, width: int) -> RowIndex:
     """Room for so many rows (K,) of `width` numbers, none of which is known."""
     places = np.full(2 << (count - 1).bit_length(), _EMPTY)
-    return Known(np.empty((count, width), np.int64), places, np.zeros(1, np.int64))
+    return RowIndex(np.empty((count, width), np.int64), places, np.zeros(1, np.int64))
 
 
 @exact_lean_kernel
-def forget(known: Known) -> None:
+def forget(known: RowIndex) -> None:
     """From now on no row is known."""
     known.taken[0] = 0
     for entry in range(known.places.shape[0]):
@@ -37,13 +37,13 @@ def forget(known: Known) -> None:
 
 
 @exact_lean_kernel
-def place_of(known: Known, row: Longs) -> int:
+def place_of(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), or -1 if it is not known."""
     return int(known.places[_entry_of(known, row)])
 
 
 @exact_lean_kernel
-def admit(known: Known, row: Longs) -> int:
+def admit(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), a new one if it was not known; where all are taken, all others are forgotten."""
     entry = _entry_of(known, row)
     if known.places[entry] < 0:
@@ -59,7 +59,7 @@ def admit(known: Known, row: Longs) -> int:
 
 
 @exact_lean_kernel
-def _entry_of(known: Known, row: Longs) -> int:
+def _entry_of(known: RowIndex, row: Longs) -> int:
     """Where among `places` that of a row is, or would be."""
     mixed = _SEED
     for i in range(row.shape[0]):

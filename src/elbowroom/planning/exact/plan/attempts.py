@@ -13,7 +13,7 @@ def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
     return math.dist(a, b) < _SAME_PLACE
 
 
-class Turns:
+class AttemptOrder:
     """The commanded path as soon as it is blocked, then the one that leads farthest, and so on."""
 
     def __init__(self) -> None:

@@ -4,26 +4,26 @@ from collections.abc import Iterable
 from time import perf_counter_ns
 
 from elbowroom.body.dof import DofGroup
-from elbowroom.planning.exact.group.caches import Shelves
-from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, Weights
+from elbowroom.planning.exact.group.caches import PlanCaches
+from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.group.search import search_group
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
 
 
-class Ledger:
+class EvidenceLog:
     """Searches one group after the other and keeps what each group's searches cost together."""
 
-    def __init__(self, shelves: Shelves, weights: Weights) -> None:
-        self._shelves, self._weights = shelves, weights
+    def __init__(self, caches: PlanCaches, weights: Weights) -> None:
+        self._shelves, self._weights = caches, weights
         self._rows: list[GroupEvidence] = []
         self.joint: JointEvidence | None = None
 
-    def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupWay]:
+    def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupPath]:
         """`search_group`, entered under `group`."""
         began = perf_counter_ns()
-        way: GroupWay = search_group(self._shelves.held[group], task, self._weights)
+        way: GroupPath = search_group(self._shelves.held[group], task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
         row = GroupEvidence(group, status, way.checks, way.nodes, 0, spent)

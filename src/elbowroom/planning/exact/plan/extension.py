@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.memory.previous_plan import Asked, Start
-from elbowroom.planning.exact.plan.full_plan import Whole, later
+from elbowroom.planning.exact.plan.full_plan import FullPlan, later
 from elbowroom.planning.exact.plan.upper_body import UpperPlan
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import LocalPlan
@@ -40,7 +40,7 @@ class Settled(NamedTuple):
         return Start(self.configurations[-1], self.velocities[-1], self.at)
 
 
-def settled(left: Whole, path: RootPath, free: int) -> Settled | None:
+def settled(left: FullPlan, path: RootPath, free: int) -> Settled | None:
     """What is kept, of what is `left` of a plan, on a path of which the last `free` key intervals are searched anew."""
     at, local = path.horizon - free, left.local
     if not 0 < at < len(local.configurations) or local.velocities is None or left.asked is None:
@@ -56,25 +56,25 @@ def rest_of(path: RootPath, at: int) -> RootPath:
     return RootPath(path.time_of(at), path.interval, path.states[at:])
 
 
-def prolonged(kept: Settled, rest: UpperPlan, root: RootPlan) -> Whole:
+def extended(previous: Settled, rest: UpperPlan, root: RootPlan) -> FullPlan:
     """What was kept, and the rest that was found."""
-    at, plan = kept.at, rest.plan
+    at, plan = previous.at, rest.plan
     assert plan.velocities is not None
     assert rest.asked is not None
-    keys = np.concatenate([kept.configurations[:at], plan.configurations])
-    velocities = np.concatenate([kept.velocities[:at], plan.velocities])
-    goals = np.concatenate([kept.goals[:at], plan.goals])
+    keys = np.concatenate([previous.configurations[:at], plan.configurations])
+    velocities = np.concatenate([previous.velocities[:at], plan.velocities])
+    goals = np.concatenate([previous.goals[:at], plan.goals])
     local = LocalPlan(plan.status, keys, goals, plan.evidence, plan.joint, plan.blockade, velocities)
-    return Whole(root, local, kept.asked.then(at, rest.asked))
+    return FullPlan(root, local, previous.asked.then(at, rest.asked))
 
 
-class Walk(NamedTuple):
+class OngoingPlan(NamedTuple):
     """A plan that answered a query with the path as commanded: who is asked to walk on does as planned."""
 
     query: MotionQuery
-    whole: Whole
+    whole: FullPlan
 
-    def left(self, query: MotionQuery) -> Whole | None:
+    def left(self, query: MotionQuery) -> FullPlan | None:
         """What is left of it at a later query, if that goes on from where the plan leads, and wants the same."""
         known, whole = self.query, self.whole
         at = round((query.time - known.time) / query.interval)

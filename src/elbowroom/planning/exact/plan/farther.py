@@ -8,8 +8,8 @@ and not by the clock: a recording replays alike on a slower machine.
 from collections.abc import Callable
 
 from elbowroom.planning.exact.plan.evidence import by_group
-from elbowroom.planning.exact.plan.extension import Walk
-from elbowroom.planning.exact.plan.full_plan import Whole
+from elbowroom.planning.exact.plan.extension import OngoingPlan
+from elbowroom.planning.exact.plan.full_plan import FullPlan
 from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import GroupEvidence
@@ -20,17 +20,17 @@ from elbowroom.planning.result import GroupEvidence
 _PART, _SEARCH, _ELSE, _CHECK = 6300.0, 1000.0, 2500.0, 0.6
 
 
-class Farther:
+class AheadOfTime:
     """What goes on from a walk, in the making."""
 
-    def __init__(self, query: MotionQuery, work: Pausing[Whole | None]) -> None:
+    def __init__(self, query: MotionQuery, work: Pausing[FullPlan | None]) -> None:
         """It was begun at a `query`, from where `work` goes on."""
         self._query, self._work = query, work
         self._rows: list[GroupEvidence] = []
         self._spent = _ELSE
         self._done = False
         self.searched = False  # whether the root had a path that is worth it
-        self._found: Whole | None = None
+        self._found: FullPlan | None = None
 
     def do_part(self, go_on: Callable[[], None]) -> None:
         """Go on until that has cost enough; `go_on` is called now and then, and raises an exception to call it off."""
@@ -39,12 +39,12 @@ class Farther:
             self._step()
         self._spent = 0.0
 
-    def walk(self, go_on: Callable[[], None]) -> Walk | None:
+    def walk(self, go_on: Callable[[], None]) -> OngoingPlan | None:
         """What was found, when all is done; None if there is nothing."""
         while not self._done:
             go_on()
             self._step()
-        return None if self._found is None else Walk(self._query, self._found)
+        return None if self._found is None else OngoingPlan(self._query, self._found)
 
     def costs(self) -> tuple[GroupEvidence, ...]:
         """What was searched since they were last asked for."""

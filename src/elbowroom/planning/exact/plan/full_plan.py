@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.memory.previous_plan import Asked, Kept
+from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 _SAME = 1e-6  # of a key interval
 
 
-class Whole(NamedTuple):
+class FullPlan(NamedTuple):
     """A motion over the whole look-ahead."""
 
     root: RootPlan
@@ -28,7 +28,7 @@ class Whole(NamedTuple):
     asked: Asked | None = None  # None: not a way that was found
 
 
-def kept_of(whole: Whole, path: RootPath) -> Kept | None:
+def previous_of(whole: FullPlan, path: RootPath) -> PreviousPlan | None:
     """What a motion has at the key times of a path, if it has any; between its own key times it is on its curve."""
     known, keys, velocities = whole.root.path, whole.local.configurations, whole.local.velocities
     at = (path.start_time - known.start_time) / known.interval
@@ -38,16 +38,16 @@ def kept_of(whole: Whole, path: RootPath) -> Kept | None:
     asked, share = whole.asked.since(first, path.horizon), at - first
     rows = np.minimum(first + np.arange(len(path.states)), last)
     if share < _SAME:
-        return Kept(keys[rows], len(keys) - first, asked)
+        return PreviousPlan(keys[rows], len(keys) - first, asked)
     span, later = np.array([0.0, known.interval]), whole.asked.since(first + 1, path.horizon)
     between = [
         hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
         for k in rows
     ]
-    return Kept(np.array(between), last - first, asked.beside(later))
+    return PreviousPlan(np.array(between), last - first, asked.beside(later))
 
 
-def first_part(whole: Whole, horizon: int) -> Motion:
+def first_part(whole: FullPlan, horizon: int) -> Motion:
     """The first `horizon` key intervals."""
     root, local = whole.root, whole.local
     return Motion(root.along(root.path.until(horizon)), part(local, slice(horizon + 1), local.evidence, local.joint))
@@ -62,16 +62,16 @@ def part(
     return LocalPlan(local.status, keys, goals, evidence, joint, local.blockade, velocities)
 
 
-def later(whole: Whole, at: int) -> Whole:
+def later(whole: FullPlan, at: int) -> FullPlan:
     """What is left of a motion from its key time `at` on, for which nothing was searched."""
     root, local, asked = whole
     path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
     rest = part(local, slice(at, None), _free_of_charge(local))
     asked = None if asked is None else asked.since(at, path.horizon)
-    return Whole(root.going_on(path), rest, asked)
+    return FullPlan(root.going_on(path), rest, asked)
 
 
-def costing(whole: Whole, rows: tuple[GroupEvidence, ...]) -> Whole:
+def costing(whole: FullPlan, rows: tuple[GroupEvidence, ...]) -> FullPlan:
     """A motion that is as it was found, for whose groups so much was searched meanwhile, a row for each of them."""
     if not rows:
         return whole
@@ -86,12 +86,12 @@ def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
     return tuple(GroupEvidence(row.group, row.status, 0, 0, 0, 0) for row in local.evidence)
 
 
-class Stand(NamedTuple):
+class StandingPlan(NamedTuple):
     """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
 
     query: MotionQuery
     version: int  # of the posture sets
-    whole: Whole
+    whole: FullPlan
     left: int  # paths that have not had their turn to be thought through
 
     def answers(self, query: MotionQuery, version: int) -> bool:
@@ -103,20 +103,20 @@ class Stand(NamedTuple):
             np.array_equal(known.upper, asked.upper) and np.array_equal(known.velocity, asked.velocity)
         )
 
-    def at(self, time: float) -> Whole:
+    def at(self, time: float) -> FullPlan:
         """The answer at another time, for which nothing was searched."""
         root, local = self.whole.root, self.whole.local
         passed = time - self.query.time
         why = None if local.blockade is None else replace(local.blockade, time=local.blockade.time + passed)
         path = replace(root.path, start_time=time)
-        return Whole(
+        return FullPlan(
             root.going_on(path),
             local._replace(evidence=_free_of_charge(local), joint=None, blockade=why),
             self.whole.asked,
         )
 
 
-def stands(whole: Whole, query: MotionQuery) -> bool:
+def stands(whole: FullPlan, query: MotionQuery) -> bool:
     """Whether a plan leaves all as it is."""
     return _stays(whole.root.path.states, whole.local.configurations, query.upper, query.velocity)
 

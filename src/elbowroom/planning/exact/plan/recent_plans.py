@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from elbowroom.planning.exact.memory.previous_plan import Kept
-from elbowroom.planning.exact.plan.full_plan import Whole, kept_of, later
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan
+from elbowroom.planning.exact.plan.full_plan import FullPlan, later, previous_of
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
@@ -13,23 +13,23 @@ _SAME_TIME = 1e-6  # of a key interval
 _SAME = 1e-9  # radians, metres
 
 
-class Recent:
+class RecentPlans:
     """The last plan, and what was shown before it.
 
     Plans may begin a little ahead: who changes the wish before that is still in an earlier one.
     """
 
     def __init__(self) -> None:
-        self._last: Whole | None = None
-        self._past: tuple[Whole, ...] = ()
+        self._last: FullPlan | None = None
+        self._past: tuple[FullPlan, ...] = ()
 
-    def take(self, whole: Whole) -> None:
+    def take(self, whole: FullPlan) -> None:
         """Remember a plan as the last one."""
         if self._last is not None:
             self._past = (*self._past[1 - _PAST :], self._last)
         self._last = whole
 
-    def since(self, time: float) -> Whole | None:
+    def since(self, time: float) -> FullPlan | None:
         """The last plan, with what is shown before it if it begins later than `time`."""
         whole = self._last
         for earlier in reversed(self._past):
@@ -38,12 +38,12 @@ class Recent:
             whole = after(earlier, whole)
         return whole
 
-    def kept(self, path: RootPath) -> Kept | None:
+    def previous(self, path: RootPath) -> PreviousPlan | None:
         """What the last plan had at the key times of `path`, if it has any of them."""
         last = self.since(path.start_time)
-        return None if last is None else kept_of(last, path)
+        return None if last is None else previous_of(last, path)
 
-    def continued(self, query: MotionQuery) -> Whole | None:
+    def continued(self, query: MotionQuery) -> FullPlan | None:
         """What is left of the last plan, if it led to where this one starts."""
         last = self.since(query.time)
         if last is None or not len(last.local.configurations):
@@ -56,7 +56,7 @@ class Recent:
         return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED))
 
 
-def after(earlier: Whole, whole: Whole) -> Whole:
+def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:
     """A motion with what is shown before it, if it goes on from an `earlier` one at one of its key times."""
     path, local = whole.root.path, whole.local
     if earlier.asked is None or whole.asked is None:
@@ -77,4 +77,4 @@ def after(earlier: Whole, whole: Whole) -> Whole:
     )
     states = np.concatenate([known.states[:at], path.states])
     longer = whole.root.along(RootPath(known.start_time, known.interval, states))
-    return Whole(longer, joined, earlier.asked.then(at, whole.asked))
+    return FullPlan(longer, joined, earlier.asked.then(at, whole.asked))

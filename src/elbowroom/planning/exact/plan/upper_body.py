@@ -16,22 +16,22 @@ from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.group.caches import Shelves, begun_ways
+from elbowroom.planning.exact.group.caches import PlanCaches, begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import Group, Weights
-from elbowroom.planning.exact.lattice.closed_edges import new_masks
-from elbowroom.planning.exact.lattice.lattice import OWN, Work, new_work
+from elbowroom.planning.exact.lattice.closed_edges import new_closed_edges
+from elbowroom.planning.exact.lattice.lattice import EXTRA, Work, new_work
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
-from elbowroom.planning.exact.memory.own_contacts import SelfContacts
-from elbowroom.planning.exact.memory.previous_plan import Asked, Kept, Start, clearances
+from elbowroom.planning.exact.memory.own_contacts import OwnContacts
+from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start, clearances
 from elbowroom.planning.exact.plan.pauses import Pausing, finished
-from elbowroom.planning.exact.plan.upper_body_search import Dressing
+from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.refine.blocked import arms_for, waists_for
 from elbowroom.planning.exact.refine.sampling import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.motion_bounds import chain_of, levers_of, new_limb_ways, new_root_ways
+from elbowroom.planning.exact.sweep.motion_bounds import chain_of, levers_of, new_limb_sweeps, new_root_sweeps
 from elbowroom.planning.exact.sweep.near_boxes import NearBoxes, near_boxes
-from elbowroom.planning.exact.sweep.node_clearances import new_tables
+from elbowroom.planning.exact.sweep.node_clearances import new_node_clearances
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
 from elbowroom.planning.goal import natural_walk
@@ -48,7 +48,7 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 _NEARLY = 0.5  # metres: more than any margin
-_SHELVES, _MASKS = 8, 2  # times the horizon: results of key intervals that are kept, and closed steps of some of them
+_CACHED, _MASKS = 8, 2  # times the horizon: results of key intervals that are kept, and closed steps of some of them
 _SPARE = 0.05  # metres
 
 
@@ -68,11 +68,11 @@ class UpperPlan(NamedTuple):
 
     plan: LocalPlan
     reached: int  # n if found, else the deepest key time with a way for every group
-    dressing: Dressing  # the last attempt, which can say why there is no way
+    search: UpperBodySearch  # the last attempt, which can say why there is no way
     asked: Asked | None = None  # what clearances were asked for; None unless found
 
 
-class UpperBody:
+class UpperBodyPlanner:
     """A humanoid's upper body in a scene: posture sets for a key interval, made once, and what was computed of late."""
 
     def __init__(
@@ -93,9 +93,9 @@ class UpperBody:
         )
         self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._postures: dict[tuple[DofGroup, float], Postures] = {}
-        self._shelves: dict[float, Shelves] = {}
+        self._shelves: dict[float, PlanCaches] = {}
         self._clearances: dict[float, Asked] = {}
-        self.own_body, self._contacts = OwnBody(self._model, self.goals), SelfContacts()
+        self.own_body, self._contacts = OwnBody(self._model, self.goals), OwnContacts()
         self._own_motion = OwnMotion(self._model, self.own_body.pairs)
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
@@ -108,15 +108,15 @@ class UpperBody:
         self,
         path: RootPath,
         begins: Start,
-        kept: Kept | None = None,
+        previous: PreviousPlan | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
     ) -> UpperPlan:
         """Motion along `path` from where it `begins`; near `kept`, the last plan. `others` move besides the scene's."""
-        return finished(self.planning(path, begins, kept, others, effort))
+        return finished(self.planning(path, begins, previous, others, effort))
 
     def planning(
-        self, path: RootPath, begins: Start, kept: Kept | None, others: MovingBoxes | None, effort: Effort
+        self, path: RootPath, begins: Start, previous: PreviousPlan | None, others: MovingBoxes | None, effort: Effort
     ) -> Pausing[UpperPlan]:
         """`plan`, with pauses, in which nothing else may be planned: who does calls the rest off."""
         moving = self._moving + others if others else self._moving
@@ -125,16 +125,16 @@ class UpperBody:
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
         for attempt in range(self.settings.refinements + 1):
-            dressing = self._dressing(path, begins, kept, near, legs, weights)
+            search = self._dressing(path, begins, previous, near, legs, weights)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
-            found = yield from dressing.motion(0 if between else rounds)
+            found = yield from search.motion(0 if between else rounds)
             if found is not None:
-                return UpperPlan(found, path.horizon, dressing, dressing.asked)
-            if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(dressing):
+                return UpperPlan(found, path.horizon, search, search.asked)
+            if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(search):
                 break
-        ledger, goals = dressing.ledger, dressing.goals
-        plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, ledger.evidence(), joint=ledger.joint)
-        return UpperPlan(plan, dressing.deepest, dressing)
+        evidence_log, goals = search.evidence_log, search.goals
+        plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, evidence_log.evidence(), joint=evidence_log.joint)
+        return UpperPlan(plan, search.deepest, search)
 
     def reset(self) -> None:
         """Forget the postures that were added, and what was computed of late."""
@@ -152,41 +152,41 @@ class UpperBody:
         self._shelves[interval] = self._new_shelves(interval, horizon)
         self._clearances[interval] = clearances(self.settings, interval, 2 * horizon)
         for side, group in enumerate(LOCAL_GROUPS[1:]):
-            self.own_body.resting_prices(side, self.postures(group, interval), horizon + 1)
+            self.own_body.resting_costs(side, self.postures(group, interval), horizon + 1)
 
     def _dressing(
         self,
         path: RootPath,
         begins: Start,
-        kept: Kept | None,
+        previous: PreviousPlan | None,
         near: NearBoxes,
         legs: LoweredLegs,
         weights: Weights,
-    ) -> Dressing:
-        shelves = self._shelves_for(path)
+    ) -> UpperBodySearch:
+        caches = self._shelves_for(path)
         goals = self.goals(path)
-        roots = begun_ways(shelves.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
+        roots = begin_root_sweeps(caches.held[DofGroup.WAIST], path.states, path.interval, near.stamps)
         self._contacts.begin(path.start_time)
         asked = self._asked(path, begins.ahead)
-        problem = PathProblem.of(path, goals, kept, begins, roots, near, asked)
+        problem = PathProblem.of(path, goals, previous, begins, roots, near, asked)
         parts = self.own_body, self._own_motion, self._contacts
-        return Dressing(shelves, weights, self.settings, *parts, legs, problem)
+        return UpperBodySearch(caches, weights, self.settings, *parts, legs, problem)
 
-    def _refine(self, dressing: Dressing) -> bool:
+    def _refine(self, search: UpperBodySearch) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""
-        changed = {group for group, found in self._reaching(dressing) if self._pools[group].add(found)}
+        changed = {group for group, found in self._reaching(search) if self._pools[group].add(found)}
         for group in changed:
             self._take_in(group)
         return bool(changed)
 
-    def _reaching(self, dressing: Dressing) -> Iterator[tuple[DofGroup, Floats]]:
+    def _reaching(self, search: UpperBodySearch) -> Iterator[tuple[DofGroup, Floats]]:
         """Postures for the slices from the blocked one on: of the waist, and of the arm that was blocked."""
-        blocked, failed = dressing.blocked_slice(), dressing.blocked[0]
-        last = min(blocked.depth + self._refinement.slices, dressing.path.horizon + 1)
+        blocked, failed = search.blocked_slice(), search.blocked[0]
+        last = min(blocked.depth + self._refinement.slices, search.path.horizon + 1)
         for depth in range(blocked.depth, last):
             for number in sorted({0, failed}):
                 group = LOCAL_GROUPS[number]
-                here = blocked._replace(depth=depth, goal=dressing.goals[depth, columns_of(group)])
+                here = blocked._replace(depth=depth, goal=search.goals[depth, columns_of(group)])
                 limb, known = self._limbs[group], np.concatenate([self._points[group], self._pools[group].postures])
                 if number == 0:
                     yield group, waists_for(limb, self._reaches[group], known, here, self._refinement)
@@ -199,39 +199,42 @@ class UpperBody:
         self.version += 1
         for key in [key for key in self._postures if key[0] is group]:
             del self._postures[key]
-        for interval, shelves in self._shelves.items():
-            self._shelves[interval] = shelves.with_group(group, *self._shelf(group, interval, shelves.horizon))
+        for interval, caches in self._shelves.items():
+            self._shelves[interval] = caches.with_group(group, *self._shelf(group, interval, caches.horizon))
 
     def _shelf(self, group: DofGroup, interval: float, horizon: int) -> tuple[Group, Work]:
-        count, postures = _SHELVES * (horizon + 1), self.postures(group, interval)
+        count, postures = _CACHED * (horizon + 1), self.postures(group, interval)
         width, size = postures.moves.shape[1], group.size
-        tables, ways = new_tables(count, size, width), new_limb_ways(count, size, carries=group is DofGroup.WAIST)
-        masks = new_masks(_MASKS * (horizon + 1), size, width + OWN)
+        tables, ways = (
+            new_node_clearances(count, size, width),
+            new_limb_sweeps(count, size, carries=group is DofGroup.WAIST),
+        )
+        masks = new_closed_edges(_MASKS * (horizon + 1), size, width + EXTRA)
         speed, acceleration = self.settings.speed_of(group), self.settings.acceleration_of(group)
         levers = levers_of(self._model, postures.limb)
         made = Group(postures, levers, limits(group), speed, acceleration, tables, ways, masks)
-        return made, new_work(horizon + 1, width + OWN)
+        return made, new_work(horizon + 1, width + EXTRA)
 
     def _asked(self, path: RootPath, ahead: int) -> Asked:
         """Clearances of nodes and motion along a path that begins so many key intervals ahead."""
         until, known = ahead + path.horizon, self._clearances.get(path.interval)
-        if known is None or known.skins.shape[1] < until:
+        if known is None or known.motion_margins.shape[1] < until:
             known = self._clearances[path.interval] = clearances(self.settings, path.interval, 2 * until)
         return known.since(ahead, path.horizon)
 
-    def _shelves_for(self, path: RootPath) -> Shelves:
+    def _shelves_for(self, path: RootPath) -> PlanCaches:
         known = self._shelves.get(path.interval)
         if known is None or known.horizon < path.horizon:
             known = self._shelves[path.interval] = self._new_shelves(path.interval, path.horizon)
         return known
 
-    def _new_shelves(self, interval: float, horizon: int) -> Shelves:
+    def _new_shelves(self, interval: float, horizon: int) -> PlanCaches:
         made = {group: self._shelf(group, interval, horizon) for group in LOCAL_GROUPS}
-        groups = {group: shelf for group, (shelf, _) in made.items()}
-        works = {group: room for group, (_, room) in made.items()}
+        groups = {group: cache for group, (cache, _) in made.items()}
+        works = {group: scratch for group, (_, scratch) in made.items()}
         reach = max(groups[arm].postures.reach for arm in LOCAL_GROUPS[1:])
         chain = chain_of(self._model, self._limbs[DofGroup.WAIST], reach)
-        return Shelves.of(groups, works, new_root_ways(_SHELVES * (horizon + 1)), chain, horizon)
+        return PlanCaches.of(groups, works, new_root_sweeps(_CACHED * (horizon + 1)), chain, horizon)
 
     def postures(self, group: DofGroup, interval: float) -> Postures:
         """The posture set of a group for key frames `interval` seconds apart."""

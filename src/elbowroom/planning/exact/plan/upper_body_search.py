@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.planning.exact.certificate.blockade import blockade
 from elbowroom.planning.exact.group.arms import Arms, Ways
-from elbowroom.planning.exact.group.caches import Shelves
-from elbowroom.planning.exact.group.path_problem import PathProblem, no_prices
-from elbowroom.planning.exact.group.problem import GroupTask, GroupWay, Weights, own_postures
+from elbowroom.planning.exact.group.caches import PlanCaches
+from elbowroom.planning.exact.group.path_problem import PathProblem, no_costs
+from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights, extra_postures
 from elbowroom.planning.exact.joint.guide import Guide, arm_nodes, guide, surroundings, waist_nodes
 from elbowroom.planning.exact.joint.step import JointSettings, JointStep, Surroundings
-from elbowroom.planning.exact.lattice.lattice import KEPT, OWN
-from elbowroom.planning.exact.memory.own_contacts import SelfContacts
+from elbowroom.planning.exact.lattice.lattice import EXTRA, KEPT
+from elbowroom.planning.exact.memory.own_contacts import OwnContacts
 from elbowroom.planning.exact.memory.previous_plan import Asked, jolts
-from elbowroom.planning.exact.plan.evidence import Ledger
+from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.settings import ExactSettings
@@ -44,29 +44,29 @@ _JOLT = 0.5  # squared radians that another motion must be better than one under
 
 
 @dataclass(eq=False)
-class Dressing:
+class UpperBodySearch:
     """One root path to be dressed."""
 
-    shelves: Shelves
+    caches: PlanCaches
     weights: Weights
     settings: ExactSettings
     own_body: OwnBody
     own_motion: OwnMotion
-    contacts: SelfContacts
+    contacts: OwnContacts
     legs: LoweredLegs
     problem: PathProblem
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
         self._arms = Arms(
-            self.shelves, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
+            self.caches, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
         )
-        self.ledger = Ledger(self.shelves, self.weights)
+        self.evidence_log = EvidenceLog(self.caches, self.weights)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
-        self._waist: GroupWay | None = None
+        self._waist: GroupPath | None = None
         # infinite where the legs have no room to crouch as a node does
-        self._crouching = no_prices(self.shelves, DofGroup.WAIST, self.path.horizon)
+        self._crouching = no_costs(self.caches, DofGroup.WAIST, self.path.horizon)
 
     @property
     def path(self) -> RootPath:
@@ -85,21 +85,23 @@ class Dressing:
         """
         found, last = (yield from self.apart()), self.problem.last
         if last is not None and (found.failed is not None or jolts(found.keys, last.keys, last.known)):
-            kept = yield from self.with_kept_waist()
-            if found.failed is not None or (kept.failed is None and self._cost(kept) <= self._cost(found) + _JOLT):
-                found = kept
+            previous = yield from self.with_previous_waist()
+            if found.failed is not None or (
+                previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
+            ):
+                found = previous
         if found.failed is not None and rounds > 0:
             found = yield from self.together(rounds)
         if found.failed is not None:
             return None
         self.asked = self._asked(found)
-        evidence, joint = self.ledger.evidence(), self.ledger.joint
+        evidence, joint = self.evidence_log.evidence(), self.evidence_log.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
     def _asked(self, found: Ways) -> Asked:
         """The clearances that were asked for: less where the start has less."""
         most, settings = [way.most for way in found.ways], self.settings
-        enough = min(most) >= max(settings.margin, settings.skin)
+        enough = min(most) >= max(settings.margin, settings.motion_margin)
         return self.problem.asked if enough else self.problem.asked.at_most(most)
 
     def _cost(self, found: Ways) -> float:
@@ -109,25 +111,25 @@ class Dressing:
 
     def apart(self) -> Pausing[Ways]:
         """Each group by itself."""
-        self._waist = yield from self._waist_way(self._crouching)
+        self._waist = yield from self._waist_path(self._crouching)
         found = yield from self._under(self._waist)
         self.blocked = len(found.ways), min(found.reached + 1, self.path.horizon)
         return found
 
-    def _under(self, waist: GroupWay, guides: list[Guide] | None = None) -> Pausing[Ways]:
+    def _under(self, waist: GroupPath, guides: list[Guide] | None = None) -> Pausing[Ways]:
         """The arms under a way of the waist."""
-        found = yield from self._arms.under(waist, guides, self.ledger)
+        found = yield from self._arms.under(waist, guides, self.evidence_log)
         if found.failed is not None:
             self.deepest = max(self.deepest, found.reached)
         return found
 
-    def with_kept_waist(self) -> Pausing[Ways]:
+    def with_previous_waist(self) -> Pausing[Ways]:
         """The waist held to the last plan's way while there is one."""
-        prices = np.full_like(self._crouching, _DEARER)
+        costs = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
-        _, _, kept = own_postures(self.shelves.group(DofGroup.WAIST), task)
-        prices[np.arange(len(prices)), kept] = 0.0
-        waist = yield from self._waist_way(prices + self._crouching)
+        _, _, previous = extra_postures(self.caches.group(DofGroup.WAIST), task)
+        costs[np.arange(len(costs)), previous] = 0.0
+        waist = yield from self._waist_path(costs + self._crouching)
         return (yield from self._under(waist))
 
     def together(self, rounds: int) -> Pausing[Ways]:
@@ -141,11 +143,11 @@ class Dressing:
         for _ in range(rounds):
             began = perf_counter_ns()
             answer = yield from step.search()
-            self.ledger.enter_joint(step, answer.status, perf_counter_ns() - began)
+            self.evidence_log.enter_joint(step, answer.status, perf_counter_ns() - began)
             if answer.status is not PlanStatus.FOUND:
                 break
             guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
-            way = yield from self._waist_way(self._crouching, guides[0])
+            way = yield from self._waist_path(self._crouching, guides[0])
             ways = yield from self._under(way, guides)
             if len(ways.ways) == len(LOCAL_GROUPS):
                 break
@@ -163,10 +165,10 @@ class Dressing:
         number, depth = self.blocked
         waist = self._waist
         assert waist is not None
-        at, known = columns_of(LOCAL_GROUPS[number]), self.shelves.group(DofGroup.WAIST).postures.configurations
-        prices = waist.price[depth, : len(known)]
-        order = np.argsort(prices, kind="stable")
-        waists = known[order[np.isfinite(prices[order])]]
+        at, known = columns_of(LOCAL_GROUPS[number]), self.caches.group(DofGroup.WAIST).postures.configurations
+        costs = waist.cost[depth, : len(known)]
+        order = np.argsort(costs, kind="stable")
+        waists = known[order[np.isfinite(costs[order])]]
         if depth < len(waist.keys):
             waists = np.concatenate([waist.keys[depth : depth + 1], waists])
         margin = float(self.problem.anew.margins[number, depth])
@@ -178,18 +180,18 @@ class Dressing:
         key: Floats = self._waist.keys[depth]
         return key
 
-    def joint_step(self, waist: GroupWay) -> JointStep:
+    def joint_step(self, waist: GroupPath) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
-        shelves, task = self.shelves, self.problem.task(DofGroup.WAIST, self.problem.roots)
+        caches, task = self.caches, self.problem.task(DofGroup.WAIST, self.problem.roots)
         arms = []
         for group in LOCAL_GROUPS[1:]:
-            arm_task, most = self.problem.task(group, waist.slots), np.inf
+            arm_task, most = self.problem.task(group, waist.entries), np.inf
             if waist.reached == self.path.horizon:
                 most = self._room_at_start(group, arm_task, waist)
-            arms.append(arm_nodes(shelves.group(group), arm_task, self.weights.keeping, most))
+            arms.append(arm_nodes(caches.group(group), arm_task, self.weights.keeping, most))
         return JointStep(
             self.own_body,
-            waist_nodes(shelves.group(DofGroup.WAIST), task, waist, self.weights.keeping),
+            waist_nodes(caches.group(DofGroup.WAIST), task, waist, self.weights.keeping),
             (arms[0], arms[1]),
             self._surroundings(),
             JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
@@ -197,20 +199,20 @@ class Dressing:
 
     def _surroundings(self) -> Surroundings:
         problem = self.problem
-        return surroundings(self.path.states, self.shelves.roots, problem.roots, problem.near.slices)
+        return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.slices)
 
-    def _waist_way(self, prices: Floats32, follow: Guide | None = None) -> Pausing[GroupWay]:
+    def _waist_path(self, costs: Floats32, follow: Guide | None = None) -> Pausing[GroupPath]:
         """The waist's way on which the legs have room to crouch as it does."""
-        at, postures = columns_of(DofGroup.WAIST), self.shelves.group(DofGroup.WAIST).postures
-        kept, closed = self.problem.kept[:, at], prices.copy()
+        at, postures = columns_of(DofGroup.WAIST), self.caches.group(DofGroup.WAIST).postures
+        previous, closed = self.problem.previous[:, at], costs.copy()
         if follow is not None:
-            kept = follow.keys
-            closed[:, closed.shape[1] - OWN + KEPT] = 0.0
+            previous = follow.keys
+            closed[:, closed.shape[1] - EXTRA + KEPT] = 0.0
 
         def lowerings() -> Floats:
             lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
             lanes[: len(postures.configurations)] = postures.configurations
-            return node_lowerings(lanes, self.goals[:, at], kept, self.problem.begins.upper[at])
+            return node_lowerings(lanes, self.goals[:, at], previous, self.problem.begins.upper[at])
 
         crouch = Crouch(self.legs, self.path, lowerings)
         for attempt in range(ROUNDS):
@@ -221,20 +223,20 @@ class Dressing:
                 return way
         return way._replace(reached=0)
 
-    def _room_at_start(self, group: DofGroup, task: GroupTask, waist: GroupWay) -> float:
+    def _room_at_start(self, group: DofGroup, task: GroupTask, waist: GroupPath) -> float:
         """The clearance that may be asked of a group, half of what it has at the start; all if that is proven."""
         if task.settled:
             return np.inf
-        shelves, root = self.shelves, self.problem.roots[0]
-        places, turns = shelves.roots.places[root], shelves.roots.turns[root]
+        caches, root = self.caches, self.problem.roots[0]
+        places, turns = caches.roots.places[root], caches.roots.turns[root]
         if group is not DofGroup.WAIST:
-            carriers = shelves.group(DofGroup.WAIST).ways
-            places, turns = carriers.places[waist.slots[0]], carriers.turns[waist.slots[0]]
-        postures, boxes = shelves.group(group).postures, self.problem.near.intervals[0]
+            carriers = caches.group(DofGroup.WAIST).ways
+            places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
+        postures, boxes = caches.group(group).postures, self.problem.near.intervals[0]
         clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
-    def _search(self, extra: Floats32, follow: Guide | None) -> Pausing[GroupWay]:
+    def _search(self, extra: Floats32, follow: Guide | None) -> Pausing[GroupPath]:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
         task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
-        return (yield from self.ledger.search(DofGroup.WAIST, task))
+        return (yield from self.evidence_log.search(DofGroup.WAIST, task))

@@ -12,7 +12,7 @@ from elbowroom.planning.exact.joint.step import Surroundings
 from elbowroom.planning.exact.lattice.postures import blocks_of
 from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen, drawn_postures
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, folded
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import Limb, pose
 
@@ -66,12 +66,12 @@ def arms_for(
     parts = body.parts(side, waists, states, None)
     free = np.zeros(len(drawn), np.bool_)
     for row, axes in enumerate(parts.axes):
-        kept_off = ~folded(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)
+        kept_off = ~touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)
         free |= (clear[row] >= blocked.margin)[: len(drawn)] & kept_off[: len(drawn)]
     return _worth(drawn, free, known, blocked.goal, settings)
 
 
 def _worth(drawn: Floats, free: Bools, known: Floats, goal: Floats, settings: RefinementSettings) -> Floats:
-    prices = np.where(free, np.sum((drawn - goal) ** 2, axis=1), np.inf)
-    taken: Floats = drawn[chosen(drawn, prices, known, settings.apart, settings.taken)]
+    costs = np.where(free, np.sum((drawn - goal) ** 2, axis=1), np.inf)
+    taken: Floats = drawn[chosen(drawn, costs, known, settings.apart, settings.taken)]
     return taken

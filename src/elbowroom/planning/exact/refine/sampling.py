@@ -51,17 +51,17 @@ def _even(count: int, size: int) -> Floats:
     return points
 
 
-def chosen(postures: Floats, prices: Floats, known: Floats, apart: float, most: int) -> Indices:
+def chosen(postures: Floats, costs: Floats, known: Floats, apart: float, most: int) -> Indices:
     """Numbers of at most `most` postures (N, d), cheapest first, each `apart` from those before and from `known`."""
-    numbers: Indices = _spread(postures, prices, np.argsort(prices, kind="stable"), known, apart, most)
+    numbers: Indices = _spread(postures, costs, np.argsort(costs, kind="stable"), known, apart, most)
     return numbers
 
 
 @exact_kernel
-def _spread(postures: Floats, prices: Floats, order: Indices, known: Floats, apart: float, most: int) -> Indices:
+def _spread(postures: Floats, costs: Floats, order: Indices, known: Floats, apart: float, most: int) -> Indices:
     taken, count = np.empty(most, np.int64), 0
     for n in order:
-        if count == most or prices[n] == np.inf:
+        if count == most or costs[n] == np.inf:
             break
         differs = True
         for k in range(count + known.shape[0]):

@@ -56,7 +56,7 @@ def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
         out[12 + i] = box[12 + i]
 
 
-class CheckRoom(NamedTuple):
+class ClearanceScratch(NamedTuple):
     """What checks of T tiles of capsules against B boxes work on, and room for C capsules in sixteen places."""
 
     rows: Floats32  # (B * 15,) boxes as `lower_squares` takes them
@@ -70,10 +70,10 @@ class CheckRoom(NamedTuple):
 
 
 @exact_inner_kernel
-def check_room(tiles: int, capsules: int, boxes: int) -> CheckRoom:
+def clearance_scratch(tiles: int, capsules: int, boxes: int) -> ClearanceScratch:
     """Room for checks of so many tiles, or of single capsules, against so many boxes."""
     flat = np.empty(capsules * TILE, np.float32)
-    return CheckRoom(
+    return ClearanceScratch(
         np.empty(boxes * BOX, np.float32),
         np.empty((5, (tiles + BLOCK - 1) // BLOCK * BLOCK), np.float32),
         np.empty(tiles * BLOCK, np.float32),
@@ -122,11 +122,11 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int
 
 @exact_lean_kernel
 def lower_blocks_in(
-    room: CheckRoom, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
+    scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
 ) -> int:
     """`lower_blocks` with room to work in, for lanes that lie flat and balls as `spread_balls` leaves them."""
     total = tiles.shape[0] // TILE
-    rows, squares, pairs, parts = room.rows, room.squares, room.pairs, total // out.shape[0]
+    rows, squares, pairs, parts = scratch.rows, scratch.squares, scratch.pairs, total // out.shape[0]
     fill_box_rows(boxes, count, rows)
     for i in range(np.uint64(total * BLOCK)):
         squares[i] = _FAR
@@ -153,9 +153,9 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
 
     What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
     """
-    room = check_room(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
-    spread_balls(balls, room.spread)
-    return int(lower_blocks_in(room, lanes.reshape(lanes.size), room.spread, boxes, count, out))
+    scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
+    spread_balls(balls, scratch.spread)
+    return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, boxes, count, out))
 
 
 @exact_lean_kernel
@@ -204,12 +204,12 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
 
 
 @exact_lean_kernel
-def capsule_clearances_in(room: CheckRoom, boxes: Floats, count: int, out: Floats32) -> int:
+def capsule_clearances_in(scratch: ClearanceScratch, boxes: Floats, count: int, out: Floats32) -> int:
     """`capsule_clearances` of the capsules in the room."""
-    for c in range(room.lanes.shape[0]):
-        _ball_around(room.lanes[c], room.apart, room.balls[c, 0])
-    spread_balls(room.balls, room.spread)
-    return int(lower_blocks_in(room, room.tiles, room.spread, boxes, count, out))
+    for c in range(scratch.lanes.shape[0]):
+        _ball_around(scratch.lanes[c], scratch.apart, scratch.balls[c, 0])
+    spread_balls(scratch.balls, scratch.spread)
+    return int(lower_blocks_in(scratch, scratch.tiles, scratch.spread, boxes, count, out))
 
 
 @exact_kernel
@@ -218,9 +218,9 @@ def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32
 
     Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
     """
-    room = check_room(lanes.shape[0], lanes.shape[0], count)
-    room.lanes[:] = lanes
-    return int(capsule_clearances_in(room, boxes, count, out))
+    scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], count)
+    scratch.lanes[:] = lanes
+    return int(capsule_clearances_in(scratch, boxes, count, out))
 
 
 @exact_lean_kernel

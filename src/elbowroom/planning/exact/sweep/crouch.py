@@ -67,12 +67,12 @@ class Crouch:
                 extra[at, lowerings[at] > max(most, _UPRIGHT)] = np.inf
 
 
-def node_lowerings(postures: Floats, goals: Floats, kept: Floats, start: Floats) -> Floats:
+def node_lowerings(postures: Floats, goals: Floats, previous: Floats, start: Floats) -> Floats:
     """The lowerings (n+1, V + 4) of postures (V, 3) and of each key time's own: its goal, the last plan's, the start's.
 
     The last one is on the way from the start to the goal, and lowered no more than the deeper of the two.
     """
-    goal, last = goals[:, _COLUMN], kept[:, _COLUMN]
+    goal, last = goals[:, _COLUMN], previous[:, _COLUMN]
     hold = np.full(len(goals), start[_COLUMN])
     own = np.stack([goal, last, hold, np.maximum(hold, goal)], axis=1)
     return np.concatenate([np.tile(postures[:, _COLUMN], (len(goals), 1)), own], axis=1)

@@ -4,11 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_lean_kernel, inlined
-from elbowroom.planning.exact.lattice.lattice import OWN, Lattice, Work, least_in, slopes_of, squares_from
+from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
 from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_WAY, Postures
 from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, capsule_clearances_in
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
-from elbowroom.planning.exact.sweep.scratch import Workroom
+from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import pose_into
 from elbowroom.planning.paper.activity_graph import squared_distance
 
@@ -17,7 +17,7 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Longs = NDArray[np.int64]
 
-MOST_STEPS = 128  # looked at in one go
+MOST_EDGES = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
 _ONE = 1  # posture
 
@@ -28,42 +28,42 @@ def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     width = lattice.moves.shape[1]
     posture = lattice.postures[node] if node < width else lattice.own[depth, node - width]
     squares_from(lattice.columns, posture, out[:width])
-    for e in range(OWN):
+    for e in range(EXTRA):
         out[width + e] = squared_distance(lattice.own[depth, e], posture)
 
 
 @exact_lean_kernel
-def ban_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
+def close_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
     """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
-    nodes, most = lattice.price.shape[1], np.float32(radius * radius)
+    nodes, most = lattice.cost.shape[1], np.float32(radius * radius)
     before, after = work.base, work.slopes
     _distances(lattice, depth, source, before)
     _distances(lattice, depth + 1, target, after)
-    kept, closed = lattice.kept[depth + 1], lattice.closed[lattice.masks[depth]]
+    previous, closed = lattice.previous[depth + 1], lattice.closed[lattice.masks[depth]]
     for node in range(nodes):
         if before[node] <= most:
-            row, spared = closed[node], closed[node, kept]
+            row, spared = closed[node], closed[node, previous]
             for other in range(nodes):
                 if before[node] + after[other] <= most:
                     row[other] = True
-            if depth == 0 or node == lattice.kept[depth]:
-                row[kept] = spared
+            if depth == 0 or node == lattice.previous[depth]:
+                row[previous] = spared
     closed[source, target] = True
 
 
 @exact_lean_kernel
-def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
+def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
     """The steps of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
     They are written to `found` (MOST_STEPS, 2), and marked as seen in `seen` (W+OWN, W+OWN). Returns their number.
     """
-    size, nodes, weight = lattice.postures.shape[0], lattice.price.shape[1], np.float32(lattice.weight)
-    width, limit = nodes - OWN, np.float32(most)
+    size, nodes, weight = lattice.postures.shape[0], lattice.cost.shape[1], np.float32(lattice.weight)
+    width, limit = nodes - EXTRA, np.float32(most)
     count, costs, base, end = 0, work.costs[depth], work.base, work.slopes
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
-        end[b] = work.left[depth + 1, b] + lattice.price[depth + 1, b] - end[b]
+        end[b] = work.left[depth + 1, b] + lattice.cost[depth + 1, b] - end[b]
     for a in range(np.uint64(nodes)):
         base[a] = costs[a] + base[a] + square
     least, first, likely, few = least_in(end), least_in(base), work.origins, 0
@@ -91,20 +91,20 @@ def promising(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools
                 seen[a, b] = True
                 found[count, 0], found[count, 1] = a, b
                 count += 1
-                if count == MOST_STEPS:
+                if count == MOST_EDGES:
                     return count
     return count
 
 
 @inlined
 def _posed_between(
-    room: Workroom, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
+    scratch: Scratch, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
 ) -> None:
     """Sixteen steps' postures on their way, from the step `first` on, at one of the looks between, into the room.
 
     The lanes beyond the `count` steps repeat the last.
     """
-    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], room.checks.lanes
+    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], scratch.checks.lanes
     pairs, filled = postures.pairs, min(count - first, BLOCK)
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
@@ -118,8 +118,8 @@ def _posed_between(
             start = lattice.postures[a] if a < width else lattice.own[depth, a - width]
             end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
             for i in range(start.shape[0]):
-                room.configurations[0, i] = start[i] + share * (end[i] - start[i])
-            pose_into(postures.limb, room.limb, room.configurations, int(_ONE), n, lanes)
+                scratch.configurations[0, i] = start[i] + share * (end[i] - start[i])
+            pose_into(postures.limb, scratch.limb, scratch.configurations, int(_ONE), n, lanes)
     for c in range(lanes.shape[0]):
         for i in range(6):
             for n in range(filled, BLOCK):
@@ -129,8 +129,8 @@ def _posed_between(
 
 
 @exact_lean_kernel
-def close_steps(
-    room: Workroom,
+def close_edges(
+    scratch: Scratch,
     postures: Postures,
     lattice: Lattice,
     depth: int,
@@ -139,27 +139,27 @@ def close_steps(
     places: Floats,
     turns: Floats,
     boxes: Floats,
-    skin: float,
+    motion_margin: float,
 ) -> int:
     """Close those of the first `many` steps (K, 2) that touch on the way; returns the capsules checked.
 
     `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
     """
-    out, closed, checks = room.found, lattice.closed[lattice.masks[depth]], 0
+    out, closed, checks = scratch.found, lattice.closed[lattice.masks[depth]], 0
     for part in range(BETWEEN):
-        look = (part + 1) * SWEEP // (BETWEEN + 1)
-        place, turn = places[look], turns[look]
-        count = boxes_around(boxes, place, postures.reach, room.near)
+        sample = (part + 1) * SWEEP // (BETWEEN + 1)
+        place, turn = places[sample], turns[sample]
+        count = boxes_around(boxes, place, postures.reach, scratch.near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(room.near[b], place, turn, room.framed[b])
+            box_in_frame(scratch.near[b], place, turn, scratch.framed[b])
         for first in range(0, many, BLOCK):
-            _posed_between(room, postures, lattice, depth, steps, many, first, part)
+            _posed_between(scratch, postures, lattice, depth, steps, many, first, part)
             out[:] = _INFINITE
-            checks += capsule_clearances_in(room.checks, room.framed, count, out)
+            checks += capsule_clearances_in(scratch.checks, scratch.framed, count, out)
             for k in range(first, min(first + BLOCK, many)):
                 for c in range(out.shape[0]):
-                    if out[c, k - first] < skin:
+                    if out[c, k - first] < motion_margin:
                         closed[steps[k, 0], steps[k, 1]] = True
     return checks

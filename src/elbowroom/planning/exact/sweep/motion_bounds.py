@@ -17,9 +17,9 @@ from elbowroom.body.gait import hips_sinks, quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
 from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
-from elbowroom.planning.exact.memory.cache_index import Slots, admit, find, new_slots
+from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.model.frames import compose_into
-from elbowroom.planning.model.limb import Limb, LimbRoom
+from elbowroom.planning.model.limb import Limb, LimbScratch
 from elbowroom.planning.root.path import interpolate_between, rates_at
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,7 @@ _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is small
 _ROTATION = 1.15  # a rotation vector of up to 1.7 rad changes at most so much faster than the rotation turns
 
 
-class Chain(NamedTuple):
+class KinematicChain(NamedTuple):
     """What carries the limbs: legs, hips and spine."""
 
     legs: Floats  # (2, 10) of the gait
@@ -44,19 +44,19 @@ class Chain(NamedTuple):
     lift: float  # metres: what a unit of lowering moves everything
 
 
-class RootWays(NamedTuple):
+class RootSweeps(NamedTuple):
     """Pelvis frames in the world at the looks of key intervals; the key is the interval and both root states."""
 
-    slots: Slots
+    entries: CacheIndex
     places: Floats  # (S, SWEEP+1, 3)
     turns: Floats  # (S, SWEEP+1, 4)
     sway: Floats  # (S, SWEEP) metres
 
 
-class LimbWays(NamedTuple):
+class LimbSweeps(NamedTuple):
     """What limbs did in key intervals; the key is the carrier's way, then posture and velocity at both ends."""
 
-    slots: Slots
+    entries: CacheIndex
     least: Floats  # (S,) clearance at the looks
     proven: Floats  # (S,) clearance between them; -inf where it was not looked into
     places: Floats  # (S, SWEEP+1, 3) of the chest in the world, for the waist; else none
@@ -64,26 +64,30 @@ class LimbWays(NamedTuple):
     sway: Floats  # (S, SWEEP) metres, of what the chest carries
 
 
-def new_root_ways(count: int) -> RootWays:
+def new_root_sweeps(count: int) -> RootSweeps:
     """Room for the ways of `count` key intervals."""
-    return RootWays(
-        new_slots(count, 16),
+    return RootSweeps(
+        new_cache_index(count, 16),
         np.empty((count, SWEEP + 1, 3)),
         np.empty((count, SWEEP + 1, 4)),
         np.empty((count, SWEEP)),
     )
 
 
-def new_limb_ways(count: int, size: int, *, carries: bool) -> LimbWays:
+def new_limb_sweeps(count: int, size: int, *, carries: bool) -> LimbSweeps:
     """Room for `count` ways of a limb with `size` components."""
     frames = count if carries else 0
-    return LimbWays(
-        new_slots(count, 1 + 4 * size), np.empty(count), np.empty(count), np.empty((frames, SWEEP + 1, 3)),
-        np.empty((frames, SWEEP + 1, 4)), np.empty((frames, SWEEP)),
-    )  # fmt: skip
+    return LimbSweeps(
+        new_cache_index(count, 1 + 4 * size),
+        np.empty(count),
+        np.empty(count),
+        np.empty((frames, SWEEP + 1, 3)),
+        np.empty((frames, SWEEP + 1, 4)),
+        np.empty((frames, SWEEP)),
+    )
 
 
-def chain_of(model: BodyModel, waist: Limb, arm_reach: float) -> Chain:
+def chain_of(model: BodyModel, waist: Limb, arm_reach: float) -> KinematicChain:
     """The chain of a body whose arms reach `arm_reach` from the chest frame."""
     stem = sum(float(np.linalg.norm(model.offsets[joint])) for joint in model.spine)
     lever = _ROTATION * sum(
@@ -92,7 +96,9 @@ def chain_of(model: BodyModel, waist: Limb, arm_reach: float) -> Chain:
     )
     span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + arm_reach
     gait = model.gait
-    return Chain(gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, _lift(model))
+    return KinematicChain(
+        gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, _lift(model)
+    )
 
 
 def _lift(model: BodyModel) -> float:
@@ -153,7 +159,7 @@ def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
 
 
-class RootRoom(NamedTuple):
+class RootScratch(NamedTuple):
     """Room to find the way of a root in."""
 
     key: Floats  # (16,)
@@ -165,41 +171,47 @@ class RootRoom(NamedTuple):
 
 
 @exact_kernel
-def root_ways(ways: RootWays, chain: Chain, states: Floats, interval: float, stamps: Floats) -> Longs:
+def root_sweeps(ways: RootSweeps, chain: KinematicChain, states: Floats, interval: float, stamps: Floats) -> Longs:
     """The slots (n,) of the root ways between states (n+1, 7); stamps (n,) tell apart what moves meanwhile."""
-    room = RootRoom(
-        np.empty(16), np.empty((SWEEP + 1, 7)), np.zeros((SWEEP + 1, 2)), np.empty(SWEEP + 1), np.empty(6),
+    scratch = RootScratch(
+        np.empty(16),
+        np.empty((SWEEP + 1, 7)),
+        np.zeros((SWEEP + 1, 2)),
+        np.empty(SWEEP + 1),
+        np.empty(6),
         np.empty((0, 2, 6)),
-    )  # fmt: skip
+    )
     out = np.empty(stamps.shape[0], np.int64)
     for k in range(out.shape[0]):
-        out[k] = _root_way(ways, chain, states[k], states[k + 1], interval, stamps[k], room)
+        out[k] = _root_sweep(ways, chain, states[k], states[k + 1], interval, stamps[k], scratch)
     return out
 
 
 @exact_lean_kernel
-def _root_way(ways: RootWays, chain: Chain, a: Floats, b: Floats, interval: float, stamp: float, room: RootRoom) -> int:
+def _root_sweep(
+    ways: RootSweeps, chain: KinematicChain, a: Floats, b: Floats, interval: float, stamp: float, scratch: RootScratch
+) -> int:
     """The slot of the root way from state `a` to `b`."""
-    key, states = room.key, room.states
+    key, states = scratch.key, scratch.states
     key[0], key[15] = interval, stamp
     for i in range(7):
         key[1 + i], key[8 + i] = a[i], b[i]
-    known = find(ways.slots, key)
+    known = find(ways.entries, key)
     if known >= 0:
         return int(known)
-    at, rates = admit(ways.slots, key), rates_at(a, b)
+    at, rates = admit(ways.entries, key), rates_at(a, b)
     for i in range(SWEEP + 1):
         interpolate_between(a, b, rates, i / SWEEP, interval, states[i])
-    walk_into(chain.legs, chain.scale, states, room.feet, room.drops, room.foot)
+    walk_into(chain.legs, chain.scale, states, scratch.feet, scratch.drops, scratch.foot)
     for i in range(SWEEP + 1):
-        room.sinks[i, 0] = room.drops[i]
-    place_pelvis_into(chain.hips, states, room.sinks, SWEEP + 1, ways.places[at], ways.turns[at])
+        scratch.sinks[i, 0] = scratch.drops[i]
+    place_pelvis_into(chain.hips, states, scratch.sinks, SWEEP + 1, ways.places[at], ways.turns[at])
     _root_sway(chain, states, ways.places[at], interval, ways.sway[at])
     return int(at)
 
 
 @inlined
-def _root_sway(chain: Chain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
+def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
     ax, az, bx, bz, first, last = rates_at(a, b)
@@ -278,9 +290,16 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
 
 @exact_lean_kernel
 def carry(
-    chain: Chain, waist: LimbRoom, moved: Floats, places: Floats, turns: Floats, sway: Floats, chest: Floats,
-    chest_turns: Floats, chest_sway: Floats,
-) -> None:  # fmt: skip
+    chain: KinematicChain,
+    waist: LimbScratch,
+    moved: Floats,
+    places: Floats,
+    turns: Floats,
+    sway: Floats,
+    chest: Floats,
+    chest_turns: Floats,
+    chest_sway: Floats,
+) -> None:
     """The chest's frames in the world and its sway, for a posed `waist` on pelvis frames (N, 3), (N, 4) and their sway.
 
     They are written to `chest` (N, 3), `chest_turns` (N, 4) and `chest_sway` (N-1,).

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined, leaf
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
-from elbowroom.planning.exact.memory.cache_index import Slots, admit, find, new_slots
+from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
-from elbowroom.planning.exact.sweep.scratch import Workroom, held_against, workroom
+from elbowroom.planning.exact.sweep.scratch import Scratch, held_against, new_scratch
 from elbowroom.planning.model.limb import pose_into
 
 Floats = NDArray[np.float64]
@@ -29,80 +29,90 @@ _FAR = np.float32(1e3)
 _ONE, _BOTH, _FIRST = 1, 2, 0  # postures; place
 
 
-class Tables(NamedTuple):
+class NodeClearances(NamedTuple):
     """Tables by interval; the key is the carrier's way and the goals at both ends."""
 
-    slots: Slots
+    entries: CacheIndex
     early: Floats32  # (S, W + 1) clearance of every posture, then of the goal
     late: Floats32  # (S, W + 1)
 
 
-def new_tables(count: int, size: int, width: int) -> Tables:
+def new_node_clearances(count: int, size: int, width: int) -> NodeClearances:
     """Room for `count` tables of `width` lanes of postures with `size` components."""
-    return Tables(
-        new_slots(count, 1 + 2 * size),
+    return NodeClearances(
+        new_cache_index(count, 1 + 2 * size),
         np.empty((count, width + 1), np.float32),
         np.empty((count, width + 1), np.float32),
     )
 
 
 @exact_lean_kernel
-def table_of(
-    room: Workroom, tables: Tables, postures: Postures, carrier: int, places: Floats, turns: Floats, goals: Floats,
+def interval_clearances(
+    scratch: Scratch,
+    tables: NodeClearances,
+    postures: Postures,
+    carrier: int,
+    places: Floats,
+    turns: Floats,
+    goals: Floats,
     boxes: Floats,
-) -> tuple[int, int]:  # fmt: skip
+) -> tuple[int, int]:
     """The slot of the table of an interval, and the capsules that had to be checked for it.
 
     `carrier` is the number of the carrier's way, `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are its frames,
     `goals` (2, d) those at the interval's ends, `boxes` (B, 15) in the world.
     """
     size = goals.shape[1]
-    key = room.key[: 1 + 2 * size]
+    key = scratch.key[: 1 + 2 * size]
     key[0] = carrier
     for i in range(size):
         key[1 + i], key[1 + size + i] = goals[0, i], goals[1, i]
-    known = find(tables.slots, key)
+    known = find(tables.entries, key)
     if known >= 0:
         return int(known), 0
-    at = admit(tables.slots, key)
+    at = admit(tables.entries, key)
     early, late = tables.early[at], tables.late[at]
-    checks = _moments(room, postures, places, turns, boxes, early, late)
+    checks = _moments(scratch, postures, places, turns, boxes, early, late)
     width = early.shape[0] - 1
-    early[width], late[width], count = _goals_held(room, postures, goals, places, turns, boxes)
+    early[width], late[width], count = _goals_held(scratch, postures, goals, places, turns, boxes)
     return int(at), checks + count
 
 
 @leaf
-def _set_frame(room: Workroom, n: int, places: Floats, turns: Floats, look: int) -> None:
+def _set_frame(scratch: Scratch, n: int, places: Floats, turns: Floats, sample: int) -> None:
     """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` in the room."""
     for i in range(3):
-        room.places[n, i] = places[look, i]
+        scratch.places[n, i] = places[sample, i]
     for i in range(4):
-        room.turns[n, i] = turns[look, i]
+        scratch.turns[n, i] = turns[sample, i]
 
 
 @inlined
 def _goals_held(
-    room: Workroom, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
+    scratch: Scratch, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
 ) -> tuple[Any, Any, int]:
     """The clearances of an interval's goals (2, d), the first held early and the second late, and capsules checked."""
-    near, segments, found = boxes_around(boxes, places[0], postures.reach + 0.5, room.near), room.segments, room.found
+    near, segments, found = (
+        boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near),
+        scratch.segments,
+        scratch.found,
+    )
     if near == 0:
         return _FAR, _FAR, 0
     for i in range(goals.shape[1]):
-        room.configurations[0, i], room.configurations[1, i] = goals[0, i], goals[1, i]
-    pose_into(postures.limb, room.limb, room.configurations, int(_BOTH), int(_FIRST), segments)
+        scratch.configurations[0, i], scratch.configurations[1, i] = goals[0, i], goals[1, i]
+    pose_into(postures.limb, scratch.limb, scratch.configurations, int(_BOTH), int(_FIRST), segments)
     total = _EARLY + _MOMENTS + 1 - _LATE
     for n in range(total):
-        look = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
-        _set_frame(room, n, places, turns, look)
+        sample = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
+        _set_frame(scratch, n, places, turns, sample)
     for c in range(segments.shape[0]):
         for i in range(6):
             first, second = segments[c, i, 0], segments[c, i, 1]
             for n in range(total):
                 segments[c, i, n] = first if n < _EARLY else second
         found[c, :] = _FAR
-    checks = held_against(room, postures.limb.radii, near, total, places[0], room.places, room.turns, found)
+    checks = held_against(scratch, postures.limb.radii, near, total, places[0], scratch.places, scratch.turns, found)
     early, late = _FAR, _FAR
     for c in range(found.shape[0]):
         for n in range(_EARLY):
@@ -114,20 +124,20 @@ def _goals_held(
 
 @inlined
 def _moments(
-    room: Workroom, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
+    scratch: Scratch, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
 ) -> int:
     """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
-    rows, checks = room.blocks, 0
+    rows, checks = scratch.blocks, 0
     early[:], late[:] = _FAR, _FAR
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
-        count = boxes_around(boxes, place, postures.reach, room.near)
+        count = boxes_around(boxes, place, postures.reach, scratch.near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(room.near[b], place, turn, room.framed[b])
+            box_in_frame(scratch.near[b], place, turn, scratch.framed[b])
         rows[:] = _FAR
-        checks += lower_blocks_in(room.checks, room.tiles, room.spread, room.framed, count, rows)
+        checks += lower_blocks_in(scratch.checks, scratch.tiles, scratch.spread, scratch.framed, count, rows)
         if moment <= _EARLY:
             _lower(early, rows)
         if moment >= _LATE:
@@ -146,28 +156,30 @@ def _lower(row: Floats32, blocks: Floats32) -> None:
 
 @exact_lean_kernel
 def held_clearance_in(
-    room: Workroom, postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
+    scratch: Scratch, postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
 ) -> tuple[float, int]:
     """`held_clearance` with room to work in."""
     late = (_LATE, _MOMENTS + 1)
     begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
-    near, segments = boxes_around(boxes, places[0], postures.reach + 0.5, room.near), room.segments
+    near, segments = boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near), scratch.segments
     if near == 0:
         return float(_FAR), 0
     for i in range(configuration.shape[0]):
-        room.configurations[0, i] = configuration[i]
-    pose_into(postures.limb, room.limb, room.configurations, int(_ONE), int(_FIRST), segments)
+        scratch.configurations[0, i] = configuration[i]
+    pose_into(postures.limb, scratch.limb, scratch.configurations, int(_ONE), int(_FIRST), segments)
     total = end - begin
     for n in range(total):
-        look = (begin + n) * _STRIDE
-        _set_frame(room, n, places, turns, look)
+        sample = (begin + n) * _STRIDE
+        _set_frame(scratch, n, places, turns, sample)
     for c in range(segments.shape[0]):
         for i in range(6):
             for n in range(1, total):
                 segments[c, i, n] = segments[c, i, 0]
-        room.found[c, :] = _FAR
-    checks = held_against(room, postures.limb.radii, near, total, places[0], room.places, room.turns, room.found)
-    return least_of(room.found, room.checks.apart), checks
+        scratch.found[c, :] = _FAR
+    checks = held_against(
+        scratch, postures.limb.radii, near, total, places[0], scratch.places, scratch.turns, scratch.found
+    )
+    return least_of(scratch.found, scratch.checks.apart), checks
 
 
 @exact_kernel
@@ -175,6 +187,6 @@ def held_clearance(
     postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
 ) -> tuple[float, int]:
     """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
-    room = workroom(postures, postures.limb, boxes.shape[0])
-    clearance, checks = held_clearance_in(room, postures, configuration, places, turns, boxes, part)
+    scratch = new_scratch(postures, postures.limb, boxes.shape[0])
+    clearance, checks = held_clearance_in(scratch, postures, configuration, places, turns, boxes, part)
     return clearance, checks

@@ -15,11 +15,11 @@ from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
-from elbowroom.planning.exact.lattice.lattice import OWN
+from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.memory.row_contents import CONTENT
-from elbowroom.planning.exact.memory.row_index import new_known
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, Folding, folded
+from elbowroom.planning.exact.memory.row_index import new_row_index
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, OwnBodyNodes, touches_body
 from elbowroom.planning.goal import GoalFunction
 from elbowroom.planning.model.self_pairs import SelfPairs, body_from_chest, self_pairs
 from elbowroom.planning.root.path import RootPath
@@ -51,7 +51,7 @@ class OwnBody:
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
         self._prices: dict[int, tuple[Floats, Floats32]] = {}
-        self._foldings: dict[int, tuple[Floats, Held[Folding]]] = {}
+        self._foldings: dict[int, tuple[Floats, Held[OwnBodyNodes]]] = {}
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -74,23 +74,23 @@ class OwnBody:
             natural, groups = self._goals(path), (DofGroup.WAIST, ARMS[1 - side])
             waists, other = (np.ascontiguousarray(natural[:, columns_of(group)]) for group in groups)
             parts = self.parts(side, waists, states, other)
-            found = [folded(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
-            others = {known: kept for known, kept in self._resting.items() if known[0] != side}
+            found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
+            others = {known: previous for known, previous in self._resting.items() if known[0] != side}
             self._resting = others | {key: (postures, np.any(found, axis=0))}
         return self._resting[key][1]
 
-    def resting_prices(self, side: int, postures: Postures, count: int) -> Floats32:
+    def resting_costs(self, side: int, postures: Postures, count: int) -> Floats32:
         """What that adds to the prices (count, W + OWN) of an arm's nodes: nothing, or infinity."""
         known = self._prices.get(side)
         if known is None or known[0] is not postures.configurations or len(known[1]) != count:
             resting = self.resting(side, postures)
-            prices = np.zeros((count, len(resting) + OWN), np.float32)
-            prices[:, : len(resting)][:, resting] = np.inf
-            known = self._prices[side] = postures.configurations, prices
+            costs = np.zeros((count, len(resting) + EXTRA), np.float32)
+            costs[:, : len(resting)][:, resting] = np.inf
+            known = self._prices[side] = postures.configurations, costs
         return known[1]
 
-    def folding(self, side: int, postures: Postures) -> Held[Folding]:
-        """What arm `side` is held against with `postures`, for `folded_prices`, and what was looked at."""
+    def own_body_nodes(self, side: int, postures: Postures) -> Held[OwnBodyNodes]:
+        """What arm `side` is held against with `postures`, for `own_body_costs`, and what was looked at."""
         known = self._foldings.get(side)
         if known is None or known[0] is not postures.configurations:
             pairs, model, arm = self.pairs, self.model, postures.limb
@@ -99,13 +99,13 @@ class OwnBody:
                 wanted = np.concatenate([wanted, pairs.arms[0]])
                 allowed = np.concatenate([allowed, pairs.between.T], axis=1)
             resting = self.resting(side, postures)
-            folding = Folding(
+            own_body_nodes = OwnBodyNodes(
                 whole_body(model), arm.order, arm.arm_joints, arm.mirror, arm.joints, arm.ends, wanted,
                 np.ascontiguousarray(allowed), postures.configurations, postures.columns, postures.step,
                 postures.lanes, postures.balls, resting,
-                new_known(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
+                new_row_index(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
                 np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
             )  # fmt: skip
-            known = postures.configurations, hold(folding)
+            known = postures.configurations, hold(own_body_nodes)
             self._foldings[side] = known
         return known[1]

@@ -11,10 +11,10 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.held import Held
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, inlined
-from elbowroom.planning.exact.lattice.extra_nodes import alone_at
+from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import BLOCK
 from elbowroom.planning.exact.memory.row_contents import is_natural, set_contents
-from elbowroom.planning.exact.memory.row_index import Known, admit, forget
+from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget
 from elbowroom.planning.model.axis_distances import lower_to_axis, lower_to_body
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,7 @@ SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the 
 _LOCAL = int(DofGroup.WAIST.value.start)
 
 
-class Folding(NamedTuple):
+class OwnBodyNodes(NamedTuple):
     """An arm's postures and the rest of the body, with room for H surroundings in which they were looked at."""
 
     body: WholeBody
@@ -43,13 +43,13 @@ class Folding(NamedTuple):
     lanes: Floats32  # (B, C, 7, 16)
     balls: Floats  # (B, C, 4)
     resting: Bools  # (W,) which of them touch the walking body
-    known: Known  # the surroundings, by their content
+    known: RowIndex  # the surroundings, by their content
     axes: Floats32  # (H, P, 6) the parts in the chest frame
     marks: Bools  # (H, W) which postures come too near to them
 
 
 @exact_kernel
-def folded(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats32, spare: float) -> Bools:
+def touches_body(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats32, spare: float) -> Bools:
     """Which postures, `lanes` (B, C, 7, 16) with their `balls` (B, C, 4), come too near to the parts: shape (16 B,).
 
     Parts are `axes` (P, 6), `allowed` (C, P) how near the axes may come, less `spare`.
@@ -102,19 +102,25 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 
 @exact_kernel
-def folded_prices(
-    folding: Held[Folding], goals: Floats, kept: Floats, start: Floats, settled: bool, walk: Floats, uppers: Floats,
+def own_body_costs(
+    own_body_nodes: Held[OwnBodyNodes],
+    goals: Floats,
+    previous: Floats,
+    start: Floats,
+    settled: bool,
+    walk: Floats,
+    uppers: Floats,
     states: Floats,
-) -> Floats32:  # fmt: skip
+) -> Floats32:
     """What an arm's nodes (n+1, W + OWN) cost for the body's sake: nothing, or infinity.
 
     The arm's task has `goals` (n+1, d), `kept` (n+1, d), a `start` (d,) and is `settled` or not. The groups before it
     are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states` (n+1, 7). Where they are as
     the goals of all groups, `walk` (n+1, 11), have them the arm's goal is free.
     """
-    it = folding.value
+    it = own_body_nodes.value
     width = it.resting.shape[0]
-    own, needed, _ = alone_at(it.configurations, it.columns, it.step, goals, kept, start, settled)
+    own, needed, _ = extra_nodes(it.configurations, it.columns, it.step, goals, previous, start, settled)
     natural, contents = np.empty(own.shape[0], np.bool_), np.empty((own.shape[0], it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
         natural[t] = is_natural(uppers[t], walk[t])
@@ -125,21 +131,21 @@ def folded_prices(
     fresh = fresh[: _set_places(it.known, contents, rows, places, fresh)]
     if fresh.shape[0]:
         _look_at(it, uppers, states, rows, places, fresh)
-    prices = np.empty((own.shape[0], width + own.shape[1]), np.float32)
-    for t in range(prices.shape[0]):
-        for v in range(prices.shape[1]):
-            prices[t, v] = np.inf if v < width and it.resting[v] else 0.0
+    costs = np.empty((own.shape[0], width + own.shape[1]), np.float32)
+    for t in range(costs.shape[0]):
+        for v in range(costs.shape[1]):
+            costs[t, v] = np.inf if v < width and it.resting[v] else 0.0
     gaps = _own_gaps(it, own, rows, places)
     for i in range(rows.shape[0]):
         t, place = rows[i], places[i]
         for e in range(own.shape[1]):
             if gaps[i, e] < SPARE and not (e == 0 and natural[t]):
-                prices[t, width + e] = np.inf
+                costs[t, width + e] = np.inf
         if not natural[t]:
             for v in range(width):
                 if it.marks[place, v]:
-                    prices[t, v] = np.inf
-    return prices
+                    costs[t, v] = np.inf
+    return costs
 
 
 @exact_lean_kernel
@@ -157,7 +163,7 @@ def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
 
 
 @exact_lean_kernel
-def _set_places(known: Known, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
+def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
     """Write down the `places` (R,) of what surrounds the arm at `rows` (R,), and the `fresh` ones; their number."""
     if known.taken[0] + rows.shape[0] > known.rows.shape[0]:
         forget(known)
@@ -172,7 +178,7 @@ def _set_places(known: Known, contents: Indices, rows: Indices, places: Indices,
 
 
 @inlined
-def _look_at(it: Folding, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
+def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
     """Keep what surrounds the arm at `fresh` rows, and which postures come too near to it."""
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
     for n in range(fresh.shape[0]):
@@ -185,7 +191,7 @@ def _look_at(it: Folding, uppers: Floats, states: Floats, rows: Indices, places:
     for n in range(fresh.shape[0]):
         place = places[fresh[n]]
         _from_chest(capsules, it.wanted, n, chests[n], turns[n], it.axes[place])
-        marks = folded(it.lanes, it.balls, it.axes[place], it.allowed, SPARE)
+        marks = touches_body(it.lanes, it.balls, it.axes[place], it.allowed, SPARE)
         for v in range(marks.shape[0]):
             it.marks[place, v] = marks[v]
 
@@ -206,7 +212,7 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
 
 
 @inlined
-def _own_gaps(it: Folding, own: Floats, rows: Indices, places: Indices) -> Floats32:
+def _own_gaps(it: OwnBodyNodes, own: Floats, rows: Indices, places: Indices) -> Floats32:
     """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
     body, extra, size = it.body, own.shape[1], own.shape[2]
     gaps = np.empty((rows.shape[0], extra), np.float32)
@@ -217,9 +223,17 @@ def _own_gaps(it: Folding, own: Floats, rows: Indices, places: Indices) -> Float
             for j in range(size):
                 postures[i * extra + e, j] = own[rows[i], e, j]
     segments = posing.pose_arm(
-        body.base, body.parents, body.offsets, it.order, body.spine[-1], it.arm_joints, it.mirror,
-        it.joints, it.ends, postures,
-    )  # fmt: skip
+        body.base,
+        body.parents,
+        body.offsets,
+        it.order,
+        body.spine[-1],
+        it.arm_joints,
+        it.mirror,
+        it.joints,
+        it.ends,
+        postures,
+    )
     mine = np.empty((segments.shape[0], 6, extra), np.float32)
     for i in range(rows.shape[0]):
         for c in range(segments.shape[0]):

@@ -15,7 +15,7 @@ from elbowroom.body.whole_body import whole_body
 from elbowroom.held import Held, hold
 from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_contents, set_millionths
-from elbowroom.planning.exact.memory.row_index import Known, admit, forget, new_known, place_of
+from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
 from elbowroom.planning.exact.sweep.own_samples import OwnParts, least_gaps
 from elbowroom.planning.model.self_pairs import SelfPairs
 from elbowroom.planning.root.path import RootPath
@@ -32,7 +32,7 @@ ROOM = 2048  # intervals that can be remembered; when half of them are, all are 
 class Seen(NamedTuple):
     """Key intervals that were looked at, by the content of both their ends."""
 
-    known: Known
+    known: RowIndex
     arms: Indices  # (S,) the arm that comes nearest, and
     gaps: Floats  # (S,) its gap, metres
 
@@ -42,7 +42,7 @@ class OwnMotion:
 
     def __init__(self, model: BodyModel, pairs: SelfPairs) -> None:
         self._parts = hold(OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits))
-        known = new_known(ROOM, 2 * (CONTENT + 2 * LOCAL))
+        known = new_row_index(ROOM, 2 * (CONTENT + 2 * LOCAL))
         self._seen = hold(Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM)))
 
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:

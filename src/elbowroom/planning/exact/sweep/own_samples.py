@@ -55,17 +55,17 @@ def least_gaps(
     """
     own, count = parts.value, chosen.shape[0]
     least, at = np.empty((3, count), np.float32), np.empty((count, MOMENTS + 1), np.int64)
-    looks = np.empty((at.size, 2), np.int64)
+    samples = np.empty((at.size, 2), np.int64)
     segments = np.empty((at.size, own.body.joints.shape[0], 6), np.float32)
     gaps = np.empty((at.size, own.first.shape[0]), np.float32)
     near = np.empty(own.first.shape[0], np.bool_)
     least[:], at[:], near[:] = np.inf, -1, True
-    known, made = 0, _first_looks(chosen, at, looks)
+    known, made = 0, _first_looks(chosen, at, samples)
     for level in range(STEPS.shape[0]):
-        postures, roots = _shown(states, keys, rates, interval, chosen, looks[known:made])
+        postures, roots = _shown(states, keys, rates, interval, chosen, samples[known:made])
         capsules, _, _ = posed_body(own.body, postures, roots)
         _measure(
-            capsules, own.first, own.second, own.limits, own.kinds, looks[known:made], near, segments[known:made],
+            capsules, own.first, own.second, own.limits, own.kinds, samples[known:made], near, segments[known:made],
             gaps[known:made], least,
         )  # fmt: skip
         if level == STEPS.shape[0] - 1:
@@ -74,21 +74,21 @@ def least_gaps(
         for i in range(count):
             low = min(least[0, i], least[1, i], least[2, i])
             if low >= 0.0 and low < ROOMS[level]:
-                made = _closer_looks(own, segments, gaps, near, level, i, at, looks, made)
+                made = _closer_looks(own, segments, gaps, near, level, i, at, samples, made)
         if made == known:
             break
     return least
 
 
 @exact_lean_kernel
-def _first_looks(chosen: Indices, at: Indices, looks: Indices) -> int:
+def _first_looks(chosen: Indices, at: Indices, samples: Indices) -> int:
     """Write down the looks (M, 2), an interval's place among the chosen and a moment, that come first; their number."""
     made = 0
     for i in range(chosen.shape[0]):
         if i > 0 and chosen[i] == chosen[i - 1] + 1:
             at[i, 0] = at[i - 1, MOMENTS]
         for moment in range(0 if at[i, 0] < 0 else STEPS[0], MOMENTS + 1, STEPS[0]):
-            at[i, moment], looks[made, 0], looks[made, 1] = made, i, moment
+            at[i, moment], samples[made, 0], samples[made, 1] = made, i, moment
             made += 1
     return made
 
@@ -102,7 +102,7 @@ def _closer_looks(
     level: int,
     i: int,
     at: Indices,
-    looks: Indices,
+    samples: Indices,
     made: int,
 ) -> int:
     """Write down the looks that an interval needs after those of a level; the number of all."""
@@ -117,20 +117,20 @@ def _closer_looks(
             own.first, own.second, own.limits, segments, gaps, near, before, a, b, after, CLEAR[level]
         ):
             for between in range(moment + finer, moment + step, finer):
-                at[i, between], looks[made, 0], looks[made, 1] = made, i, between
+                at[i, between], samples[made, 0], samples[made, 1] = made, i, between
                 made += 1
     return made
 
 
 @exact_inner_kernel
 def _shown(
-    states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices, looks: Indices
+    states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices, samples: Indices
 ) -> tuple[Floats, Floats]:
     """Postures (N, 14) at the origin and root states (N, 7) there, for `looks` (N, 2) into chosen intervals."""
-    count, first = looks.shape[0], DOF - keys.shape[1]
+    count, first = samples.shape[0], DOF - keys.shape[1]
     postures, roots = np.zeros((count, DOF)), np.empty((count, ROOT_STATE))
     for n in range(count):
-        k, u = chosen[looks[n, 0]], looks[n, 1] / MOMENTS
+        k, u = chosen[samples[n, 0]], samples[n, 1] / MOMENTS
         for j in range(keys.shape[1]):
             a, b, m, e = keys[k, j], keys[k + 1, j], interval * rates[k, j], interval * rates[k + 1, j]
             postures[n, first + j] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - e + u * (2.0 * (a - b) + m + e)))
@@ -147,7 +147,7 @@ def _measure(
     second: Indices,
     limits: Floats32,
     kinds: Indices,
-    looks: Indices,
+    samples: Indices,
     near: Bools,
     segments: Floats32,
     gaps: Floats32,
@@ -171,8 +171,8 @@ def _measure(
         for n in range(gaps.shape[0]):
             gap = found[n] - limits[p]
             gaps[n, p], nearest = gap, min(nearest, gap)
-            if looks[n, 1] > 0:
-                least[kind, looks[n, 0]] = min(least[kind, looks[n, 0]], gap)
+            if samples[n, 1] > 0:
+                least[kind, samples[n, 0]] = min(least[kind, samples[n, 0]], gap)
         near[p] = nearest < _FAR
 
 
@@ -188,7 +188,7 @@ def _clear_between(
     a: int,
     b: int,
     after: int,
-    room: float,
+    scratch: float,
 ) -> bool:
     """Whether pairs that are `near` (P,) surely keep `room` between looks `a` and `b`; -1: none `before` or `after`."""
     for p in range(near.shape[0]):
@@ -200,7 +200,7 @@ def _clear_between(
         if after >= 0:
             here = _second_difference(segments, one, a, b, after) + _second_difference(segments, other, a, b, after)
             bent = max(bent, here)
-        least = room + limits[p] + _BENT * bent
+        least = scratch + limits[p] + _BENT * bent
         if _kept_apart(segments, one, other, a, b) < least and _kept_apart(segments, one, other, b, a) < least:
             return False
     return True
@@ -242,14 +242,14 @@ def _kept_apart(segments: Floats32, one: int, other: int, at: int, then: int) ->
 
 
 @leaf
-def _on_axis(segments: Floats32, look: int, c: int, share: float, i: int) -> float:
+def _on_axis(segments: Floats32, sample: int, c: int, share: float, i: int) -> float:
     """A coordinate of the point at a share of a capsule's axis."""
-    return float(segments[look, c, i] + share * (segments[look, c, 3 + i] - segments[look, c, i]))
+    return float(segments[sample, c, i] + share * (segments[sample, c, 3 + i] - segments[sample, c, i]))
 
 
 @leaf
-def _least_along(segments: Floats32, look: int, c: int, x: float, y: float, z: float) -> float:
+def _least_along(segments: Floats32, sample: int, c: int, x: float, y: float, z: float) -> float:
     """The least of a capsule's axis along a direction."""
-    start = segments[look, c, 0] * x + segments[look, c, 1] * y + segments[look, c, 2] * z
-    end = segments[look, c, 3] * x + segments[look, c, 4] * y + segments[look, c, 5] * z
+    start = segments[sample, c, 0] * x + segments[sample, c, 1] * y + segments[sample, c, 2] * z
+    end = segments[sample, c, 3] * x + segments[sample, c, 4] * y + segments[sample, c, 5] * z
     return float(min(start, end))

@@ -18,14 +18,14 @@ from elbowroom.planning.exact.memory.cache_index import admit, find
 from elbowroom.planning.exact.sweep.block_clearances import COMFORT, boxes_around, least_of
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
-    Chain,
     Ends,
-    LimbWays,
+    KinematicChain,
+    LimbSweeps,
     carry,
     configurations_into,
     moves_into,
 )
-from elbowroom.planning.exact.sweep.scratch import HALVINGS, Parts, Workroom, held_against, workroom
+from elbowroom.planning.exact.sweep.scratch import HALVINGS, Parts, Scratch, held_against, new_scratch
 from elbowroom.planning.model.frames import compose_into
 from elbowroom.planning.model.limb import carry_frames, pose_into
 from elbowroom.planning.root.path import interpolate_between, rates_at
@@ -52,10 +52,16 @@ class Carrier(NamedTuple):
 
 
 @exact_lean_kernel
-def _looks(
-    room: Workroom, postures: Postures, posed: bool, count: int, places: Floats, turns: Floats, boxes: Floats,
+def _samples(
+    scratch: Scratch,
+    postures: Postures,
+    posed: bool,
+    count: int,
+    places: Floats,
+    turns: Floats,
+    boxes: Floats,
     out: Floats32,
-) -> int:  # fmt: skip
+) -> int:
     """Clearances (C, 16) of a motion's capsules, up to `COMFORT` or more; returns the capsules that were checked.
 
     The first `count` configurations of the room are looked at, in the frames (N, 3), (N, 4); if they are `posed`, their
@@ -65,12 +71,12 @@ def _looks(
         row = out[c]
         for i in range(np.uint64(BLOCK)):
             row[i] = COMFORT
-    near = boxes_around(boxes, places[0], postures.reach + 0.5, room.near)
+    near = boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near)
     if near == 0:
         return 0
     if not posed:
-        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
-    return int(held_against(room, postures.limb.radii, near, count, places[0], places, turns, out))
+        pose_into(postures.limb, scratch.limb, scratch.configurations, count, int(_NONE), scratch.segments)
+    return int(held_against(scratch, postures.limb.radii, near, count, places[0], places, turns, out))
 
 
 @exact_lean_kernel
@@ -89,31 +95,33 @@ def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, shar
 
 
 @inlined
-def _frames_between(room: Workroom, chain: Chain, is_waist: bool, carrier: Carrier, waist: Ends, count: int) -> None:
+def _frames_between(
+    scratch: Scratch, chain: KinematicChain, is_waist: bool, carrier: Carrier, waist: Ends, count: int
+) -> None:
     """The carrier's frames at the first `count` of the room's parts of an interval, into the room.
 
     The pelvis' height is read between the looks; it bends by less than `ENOUGH` counts in there.
     """
-    states, heights, places, shares = carrier.states, carrier.heights, room.places, room.shares
+    states, heights, places, shares = carrier.states, carrier.heights, scratch.places, scratch.shares
     interval, begin, end = states[0], states[1:8], states[8:15]
     rates = rates_at(begin, end)
     for n in range(count):
-        interpolate_between(begin, end, rates, shares[n], interval, room.states[n])
-    place_pelvis_into(chain.hips, room.states, room.level, count, places, room.turns)
+        interpolate_between(begin, end, rates, shares[n], interval, scratch.states[n])
+    place_pelvis_into(chain.hips, scratch.states, scratch.level, count, places, scratch.turns)
     for n in range(count):
-        look = min(int(shares[n] * SWEEP), SWEEP - 1)
-        part = shares[n] * SWEEP - look
-        places[n, 1] = heights[look, 1] + part * (heights[look + 1, 1] - heights[look, 1])
+        sample = min(int(shares[n] * SWEEP), SWEEP - 1)
+        part = shares[n] * SWEEP - sample
+        places[n, 1] = heights[sample, 1] + part * (heights[sample + 1, 1] - heights[sample, 1])
     if not is_waist:
-        configurations_into(waist, interval, shares, count, room.waists)
-        carry_frames(chain.waist, room.stem, room.waists, count)
-        compose_into(places, room.turns, room.stem.places, room.stem.turns, count, places, room.turns)
+        configurations_into(waist, interval, shares, count, scratch.waists)
+        carry_frames(chain.waist, scratch.stem, scratch.waists, count)
+        compose_into(places, scratch.turns, scratch.stem.places, scratch.stem.turns, count, places, scratch.turns)
 
 
 @exact_lean_kernel
-def _enter(parts: Parts, now: int, n: int, at: float, look: int, before: Floats32, after: Floats32) -> None:
+def _enter(parts: Parts, now: int, n: int, at: float, sample: int, before: Floats32, after: Floats32) -> None:
     """Note a part that is not proven yet."""
-    parts.at[now, n], parts.look[now, n] = at, look
+    parts.at[now, n], parts.sample[now, n] = at, sample
     ends = parts.ends[now, n]
     for c in range(before.shape[0]):
         ends[0, c], ends[1, c] = before[c], after[c]
@@ -121,15 +129,21 @@ def _enter(parts: Parts, now: int, n: int, at: float, look: int, before: Floats3
 
 @inlined
 def _refined(
-    room: Workroom, postures: Postures, levers: Floats, chain: Chain, carrier: Carrier, waist: Ends, ends: Ends,
+    scratch: Scratch,
+    postures: Postures,
+    levers: Floats,
+    chain: KinematicChain,
+    carrier: Carrier,
+    waist: Ends,
+    ends: Ends,
     boxes: Floats,
-) -> tuple[float, int]:  # fmt: skip
+) -> tuple[float, int]:
     """The proven clearance of a motion whose looks found what is in the room, and the capsules checked.
 
     Parts for which the bound is not enough are halved, up to `HALVINGS` times, sixteen looks at once.
     """
-    is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], room.moves, carrier.sway
-    columns, found, parts, shares = room.coarse.T, room.found.T, room.parts, room.shares
+    is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], scratch.moves, carrier.sway
+    columns, found, parts, shares = scratch.coarse.T, scratch.found.T, scratch.parts, scratch.shares
     open_parts, now, proven, checks, share = int(_NONE), int(_NONE), np.inf, 0, 1.0
     for i in range(SWEEP):
         low = _between(columns[i], columns[i + 1], sway[i], moved[i], 1.0, levers)
@@ -145,11 +159,13 @@ def _refined(
             batch = min(BLOCK, open_parts - begin)
             for n in range(batch):
                 shares[n] = parts.at[now, begin + n] + share / SWEEP
-            _frames_between(room, chain, is_waist, carrier, waist, batch)
-            configurations_into(ends, interval, shares, batch, room.configurations)
-            checks += _looks(room, postures, bool(_UNPOSED), batch, room.places, room.turns, boxes, room.found)
+            _frames_between(scratch, chain, is_waist, carrier, waist, batch)
+            configurations_into(ends, interval, shares, batch, scratch.configurations)
+            checks += _samples(
+                scratch, postures, bool(_UNPOSED), batch, scratch.places, scratch.turns, boxes, scratch.found
+            )
             for n in range(batch):
-                one, i = parts.ends[now, begin + n], parts.look[now, begin + n]
+                one, i = parts.ends[now, begin + n], parts.sample[now, begin + n]
                 for half in range(2):
                     before = one[0] if half == 0 else found[n]
                     after = found[n] if half == 0 else one[1]
@@ -178,44 +194,61 @@ def _set_key(number: int, ends: Ends, key: Floats) -> None:
 
 
 @exact_lean_kernel
-def limb_way_in(
-    room: Workroom, ways: LimbWays, postures: Postures, levers: Floats, chain: Chain, carrier: Carrier, ends: Ends,
-    boxes: Floats, wanted: float,
-) -> tuple[int, int]:  # fmt: skip
-    """`limb_way` with room to work in."""
-    _set_key(carrier.number, ends, room.key)
-    at = find(ways.slots, room.key)
+def limb_sweep_in(
+    scratch: Scratch,
+    ways: LimbSweeps,
+    postures: Postures,
+    levers: Floats,
+    chain: KinematicChain,
+    carrier: Carrier,
+    ends: Ends,
+    boxes: Floats,
+    wanted: float,
+) -> tuple[int, int]:
+    """`limb_sweep` with room to work in."""
+    _set_key(carrier.number, ends, scratch.key)
+    at = find(ways.entries, scratch.key)
     if at >= 0 and (ways.proven[at] > _UNKNOWN or ways.least[at] < wanted):
         return int(at), 0
     if at < 0:
-        at = admit(ways.slots, room.key)
+        at = admit(ways.entries, scratch.key)
     is_waist, interval, count = postures.limb.is_waist, carrier.states[0], SWEEP + 1
     places, turns = carrier.places, carrier.turns
     for i in range(count):
-        room.shares[i] = i / SWEEP
-    configurations_into(ends, interval, room.shares, count, room.configurations)
-    moves_into(ends, interval, SWEEP, room.rates, room.moves)
+        scratch.shares[i] = i / SWEEP
+    configurations_into(ends, interval, scratch.shares, count, scratch.configurations)
+    moves_into(ends, interval, SWEEP, scratch.rates, scratch.moves)
     if is_waist:
-        pose_into(postures.limb, room.limb, room.configurations, count, int(_NONE), room.segments)
-        carry(chain, room.limb, room.moves, places, turns, carrier.sway, ways.places[at], ways.turns[at], ways.sway[at])
-    checks = _looks(room, postures, is_waist, count, places, turns, boxes, room.coarse)
-    least = least_of(room.coarse, room.checks.apart)
+        pose_into(postures.limb, scratch.limb, scratch.configurations, count, int(_NONE), scratch.segments)
+        carry(
+            chain,
+            scratch.limb,
+            scratch.moves,
+            places,
+            turns,
+            carrier.sway,
+            ways.places[at],
+            ways.turns[at],
+            ways.sway[at],
+        )
+    checks = _samples(scratch, postures, is_waist, count, places, turns, boxes, scratch.coarse)
+    least = least_of(scratch.coarse, scratch.checks.apart)
     ways.least[at], ways.proven[at] = least, _UNKNOWN
     if least < wanted:
         return int(at), checks
     key = carrier.waist
     size = (key.shape[0] - 1) // 4
     waist = key[1 : 1 + size], key[1 + size : 1 + 2 * size], key[1 + 2 * size : 1 + 3 * size], key[1 + 3 * size :]
-    ways.proven[at], more = _refined(room, postures, levers, chain, carrier, waist, ends, boxes)
+    ways.proven[at], more = _refined(scratch, postures, levers, chain, carrier, waist, ends, boxes)
     return int(at), checks + more
 
 
 @exact_kernel
-def limb_way(
-    ways: LimbWays,
+def limb_sweep(
+    ways: LimbSweeps,
     postures: Postures,
     levers: Floats,
-    chain: Chain,
+    chain: KinematicChain,
     carrier: Carrier,
     ends: Ends,
     boxes: Floats,
@@ -226,6 +259,6 @@ def limb_way(
     It goes from posture to posture with the velocities `ends`, on what carries it. Where less than the `wanted`
     clearance is found at the looks, what lies between them is not looked into.
     """
-    room = workroom(postures, chain.waist, boxes.shape[0])
-    at, checks = limb_way_in(room, ways, postures, levers, chain, carrier, ends, boxes, wanted)
+    scratch = new_scratch(postures, chain.waist, boxes.shape[0])
+    at, checks = limb_sweep_in(scratch, ways, postures, levers, chain, carrier, ends, boxes, wanted)
     return at, checks

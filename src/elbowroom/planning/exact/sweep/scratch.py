@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.sweep.block_clearances import (
-    CheckRoom,
+    ClearanceScratch,
     capsule_clearances_in,
-    check_room,
+    clearance_scratch,
     place_capsules,
     spread_balls,
 )
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
-from elbowroom.planning.model.limb import Limb, LimbRoom, limb_room
+from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -28,16 +28,16 @@ class Parts(NamedTuple):
     """Parts of an interval that are not proven yet, in two sets that take turns."""
 
     at: Floats  # (2, N) where they begin
-    look: Longs  # (2, N) the look before them
+    sample: Longs  # (2, N) the look before them
     ends: Floats32  # (2, N, 2, C) clearances at both their ends
 
 
-class Workroom(NamedTuple):
+class Scratch(NamedTuple):
     """Room for sixteen looks at a limb with C capsules and d components, past B boxes."""
 
-    checks: CheckRoom
-    limb: LimbRoom
-    stem: LimbRoom  # of the limb that carries it
+    checks: ClearanceScratch
+    limb: LimbScratch
+    stem: LimbScratch  # of the limb that carries it
     near: Floats  # (B, 15) boxes
     framed: Floats  # (B, 15) boxes in the limb's frame
     tiles: Floats32  # blocks of all postures, flat
@@ -62,17 +62,17 @@ class Workroom(NamedTuple):
 
 
 @exact_inner_kernel
-def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
+def new_scratch(postures: Postures, stem: Limb, boxes: int) -> Scratch:
     """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
-    limb, room = postures.limb, SWEEP << HALVINGS
+    limb, scratch = postures.limb, SWEEP << HALVINGS
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
-    checks = check_room(postures.lanes.shape[0] * count, count, boxes)
+    checks = clearance_scratch(postures.lanes.shape[0] * count, count, boxes)
     spread = np.empty(checks.spread.shape, np.float32)
     spread_balls(postures.balls, spread)
-    return Workroom(
+    return Scratch(
         checks,
-        limb_room(limb, int(BLOCK)),
-        limb_room(stem, int(BLOCK)),
+        limb_scratch(limb, int(BLOCK)),
+        limb_scratch(stem, int(BLOCK)),
         np.empty((boxes, 15)),
         np.empty((boxes, 15)),
         postures.lanes.reshape(postures.lanes.size),
@@ -93,25 +93,32 @@ def workroom(postures: Postures, stem: Limb, boxes: int) -> Workroom:
         np.empty((SWEEP + 2, 4)),
         np.empty(1 + 4 * size),
         np.empty(6),
-        Parts(np.empty((2, room)), np.empty((2, room), np.int64), np.empty((2, room, 2, count), np.float32)),
+        Parts(np.empty((2, scratch)), np.empty((2, scratch), np.int64), np.empty((2, scratch, 2, count), np.float32)),
     )
 
 
 @exact_lean_kernel
 def held_against(
-    room: Workroom, radii: Floats32, near: int, count: int, origin: Floats, places: Floats, turns: Floats, out: Floats32
+    scratch: Scratch,
+    radii: Floats32,
+    near: int,
+    count: int,
+    origin: Floats,
+    places: Floats,
+    turns: Floats,
+    out: Floats32,
 ) -> int:
     """Lower `out` (C, 16) to the clearances of the room's first `count` capsules from its first `near` boxes.
 
     The capsules are in frames at `places` (N, 3), `turns` (N, 4); all is reckoned from `origin`, a place near to them.
     Returns the capsules that were checked.
     """
-    at = room.at
+    at = scratch.at
     for n in range(count):
         for i in range(3):
             at[n, i] = places[n, i] - origin[i]
     for b in range(near):
         for i in range(3):
-            room.near[b, i] -= origin[i]
-    place_capsules(room.segments, count, radii, at, turns, room.checks.lanes)
-    return int(capsule_clearances_in(room.checks, room.near, near, out))
+            scratch.near[b, i] -= origin[i]
+    place_capsules(scratch.segments, count, radii, at, turns, scratch.checks.lanes)
+    return int(capsule_clearances_in(scratch.checks, scratch.near, near, out))
