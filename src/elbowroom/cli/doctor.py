@@ -167,7 +167,8 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
     memory = f"{own}, {cost['resident_megabytes']:.0f} with its libraries"
     rate = f"{cost['frames_per_second']:.1f} frames/s, computing one takes {cost['frame_ms_p50']:.2f} ms"
     frames = f"99 % of the frames within {cost['late_ms_p99']:.1f} ms of their time"
-    answers = f"commands answered within {cost['answer_ms_p50']:.0f} ms (half), {cost['answer_ms_max']:.0f} ms (all"
+    half, most, longest = (f"{cost[f'answer_ms_{name}']:.0f}" for name in ("p50", "p99", "max"))
+    answers = f"commands answered within {half} ms (half), {most} (99 %), {longest} (all"
     return [
         ("session", f"{cost['sessions']} at once: {cpu} each, {memory}"),
         ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),

@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -14,10 +14,14 @@ from functools import partial
 from statistics import median
 from urllib.request import urlopen
 
+import numpy as np
 from websockets.sync.client import ClientConnection, connect
 
 from elbowroom.errors import InputError
+from elbowroom.experiment.bench.steer_scenes import Steer, keys
+from elbowroom.planning.command import Command
 from elbowroom.server.codec import decode_server, encode
+from elbowroom.server.pose_frame import parse
 from elbowroom.server.schema.commands import Input, Reset
 from elbowroom.server.schema.progress import Status
 
@@ -27,9 +31,8 @@ ANSWER_AIM = 100.0  # ms
 
 _PATIENCE = 300.0  # seconds until the server answers, the first time with compiling
 _SETTLE = 2.0  # seconds of walking before the measurement
-_HEARTBEAT = 0.2  # seconds between inputs
-_CHANGE, _TURNED = 3.0, 0.5  # seconds between changes of direction, and until it is changed back
-_RESTART = 12.0  # seconds of walking between two resets: the scenes' obstacles, again and again
+_HEARTBEAT = 0.2  # seconds between inputs that are all the same
+_RESTART = 12.0  # seconds of walking between two resets, at most: the scenes' obstacles, again and again
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,7 @@ class SessionCost:
     frame_ms_p95: float
     late_ms_p99: float  # how long after it was due a frame was ready; of the latest session
     answer_ms_p50: float  # from a changed command until the motion is planned for it
+    answer_ms_p99: float  # of the session that waited longest
     answer_ms_max: float
     answer_aim_ms: float
     late_plans: int
@@ -67,11 +71,17 @@ def memory_budget(sessions: int) -> float:
     return OWN_BASE + OWN_EACH * sessions
 
 
-def measure_session(seconds: float, scene: str, sessions: int = 1) -> SessionCost:
-    """Run a server and clients for `seconds`; raises `InputError` if the server does not start."""
+def measure_session(
+    seconds: float, scene: str, sessions: int = 1, hand: Callable[[], Steer] | None = None
+) -> SessionCost:
+    """Run a server and clients for `seconds`; raises `InputError` if the server does not start.
+
+    `hand` makes the user who steers a session from its start to the finish, or for a while, and then another; by
+    default one who walks mostly ahead.
+    """
     began = time.perf_counter()
     with started_server(scene, dict(os.environ)) as url:
-        return _measured(url, seconds, sessions, time.perf_counter() - began)
+        return _measured(url, seconds, sessions, hand or _mostly_ahead, time.perf_counter() - began)
 
 
 @contextmanager
@@ -106,13 +116,13 @@ def _url(server: "subprocess.Popen[str]") -> str:
     raise InputError("doctor: the server did not start; `elbowroom play --no-open` says why")
 
 
-def _measured(url: str, seconds: float, sessions: int, ready: float) -> SessionCost:
+def _measured(url: str, seconds: float, sessions: int, hand: Callable[[], Steer], ready: float) -> SessionCost:
     _wait_until_warm(url)
     with ExitStack() as stack, ThreadPoolExecutor(sessions) as threads:
         clients = [stack.enter_context(_client(url)) for _ in range(sessions)]
-        list(threads.map(partial(_walk, seconds=_SETTLE), clients))
+        list(threads.map(partial(_walk, seconds=_SETTLE, hand=hand), clients))
         before = _usage(url)
-        tallies = list(threads.map(partial(_walk, seconds=seconds), clients))
+        tallies = list(threads.map(partial(_walk, seconds=seconds, hand=hand), clients))
         after = _usage(url)
     wall = after["wallSeconds"] - before["wallSeconds"]
     told = [tally.status for tally in tallies if tally.status is not None]
@@ -129,8 +139,9 @@ def _measured(url: str, seconds: float, sessions: int, ready: float) -> SessionC
         frame_ms_p50=median(status.frame_ms_p50 for status in told),
         frame_ms_p95=max(status.frame_ms_p95 for status in told),
         late_ms_p99=max(status.late_ms_p99 for status in told),
-        answer_ms_p50=median(half for half, _ in answers) if answers else 0.0,
-        answer_ms_max=max((longest for _, longest in answers), default=0.0),
+        answer_ms_p50=median(half for half, _, _ in answers) if answers else 0.0,
+        answer_ms_p99=max((most for _, most, _ in answers), default=0.0),
+        answer_ms_max=max((longest for _, _, longest in answers), default=0.0),
         answer_aim_ms=ANSWER_AIM,
         late_plans=sum(status.late_plans for status in told),
         ready_seconds=ready,
@@ -141,28 +152,38 @@ def _client(url: str) -> ClientConnection:
     return connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE)
 
 
-def _walk(client: ClientConnection, seconds: float) -> _Tally:
-    """Walk for `seconds`, mostly ahead, with a change of direction and a return to the start now and then."""
-    tally = _Tally()
-    began = time.monotonic()
-    end = began + seconds
-    next_input, next_reset, seq = 0.0, began + _RESTART, 0
-    while time.monotonic() < end:
-        if time.monotonic() >= next_reset:
-            next_reset += _RESTART
-            client.send(encode(Reset()))
-        if time.monotonic() >= next_input:
-            next_input = time.monotonic() + _HEARTBEAT
-            seq += 1
-            turned = (time.monotonic() - began) % _CHANGE > _CHANGE - _TURNED
-            client.send(encode(Input(seq=seq, forward=1.0, strafe=1.0 if turned else 0.0)))
+def _walk(client: ClientConnection, seconds: float, hand: Callable[[], Steer]) -> _Tally:
+    """Steer for `seconds`, from the start again when the finish is reached or it takes long."""
+    tally, steer, sent = _Tally(), hand(), -_HEARTBEAT
+    began = start = time.monotonic()
+    command, number = Command(), 0
+    while (now := time.monotonic()) < began + seconds:
         message = client.recv(timeout=_PATIENCE)
-        if isinstance(message, bytes):
-            tally.frames += 1
-        else:
+        if not isinstance(message, bytes):
             parsed = decode_server(message)
             tally.status = parsed if isinstance(parsed, Status) else tally.status
+            continue
+        pose = parse(message)
+        tally.frames += 1
+        if pose.flag("finished") or now > start + _RESTART:
+            client.send(encode(Reset()))
+            steer, start = hand(), now
+            continue
+        wanted = steer(now - start, pose.x, pose.z)
+        if wanted != command or now > sent + _HEARTBEAT:
+            command, sent, number = wanted, now, number + 1
+            client.send(encode(_input(number, command)))
     return tally
+
+
+def _mostly_ahead() -> Steer:
+    return keys((2.5, Command(forward=1.0)), (0.5, Command(forward=1.0, strafe=1.0)))(
+        np.array([[0.0, 0.0], [0.0, 1.0]])
+    )
+
+
+def _input(number: int, command: Command) -> Input:
+    return Input(number, command.forward, command.strafe, command.turn, command.direction, command.run)
 
 
 def _wait_until_warm(url: str) -> None:

@@ -5,7 +5,7 @@ from collections import deque
 import numpy as np
 
 _FRAMES = 600  # that are remembered
-_ANSWERS = 100
+_ANSWERS = 1000
 
 
 class Punctuality:
@@ -36,8 +36,9 @@ class Punctuality:
         return 1e3 * float(np.percentile(self._late or [0.0], 99))
 
     @property
-    def answer_ms(self) -> tuple[float, float] | None:
-        """Median and longest wait of the commands, milliseconds; None where there was none."""
+    def answer_ms(self) -> tuple[float, float, float] | None:
+        """Median, 99th percentile and longest wait of the commands, milliseconds; None where there was none."""
         if not self._answers:
             return None
-        return 1e3 * float(np.median(self._answers)), 1e3 * max(self._answers)
+        half, most, longest = (1e3 * np.percentile(self._answers, [50, 99, 100])).tolist()
+        return half, most, longest

@@ -331,8 +331,7 @@ export interface Status {
   frameMsP95: number;
   /** how long after it was due a frame was ready */
   lateMsP99: number;
-  /** median and longest wait until the motion is what a new command wants */
-  answerMs: [number, number] | null;
+  answerMs: [number, number, number] | null;
   /** plans since the last reset that came too late to be shown */
   latePlans: number;
   /** seconds of motion in the last plan */

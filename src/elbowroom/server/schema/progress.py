@@ -57,7 +57,8 @@ class Status:
     frame_ms_p50: float  # computing one frame, over the last seconds
     frame_ms_p95: float
     late_ms_p99: float  # how long after it was due a frame was ready
-    answer_ms: tuple[float, float] | None  # median and longest wait until the motion is what a new command wants
+    # Median, 99th percentile and longest wait until the motion is what a new command wants.
+    answer_ms: tuple[float, float, float] | None
     late_plans: int  # plans since the last reset that came too late to be shown
     look_ahead: float  # seconds of motion in the last plan
     queue_fill: int
