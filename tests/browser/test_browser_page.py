@@ -118,6 +118,17 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live.page.keyboard.up("w")
 
 
+def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
+    titles = "[...document.querySelectorAll('#avatar option')].map((option) => option.value)"
+    mine = open_page("scene=empty")
+    mine.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
+    avatar = mine.wait("s.settings.avatar !== 'stock'", 60)["settings"]["avatar"]
+    assert avatar not in open_page("scene=empty").page.evaluate(titles)
+    mine.page.reload()
+    mine.wait("s.settings && s.connected")
+    assert avatar in mine.page.evaluate(titles)
+
+
 def test_the_page_says_what_a_file_permits_and_what_was_made_of_it(open_page: Open, tmp_path: Path) -> None:
     live = open_page("scene=empty")
     file = tmp_path / "mine.vrm"

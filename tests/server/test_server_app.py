@@ -9,20 +9,25 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 from starlette.responses import PlainTextResponse
 
+from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
 from elbowroom.server import app as app_module
 from elbowroom.server import avatar_store, uploads
 from elbowroom.server.app import make_app
+from elbowroom.server.codec import plain
 from elbowroom.server.guard import Guard, host_of, is_loopback
 from elbowroom.server.library import Library
 from elbowroom.server.serving import listen, url_of
 from live_session import running
 
 LOCAL = "http://127.0.0.1:8765"
+KEY = "0123456789abcdef" * 2
+DANCE = write_bvh(random_motion(np.random.default_rng(0), 60, smooth=8.0), BvhRecipe())
 
 
 class Page:
@@ -199,7 +204,23 @@ def test_a_file_dropped_on_the_page_becomes_an_avatar(page: Page) -> None:
     assert answer.status_code == 201
     choice = answer.json()["avatar"]
     assert page.get(f"/avatars/{choice['id']}.glb").content == data
-    assert choice in page.get("/api/catalog").json()["avatars"]
+
+
+def test_a_dropped_file_is_in_no_menu_but_its_own(page: Page, library: Library) -> None:
+    mine, other = KEY, KEY[::-1]
+    stock = library.catalog()
+    data = stock_avatar_path().read_bytes()
+    avatar = page.post(f"/api/avatars?name=mine.vrm&key={mine}", content=data).json()["avatar"]
+    clip = page.post(f"/api/avatars?name=dance.bvh&key={mine}", content=DANCE).json()["clips"][0]
+    own = plain(library.catalog(mine))
+    assert avatar in own["avatars"]
+    assert clip in own["clips"]
+    for key in ("", other):
+        assert library.catalog(key) == stock
+    assert page.get("/api/catalog").json() == plain(stock)
+    nobodys = page.post("/api/avatars?name=mine.vrm&key=short", content=data).json()["avatar"]
+    assert nobodys not in plain(library.catalog("short"))["avatars"]
+    library.avatars.check(avatar["id"])  # whoever is told the id may use it
 
 
 @pytest.mark.parametrize("data", [b"", b"glTF", b"{}", b"\x00" * 1000, b'{"asset": {"version": "2.0"}}', b"PK\x03\x04"])
@@ -237,19 +258,19 @@ def test_uploads_fill_no_more_than_their_share_of_the_disk(monkeypatch: pytest.M
     data = stock_avatar_path().read_bytes()
     monkeypatch.setattr(avatar_store, "MAX_UPLOADED", len(data) + 1000)
     store = avatar_store.AvatarStore()
-    store.add_upload(data, "one.vrm")
-    second = store.add_upload(data, "two.vrm")
-    assert {choice.id for choice in store.choices()} == {"stock", second.id}
+    store.add_upload(data, "one.vrm", owner=KEY)
+    second = store.add_upload(data, "two.vrm", owner=KEY)
+    assert {choice.id for choice in store.choices(KEY)} == {"stock", second.id}
     store.close()
 
 
 def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(avatar_store, "MAX_UPLOADS", 2)
     store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()
-    first, second = (store.add_upload(data, "one.vrm") for _ in range(2))
+    first, second = (store.add_upload(data, "one.vrm", owner=KEY) for _ in range(2))
     store.get(first.id)
-    third = store.add_upload(data, "three.vrm")
-    assert {choice.id for choice in store.choices()} == {"stock", first.id, third.id}
+    third = store.add_upload(data, "three.vrm", owner=KEY)
+    assert {choice.id for choice in store.choices(KEY)} == {"stock", first.id, third.id}
     assert second.glb is not None
     assert not second.glb.exists()
     with pytest.raises(InputError, match="drop its file"):

@@ -26,6 +26,7 @@ from elbowroom.server.wanted import Wanted
 from elbowroom.world.scene import Scene
 
 BVH = write_bvh(random_motion(np.random.default_rng(0), 60, smooth=8.0), BvhRecipe())
+KEY = "0123456789abcdef" * 2
 
 
 @pytest.fixture(scope="module")
@@ -92,16 +93,17 @@ def test_configure_changes_what_is_shown(library: Library) -> None:
 
 def test_dropped_files_are_kept_and_the_oldest_goes() -> None:
     store = ClipStore()
-    first = store.add_upload(BVH, "0.bvh")[0]
+    first = store.add_upload(BVH, "0.bvh", KEY)[0]
     for number in range(1, MAX_FILES):
-        store.add_upload(BVH, f"{number}.bvh")
+        store.add_upload(BVH, f"{number}.bvh", KEY)
     store.get(first.id)
-    second = store.choices()[0]
-    store.add_upload(BVH, "last.bvh")
+    second = store.choices(KEY)[0]
+    store.add_upload(BVH, "last.bvh", KEY)
     store.check(first.id)
     with pytest.raises(InputError, match="not known"):
         store.check(second.id)
-    assert len(store.choices()) == MAX_FILES
+    assert len(store.choices(KEY)) == MAX_FILES
+    assert store.choices() == []
 
 
 def test_what_holds_no_motion_is_not_kept() -> None:

@@ -104,6 +104,8 @@ def test_a_jump_changes_the_epoch_and_a_new_avatar_the_revision(library: Library
     third = parse(stage.frame(0.2))
     assert third.avatar_revision == stage.revision != second.avatar_revision
     assert stage.walk.crossed == 3
+    stage.show(Walk(other, library.find_scene("a"), WalkSettings()))
+    assert (stage.walk.crossed, stage.walk.stuck_times) == (0, 0)
 
 
 def test_crossing_counts_once_until_the_avatar_was_back_at_the_start(walk: Walk) -> None:

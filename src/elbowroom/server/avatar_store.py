@@ -27,6 +27,7 @@ class StoredAvatar:
     humanoid: Humanoid
     glb: Path | None  # None for a humanoid without a file
     sender: str = ""  # address of the machine that it was sent from: there it is no stranger's
+    owner: str = ""  # key of the page that sent it: only there the menu shows it
 
     @property
     def title(self) -> str:
@@ -52,10 +53,11 @@ class AvatarStore:
         """Remove the private folder."""
         self._folder.cleanup()
 
-    def choices(self) -> list[AvatarChoice]:
-        """What the menu offers; the stock avatar is there even before it is read."""
+    def choices(self, owner: str = "") -> list[AvatarChoice]:
+        """What the menu offers to the page with this key: the stock avatar, even before it is read, and its own."""
         with self._lock:
-            known = [*self._kept.values(), *self._uploads.values()]
+            own = [upload for upload in self._uploads.values() if owner and upload.owner == owner]
+            known = [*self._kept.values(), *own]
         stock = [] if any(avatar.id == STOCK for avatar in known) else [AvatarChoice(STOCK, "Stock avatar")]
         return stock + [AvatarChoice(avatar.id, avatar.title) for avatar in known]
 
@@ -79,12 +81,15 @@ class AvatarStore:
         """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
         return self._keep(secrets.token_hex(8), Humanoid.load(path, read))
 
-    def add_upload(self, data: bytes, name: str, sender: str = "") -> StoredAvatar:
-        """Keep an avatar that was sent as bytes from an address; raises `InputError` if they hold no humanoid."""
+    def add_upload(self, data: bytes, name: str, sender: str = "", owner: str = "") -> StoredAvatar:
+        """Keep an avatar that a page has sent as bytes from an address; raises `InputError` if they hold no humanoid.
+
+        Menus offer it to that page alone; whoever is told its id can use it.
+        """
         from elbowroom.body.loading import load_humanoid_bytes
 
         humanoid = load_humanoid_bytes(data, name)
-        avatar = replace(self._stored(secrets.token_hex(8), humanoid), sender=sender)
+        avatar = replace(self._stored(secrets.token_hex(8), humanoid), sender=sender, owner=owner)
         with self._lock:
             self._uploads[avatar.id] = avatar
             while len(self._uploads) > 1 and self._too_many():

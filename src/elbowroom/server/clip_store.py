@@ -23,6 +23,7 @@ class StoredClip:
     title: str
     file: MotionFile
     name: str
+    owner: str = ""  # key of the page that sent it: only there the menu shows it
 
     @cached_property
     def clip(self) -> Clip:
@@ -38,10 +39,11 @@ class ClipStore:
         self._kept: dict[str, StoredClip] = {}
         self._uploads: OrderedDict[str, list[StoredClip]] = OrderedDict()
 
-    def choices(self) -> list[ClipChoice]:
-        """What the menu offers."""
+    def choices(self, owner: str = "") -> list[ClipChoice]:
+        """What the menu offers to the page with this key."""
         with self._lock:
-            known = [*self._kept.values(), *(clip for clips in self._uploads.values() for clip in clips)]
+            sent = [clip for clips in self._uploads.values() for clip in clips]
+            known = [*self._kept.values(), *(clip for clip in sent if owner and clip.owner == owner)]
         return [ClipChoice(clip.id, clip.title) for clip in known]
 
     def check(self, clip_id: str) -> None:
@@ -67,9 +69,12 @@ class ClipStore:
             self._kept |= {clip.id: clip for clip in clips}
         return clips
 
-    def add_upload(self, data: bytes, name: str) -> list[StoredClip]:
-        """Keep the clips of a file that was sent as bytes; raises `InputError` if it holds no motion of a humanoid."""
-        clips = _stored(parse_motion(data, name), None)
+    def add_upload(self, data: bytes, name: str, owner: str = "") -> list[StoredClip]:
+        """Keep the clips of a file that a page has sent as bytes; raises `InputError` if it holds no humanoid's motion.
+
+        Menus offer them to that page alone; whoever is told an id can use it.
+        """
+        clips = _stored(parse_motion(data, name), None, owner)
         with self._lock:
             self._uploads[clips[0].id] = clips
             while len(self._uploads) > MAX_FILES:
@@ -77,11 +82,11 @@ class ClipStore:
         return clips
 
 
-def _stored(file: MotionFile, only: str | None) -> list[StoredClip]:
+def _stored(file: MotionFile, only: str | None, owner: str = "") -> list[StoredClip]:
     names = [name for name in file.clips if only in (None, name)][:MAX_OFFERED]
     if not names:
         file.clip(only)
     short = file.format == "BVH" or len(file.clips) == 1
-    clips = [StoredClip(secrets.token_hex(8), file.name if short else name, file, name) for name in names]
+    clips = [StoredClip(secrets.token_hex(8), file.name if short else name, file, name, owner) for name in names]
     _ = clips[0].clip
     return clips

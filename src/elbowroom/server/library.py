@@ -91,13 +91,13 @@ class Library:
         courses = {name: f"Random course, level {parse_name(name)[0]}" for name in random_names()}
         return known + [SceneChoice(name, title) for name, title in courses.items() if name not in self.scenes]
 
-    def catalog(self) -> Catalog:
-        """What the menus offer now."""
+    def catalog(self, owner: str = "") -> Catalog:
+        """What the menus offer now to the page with this key; files that other pages sent are not in it."""
         return Catalog(
             scenes=self._scene_choices,
-            avatars=self.avatars.choices(),
+            avatars=self.avatars.choices(owner),
             planners=list(PLANNERS),
             queue_sizes=list(QUEUE_SIZES),
             walk_speed=WALK_SPEEDS,
-            clips=self.clips.choices(),
+            clips=self.clips.choices(owner),
         )

@@ -17,6 +17,7 @@ from elbowroom.server.codec import decode_client, encode
 from elbowroom.server.library import Library
 from elbowroom.server.messages import ClientMessage, ServerMessage
 from elbowroom.server.outbox import Outbox, SlowClientError
+from elbowroom.server.page_key import page_key
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
@@ -82,7 +83,7 @@ class Session:
     async def _open(self) -> None:
         library = self._library
         wanted = Wanted(library.scene, library.avatar, library.walk, library.clip)
-        self._outbox.put(Hello(__version__, PROTOCOL, library.catalog()))
+        self._outbox.put(Hello(__version__, PROTOCOL, library.catalog(page_key(self._socket.query_params))))
         self._outbox.put(Loading("avatar", library.avatar, True))
         walk = await asyncio.to_thread(make_walk, library, wanted, None)
         self._outbox.put(Loading("avatar", library.avatar, False))

@@ -46,8 +46,9 @@ class Stage:
         self.punctuality = Punctuality()
 
     def show(self, walk: Walk | ClipWalk) -> None:
-        """Go on with another walk; the counters of crossings go with the session, not with the walk."""
-        walk.crossed, walk.stuck_times = self.walk.crossed, self.walk.stuck_times
+        """Go on with another walk; the counters of crossings go on within a scene, and begin anew in another."""
+        if walk.scene.name == self.walk.scene.name:
+            walk.crossed, walk.stuck_times = self.walk.crossed, self.walk.stuck_times
         self.revision = (self.revision + (walk.avatar is not self.walk.avatar)) % 2**16
         self.walk = walk
         self._jump()

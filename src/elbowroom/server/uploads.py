@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import logging
+from typing import NamedTuple
 
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
@@ -12,6 +13,7 @@ from elbowroom.errors import InputError
 from elbowroom.server.clip_store import StoredClip
 from elbowroom.server.codec import plain
 from elbowroom.server.library import Library
+from elbowroom.server.page_key import page_key
 from elbowroom.server.schema.bounds import MAX_UPLOAD
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
 
@@ -23,6 +25,11 @@ _PAUSE = 20.0  # seconds that a sender may be silent
 
 class _TooLargeError(Exception):
     pass
+
+
+class _Sender(NamedTuple):
+    address: str
+    key: str  # of its page, "" for a program
 
 
 class UploadDesk:
@@ -40,7 +47,7 @@ class UploadDesk:
             try:
                 data = await _body(request)
                 name = request.query_params.get("name", "avatar")[:_NAME]
-                sender = request.client.host if request.client else ""
+                sender = _Sender(request.client.host if request.client else "", page_key(request.query_params))
                 uploaded = await asyncio.to_thread(self._read, data, name, sender)
             except _TooLargeError:
                 return _refused(413, f"the file is larger than {MAX_UPLOAD // 2**20} MiB")
@@ -53,16 +60,18 @@ class UploadDesk:
                 return _refused(500, "the file could not be read; the server's log says more")
         return JSONResponse(plain(uploaded), 201)
 
-    def _read(self, data: bytes, name: str, sender: str) -> Uploaded:
+    def _read(self, data: bytes, name: str, sender: _Sender) -> Uploaded:
         """By content: a motion, an avatar, or an avatar with motions of its own."""
         clips = self._library.clips
         if is_motion_only(data, name):
-            return Uploaded(None, [ClipChoice(clip.id, clip.title) for clip in clips.add_upload(data, name)])
-        avatar = self._library.avatars.add_upload(data, name, sender)
+            return Uploaded(
+                None, [ClipChoice(clip.id, clip.title) for clip in clips.add_upload(data, name, sender.key)]
+            )
+        avatar = self._library.avatars.add_upload(data, name, sender.address, sender.key)
         own: list[StoredClip] = []
         if has_animations(data, name):
             with contextlib.suppress(InputError):
-                own = clips.add_upload(data, name)
+                own = clips.add_upload(data, name, sender.key)
         return Uploaded(AvatarChoice(avatar.id, avatar.title), [ClipChoice(clip.id, clip.title) for clip in own])
 
 

@@ -1,14 +1,14 @@
 /** Sends an avatar or motion file to the server. */
 
 import { MAX_UPLOAD, type Uploaded } from "../generated/messages";
-import { UPLOAD_URL } from "../net/endpoints";
+import { uploadUrl } from "../net/endpoints";
 
 /** @throws Error with one sentence for the user when the server does not take the file */
 export async function uploadFile(file: File): Promise<Uploaded> {
   if (file.size > MAX_UPLOAD) {
     throw new Error(`${file.name} has ${megabytes(file.size)} MB; at most ${megabytes(MAX_UPLOAD)} MB are taken.`);
   }
-  const response = await fetch(`${UPLOAD_URL}?name=${encodeURIComponent(file.name)}`, {
+  const response = await fetch(uploadUrl(file.name), {
     method: "POST",
     headers: { "Content-Type": "application/octet-stream" },
     body: file,

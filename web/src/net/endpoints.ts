@@ -1,11 +1,44 @@
 /** Where the server listens, relative to the page. */
 
+const STORE = "elbowroom.key";
+const KEY = /^[0-9a-f]{32}$/;
+
 /** The address of the live session. */
 export function sessionUrl(): string {
   const url = new URL("ws", document.baseURI);
+  url.searchParams.set("key", pageKey());
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   return url.href;
 }
 
-/** The address that takes avatar files. */
-export const UPLOAD_URL = "api/avatars";
+/** The address that takes an avatar or motion file of this name. */
+export function uploadUrl(name: string): string {
+  return `api/avatars?${new URLSearchParams({ name, key: pageKey() })}`;
+}
+
+let key = "";
+
+/** The secret by which the server knows which files are this tab's; it outlives a reload, not the tab. */
+function pageKey(): string {
+  key ||= keptKey() ?? newKey();
+  return key;
+}
+
+function keptKey(): string | null {
+  try {
+    const kept = sessionStorage.getItem(STORE);
+    return kept !== null && KEY.test(kept) ? kept : null;
+  } catch {
+    return null;
+  }
+}
+
+function newKey(): string {
+  const drawn = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  try {
+    sessionStorage.setItem(STORE, drawn);
+  } catch {
+    return drawn; // a browser that stores nothing: the key lives as long as the page
+  }
+  return drawn;
+}

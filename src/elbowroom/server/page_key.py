@@ -1,0 +1,12 @@
+"""The key of a page: a secret that it draws itself, by which the server knows whose files are whose."""
+
+import re
+from collections.abc import Mapping
+
+_KEY = re.compile(r"[0-9a-f]{32,64}")
+
+
+def page_key(query: Mapping[str, str]) -> str:
+    """The key in the address of a request (`?key=`); "" if there is none or it is none."""
+    key = query.get("key", "")
+    return key if _KEY.fullmatch(key) else ""
