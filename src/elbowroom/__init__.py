@@ -12,28 +12,44 @@ if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid as Humanoid
     from elbowroom.body.root import RootState as RootState
     from elbowroom.clips.clip import Clip as Clip
+    from elbowroom.control.body_check import BodyCheck as BodyCheck
     from elbowroom.control.controller import Controller as Controller
     from elbowroom.control.frame import Frame as Frame
     from elbowroom.control.frame import Phase as Phase
     from elbowroom.control.recording import Recorder as Recorder
     from elbowroom.errors import InputError as InputError
     from elbowroom.planning.command import Command as Command
+    from elbowroom.planning.goal import natural_walk as natural_walk
+    from elbowroom.planning.planner import Planner as Planner
+    from elbowroom.planning.planner import register_planner as register_planner
+    from elbowroom.planning.result import LocalPlan as LocalPlan
+    from elbowroom.planning.result import PlanStatus as PlanStatus
+    from elbowroom.planning.root.path import RootPath as RootPath
+    from elbowroom.world.scene import Gate as Gate
     from elbowroom.world.scene import Scene as Scene
 
 __version__ = "0.1.0"
 
 # Where each public name lives; it is imported when it is first asked for, so that `import elbowroom` costs nothing.
 _HOMES = {
+    "BodyCheck": "control.body_check",
     "Clip": "clips.clip",
     "Command": "planning.command",
     "Controller": "control.controller",
     "Frame": "control.frame",
+    "Gate": "world.scene",
     "Humanoid": "body.humanoid",
     "InputError": "errors",
+    "LocalPlan": "planning.result",
     "Phase": "control.frame",
+    "PlanStatus": "planning.result",
+    "Planner": "planning.planner",
     "Recorder": "control.recording",
+    "RootPath": "planning.root.path",
     "RootState": "body.root",
     "Scene": "world.scene",
+    "natural_walk": "planning.goal",
+    "register_planner": "planning.planner",
 }
 
 

@@ -12,7 +12,7 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.errors import InputError
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.names import PLANNER_NAMES
+from elbowroom.planning.names import planner_names
 from elbowroom.planning.paper.local_planner import GroupSettings, LocalPlanner, LocalPlannerSettings
 from elbowroom.planning.planner import PLANNERS, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -197,7 +197,7 @@ def test_margins_grow_with_the_way_between_key_frames(humanoid: Humanoid) -> Non
 
 
 def test_planners_are_made_by_name(humanoid: Humanoid) -> None:
-    assert tuple(PLANNERS) == PLANNER_NAMES
+    assert tuple(PLANNERS) == planner_names()
     plan = make_planner("figure6", humanoid, Scene.load("empty")).plan(walk(), hanging(), np.random.default_rng(0))
     assert plan.status is PlanStatus.FOUND
     with pytest.raises(InputError, match="figure6"):

@@ -240,3 +240,15 @@ def test_a_gate_is_crossed_in_its_direction_and_width() -> None:
     assert gate.passed(1.1, 2.9)
     assert not gate.passed(0.9, 2.0)
     assert not gate.passed(1.1, 3.1)
+
+
+def test_a_scene_made_in_code_is_one_of_a_file() -> None:
+    post = {"type": "box", "name": "post", "center": [1.0, 1.0, 2.0], "size": [0.2, 2.0, 0.2], "yaw": 0.5}
+    scene = Scene.of("posts", [post], finish=(3.0, 4.0), start=(0.0, 1.0))
+    assert (scene.name, scene.title, scene.box_names) == ("posts", "posts", ("post",))
+    assert scene.start.heading == scene.finish.heading == pytest.approx(np.pi / 4.0)
+    assert scene.ground_center == (1.5, 2.5)
+    assert scene.ground_size == (19.0, 19.0)
+    assert Scene.from_dict(scene.to_dict()).to_dict() == scene.to_dict()
+    with pytest.raises(InputError, match=r"posts: \$.obstacles\[0\] lacks the field 'size'"):
+        Scene.of("posts", [{"type": "box", "center": [1.0, 1.0, 2.0]}], finish=(3.0, 4.0))

@@ -10,9 +10,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from elbowroom.planning.names import PLANNER_NAMES
+from elbowroom.planning.names import BUILT_IN
 
-PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(PLANNER_NAMES)}."
+PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
 
 SCENE_HELP = "A scene by name (a, b, c, d, beam, doorway, traffic, empty), a course (gauntlet:5:1013) or a scene file."
 

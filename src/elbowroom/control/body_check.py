@@ -28,11 +28,11 @@ class BodyCheck:
     """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
-        self.model = body_model(humanoid)
+        self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._table = scene.boxes.table
         self._moving = scene.moving
-        self.others: Sequence[Neighbour] = ()
+        self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
 
     @property
     def restless(self) -> bool:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from elbowroom.errors import InputError
-from elbowroom.planning.names import DEFAULT_PLANNER, PLANNER_NAMES
+from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 
 QUEUE_SIZES = range(2, 33)
 
@@ -20,8 +20,7 @@ class ControlSettings:
     assist: bool = True  # off: the canned walk, touching what it touches
 
     def __post_init__(self) -> None:
-        if self.planner not in PLANNER_NAMES:
-            raise InputError(f"planner {self.planner[:40]!r} is unknown; there are {', '.join(PLANNER_NAMES)}")
+        check_planner(self.planner)
         if self.queue_size not in QUEUE_SIZES:
             limits = f"{QUEUE_SIZES.start} to {QUEUE_SIZES.stop - 1}"
             raise InputError(f"queue size: {self.queue_size} is not a whole number from {limits} key frames")

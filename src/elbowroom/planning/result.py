@@ -13,7 +13,7 @@ from elbowroom.body.dof import DofGroup
 class PlanStatus(Enum):
     """How a search ended."""
 
-    FOUND = "found"
+    FOUND = "found"  # there is motion for the whole path
     EXHAUSTED = "exhausted"  # every way was tried
     OUT_OF_BUDGET = "out of budget"  # stopped after the allowed number of collision checks
 
@@ -80,7 +80,7 @@ class Blockade:
 class LocalPlan(NamedTuple):
     """Upper-body motion for a root path, or the status of the first group that found none."""
 
-    status: PlanStatus
+    status: PlanStatus  # how the search ended
     configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
     goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order

@@ -10,7 +10,7 @@ from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.scenes import PREFIX, course_scene, load_scene, parse_name, random_names
-from elbowroom.planning.planner import PLANNERS
+from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
@@ -96,7 +96,7 @@ class Library:
         return Catalog(
             scenes=self._scene_choices,
             avatars=self.avatars.choices(owner),
-            planners=list(PLANNERS),
+            planners=list(planner_names()),
             queue_sizes=list(QUEUE_SIZES),
             walk_speed=WALK_SPEEDS,
             clips=self.clips.choices(owner),

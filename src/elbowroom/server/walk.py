@@ -10,8 +10,7 @@ from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.planning.names import DEFAULT_PLANNER
-from elbowroom.planning.planner import PLANNERS
+from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
@@ -32,8 +31,7 @@ class WalkSettings:
     walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it
 
     def __post_init__(self) -> None:
-        if self.planner not in PLANNERS:
-            raise InputError(f"planner {self.planner[:40]!r} is unknown; there are {', '.join(PLANNERS)}")
+        check_planner(self.planner)
         if self.queue_size not in QUEUE_SIZES:
             raise InputError(
                 f"queue size {self.queue_size}: allowed are {QUEUE_SIZES[0]} to {QUEUE_SIZES[-1]} key frames"

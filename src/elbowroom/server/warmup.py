@@ -11,7 +11,7 @@ from typing import Any
 from numba.core import event
 
 from elbowroom.planning.exact.rehearsal import rehearse
-from elbowroom.planning.planner import PLANNERS
+from elbowroom.planning.names import planner_names
 from elbowroom.server.library import Library
 from elbowroom.server.schema.commands import Input, Overlays
 from elbowroom.server.stage import STEP, Stage
@@ -61,7 +61,7 @@ def warm_up(library: Library, report: Report | None = None) -> None:
     Sets `library.warm`. Raises `InputError` if the avatar cannot stand in that scene.
     """
     with listening(report):
-        for planner in PLANNERS:
+        for planner in planner_names():
             walk_and_stand(library, planner)
         rehearse(library.avatars.get(library.avatar).humanoid)
     library.warm.set()

@@ -1,6 +1,7 @@
 """Where: obstacles, ground, a start and a finish."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -75,6 +76,26 @@ class Scene:
         from elbowroom.world.scene_format import read_scene
 
         return read_scene(document, source)
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        obstacles: Sequence[Mapping[str, Any]],
+        *,
+        finish: tuple[float, float],
+        start: tuple[float, float] = (0.0, 0.0),
+        moving: Sequence[Mapping[str, Any]] = (),
+    ) -> "Scene":
+        """A scene made in code: from `start` to `finish` (x, z, metres), on ground that reaches 8 m around both.
+
+        The avatar faces the finish, which is a line of 4 m across its way. Obstacles are told as in a scene file:
+        `{"type": "box", "center": [x, y, z], "size": [x, y, z]}`, with `"yaw"` in radians and `"name"` if need be;
+        so are those that move. Raises `InputError`, as `from_dict` does.
+        """
+        from elbowroom.world.scene_format import scene_document
+
+        return cls.from_dict(scene_document(name, obstacles, start, finish, moving), name)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""

@@ -3,6 +3,8 @@
 A test holds reader and schema together on many broken documents.
 """
 
+import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ VERSION = 1
 
 MAX_OBSTACLES = 10_000
 _TITLE, _PROSE = 200, 4000  # characters
+_AROUND = 8.0  # metres of ground around start and finish, where nobody says how much
 
 # What a start must leave free: a slim standing figure's legs and pelvis, metres.
 _STANCE_LOW, _STANCE_HIGH, _STANCE_RADIUS = 0.1, 1.0, 0.12
@@ -142,6 +145,30 @@ def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
         return
     name = (*scene.box_names, *scene.moving.names)[int(np.argmin(distances))]
     Place(place.source, f"{place.path}.position", [x, z]).fail(f"it stands in the obstacle {name!r}; move one of them")
+
+
+def scene_document(
+    name: str,
+    obstacles: Sequence[Mapping[str, Any]],
+    start: tuple[float, float],
+    finish: tuple[float, float],
+    moving: Sequence[Mapping[str, Any]] = (),
+) -> dict[str, Any]:
+    """The document of a scene from `start` straight to `finish` (x, z, metres), on ground `_AROUND` both."""
+    heading = math.atan2(finish[0] - start[0], finish[1] - start[1])
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "name": name,
+        "ground": {
+            "size": [abs(b - a) + 2.0 * _AROUND for a, b in zip(start, finish, strict=True)],
+            "center": [0.5 * (a + b) for a, b in zip(start, finish, strict=True)],
+        },
+        "start": {"position": list(start), "heading": heading},
+        "finish": {"position": list(finish), "heading": heading},
+        "obstacles": [dict(obstacle) for obstacle in obstacles],
+    }
+    return document | ({"moving": [dict(thing) for thing in moving]} if moving else {})
 
 
 def write_scene(scene: Scene) -> dict[str, Any]:

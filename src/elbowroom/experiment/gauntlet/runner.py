@@ -19,7 +19,7 @@ from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
 from elbowroom.experiment.machine import machine_kind, program_digest
 from elbowroom.experiment.parallel import run_all
 from elbowroom.experiment.trial_log import TrialLog, digest
-from elbowroom.planning.planner import PLANNERS
+from elbowroom.planning.names import check_planner
 
 MOST_COURSES = 1_000_000
 
@@ -43,8 +43,7 @@ class GauntletSettings:
             raise InputError(f"courses: {self.courses} is not a whole number from 1 to {MOST_COURSES}")
         if not 0 <= self.seed <= LARGEST_SEED + 1 - self.courses:
             raise InputError(f"seed: {self.seed} is not a whole number from 0 to {LARGEST_SEED + 1 - self.courses}")
-        if self.trial.planner not in PLANNERS:
-            raise InputError(f"planner: {self.trial.planner!r} is not one of {', '.join(PLANNERS)}")
+        check_planner(self.trial.planner)
         ControlSettings(queue_size=self.trial.queue_size)
 
     def tasks(self) -> list[CourseTask]:
