@@ -1,8 +1,11 @@
-"""The Python of the README and of docs/planner.md runs as it stands, and the commands exist."""
+"""What README, CONTRIBUTING and docs show can be done: Python runs, commands parse, targets and files exist."""
 
 import re
+import shlex
 from pathlib import Path
+from typing import Any
 
+import pytest
 from typer.main import get_command
 
 from elbowroom.cli.main import app
@@ -10,8 +13,18 @@ from elbowroom.cli.main import app
 ROOT = Path(__file__).parents[1]
 
 
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
 def code_blocks(language: str, file: str = "README.md") -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / file).read_text("utf-8"), flags=re.DOTALL)
+
+
+def commands_in(page: Path) -> list[str]:
+    """The calls of `elbowroom` in code blocks, indented lines and between backticks."""
+    text = page.read_text("utf-8")
+    blocks = re.findall(r"^(?: {4})?(elbowroom .*)$", text, flags=re.MULTILINE)
+    return blocks + re.findall(r"`(elbowroom [^`\n]*)`", text)
 
 
 def test_python_example_runs(capsys) -> None:  # type: ignore[no-untyped-def]
@@ -34,5 +47,27 @@ def test_every_command_shown_is_a_command() -> None:
 
 def test_every_make_target_shown_exists() -> None:
     makefile = (ROOT / "Makefile").read_text()
-    for target in re.findall(r"make (\w+)", " ".join(code_blocks("bash"))):
-        assert re.search(rf"^{target}:", makefile, flags=re.MULTILINE), target
+    for page in PAGES:
+        for targets in re.findall(r"(?:^|`)make ((?:[a-z-]+ ?)+)", page.read_text("utf-8"), flags=re.MULTILINE):
+            for target in targets.split():
+                assert re.search(rf"^{target}:", makefile, flags=re.MULTILINE), f"{page.name}: make {target}"
+
+
+@pytest.mark.parametrize(("page", "command"), [(page.name, line) for page in PAGES for line in commands_in(page)])
+def test_every_command_line_in_the_docs_is_understood(page: str, command: str) -> None:
+    words = shlex.split(command, comments=True)[1:]
+    called: Any = get_command(app)
+    while hasattr(called, "commands"):
+        first = words.pop(0) if words else ""
+        if first.startswith("-") or not first:
+            return  # `elbowroom --help`, `elbowroom bench`
+        assert first in called.commands, command
+        called = called.commands[first]
+    if words:  # without, it is the command's name
+        called.make_context(called.name, [word for word in words if word != "..."])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_named_in_the_docs_exists(page: Path) -> None:
+    for named in re.findall(r"`((?:src|tests|tools|docs|examples|web)/[\w./-]*)`", page.read_text("utf-8")):
+        assert (ROOT / named).exists(), f"{page.name} names {named}"
