@@ -1,7 +1,9 @@
 """The web application: what it serves, what it refuses."""
 
 import asyncio
+import errno
 import http.client
+import io
 import json
 import socket
 from collections.abc import AsyncIterator, Iterator
@@ -11,7 +13,9 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from starlette.applications import Starlette
 from starlette.responses import PlainTextResponse
+from starlette.routing import Route
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.stock import stock_avatar_path
@@ -22,11 +26,14 @@ from elbowroom.server.app import make_app
 from elbowroom.server.codec import plain
 from elbowroom.server.guard import Guard, host_of, is_loopback
 from elbowroom.server.library import Library
+from elbowroom.server.page_key import Sender
 from elbowroom.server.serving import listen, url_of
 from live_session import running
+from sent_files import add_avatar
 
 LOCAL = "http://127.0.0.1:8765"
 KEY = "0123456789abcdef" * 2
+MINE = Sender("127.0.0.1", KEY)
 DANCE = write_bvh(random_motion(np.random.default_rng(0), 60, smooth=8.0), BvhRecipe())
 
 
@@ -162,10 +169,19 @@ def test_only_the_page_itself_may_send_files(page: Page, origin: str | None, sta
 
 def test_from_other_machines_only_pages_of_an_open_server_may_send(library: Library) -> None:
     there = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9")
-    assert there.get("/api/health").status_code == 200
+    assert there.get("/api/health").status_code == 403
+    assert there.get("/api/health", headers={"origin": "http://192.168.1.5:8765"}).status_code == 200
+    assert there.get("/avatars/stock.glb").status_code == 200  # browsers name no origin here
     assert there.post("/api/avatars", content=b"x").status_code == 403
     assert there.post("/api/avatars", content=b"x", headers={"origin": "http://192.168.1.5:8765"}).status_code == 422
     assert there.get("/api/health", headers={"host": "rebound.example"}).status_code == 403
+
+
+@pytest.mark.parametrize("path", ["/api/health", "/api/catalog", "/api/scenes/b", "/api/scenes/gauntlet:5:1"])
+def test_a_page_elsewhere_may_ask_for_nothing(page: Page, path: str) -> None:
+    for headers in ({"origin": "http://evil.example"}, {"sec-fetch-site": "cross-site"}, {"origin": "null"}):
+        assert page.get(path, headers=headers).status_code == 403
+    assert page.get("/api/health", headers={"origin": LOCAL, "sec-fetch-site": "same-origin"}).status_code == 200
 
 
 def test_a_loopback_server_does_not_know_the_addresses_of_the_network(library: Library) -> None:
@@ -258,8 +274,8 @@ def test_uploads_fill_no_more_than_their_share_of_the_disk(monkeypatch: pytest.M
     data = stock_avatar_path().read_bytes()
     monkeypatch.setattr(avatar_store, "MAX_UPLOADED", len(data) + 1000)
     store = avatar_store.AvatarStore()
-    store.add_upload(data, "one.vrm", owner=KEY)
-    second = store.add_upload(data, "two.vrm", owner=KEY)
+    add_avatar(store, data, "one.vrm", MINE)
+    second = add_avatar(store, data, "two.vrm", MINE)
     assert {choice.id for choice in store.choices(KEY)} == {"stock", second.id}
     store.close()
 
@@ -267,9 +283,9 @@ def test_uploads_fill_no_more_than_their_share_of_the_disk(monkeypatch: pytest.M
 def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(avatar_store, "MAX_UPLOADS", 2)
     store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()
-    first, second = (store.add_upload(data, "one.vrm", owner=KEY) for _ in range(2))
+    first, second = (add_avatar(store, data, "one.vrm", MINE) for _ in range(2))
     store.get(first.id)
-    third = store.add_upload(data, "three.vrm", owner=KEY)
+    third = add_avatar(store, data, "three.vrm", MINE)
     assert {choice.id for choice in store.choices(KEY)} == {"stock", first.id, third.id}
     assert second.glb is not None
     assert not second.glb.exists()
@@ -279,6 +295,74 @@ def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> 
     folder = first.glb.parent
     store.close()
     assert not folder.exists()
+
+
+def test_an_avatar_that_is_shown_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(avatar_store, "MAX_UPLOADS", 2)
+    store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()
+    first, second = (add_avatar(store, data, "one.vrm", MINE) for _ in range(2))
+    store.hold("a session", first.id)
+    add_avatar(store, data, "three.vrm", MINE)
+    assert store.get(first.id) is first
+    with pytest.raises(InputError, match="drop its file"):
+        store.get(second.id)
+    store.hold("another", *(choice.id for choice in store.choices(KEY)))
+    with pytest.raises(InputError, match="all files that this server has place for are in use"):
+        add_avatar(store, data, "four.vrm")
+    assert len(list(store.folder.iterdir())) == 2  # and what was refused is gone
+    store.hold("another")
+    add_avatar(store, data, "four.vrm")
+    store.close()
+
+
+def test_a_sender_pushes_out_only_what_it_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(avatar_store, "MAX_EACH", 2)
+    store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()
+    mine = add_avatar(store, data, "mine.vrm", Sender("192.168.1.5", KEY))
+    theirs = [add_avatar(store, data, "theirs.vrm", Sender("192.168.1.6", KEY)) for _ in range(4)]
+    known = {choice.id for choice in store.choices(KEY)} - {"stock"}
+    assert known == {mine.id, *(avatar.id for avatar in theirs[2:])}
+    store.close()
+
+
+async def dripping() -> AsyncIterator[bytes]:
+    for _ in range(1000):
+        yield b"x"
+        await asyncio.sleep(0.01)
+
+
+def test_a_body_that_drips_is_ended(library: Library) -> None:
+    async def ask() -> httpx.Response:
+        desk = Starlette(routes=[Route("/up", uploads.UploadDesk(library, pace).take, methods=["POST"])])
+        async with httpx.AsyncClient(transport=httpx.ASGITransport(desk), base_url=LOCAL) as client:
+            return await client.post("/up", content=dripping())
+
+    pace = uploads.Pace(pause=5.0, grace=0.3, slowest=10_000.0)
+    before = set(library.avatars.folder.iterdir())
+    assert asyncio.run(ask()).status_code == 408
+    assert set(library.avatars.folder.iterdir()) == before
+
+
+def test_a_full_disk_refuses_one_file_and_leaves_nothing(
+    library: Library, page: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Full(io.BytesIO):
+        def write(self, data: object) -> int:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    def opened(path: Path, mode: str = "r") -> object:
+        path.touch()
+        return Full() if path.suffix == ".sent" else original(path, mode)
+
+    original = Path.open
+    before = set(library.avatars.folder.iterdir())
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "open", opened)
+        answer = page.post("/api/avatars?name=mine.vrm", content=b"x" * 100)
+    assert answer.status_code == 507
+    assert "no space" in answer.json()["error"]
+    assert set(library.avatars.folder.iterdir()) == before
+    assert page.post("/api/avatars?name=mine.vrm", content=stock_avatar_path().read_bytes()).status_code == 201
 
 
 # --- ports -------------------------------------------------------------------------------------------------------
@@ -319,7 +403,7 @@ def test_an_address_that_is_not_ours_is_refused() -> None:
 def test_a_file_that_may_not_be_handed_out_is_shown_on_this_machine_only(library: Library) -> None:
     from avatar_builder import Recipe, build
 
-    kept = library.avatars.add_upload(build(Recipe(vrm="1", mesh=False)), "kept.vrm")  # says nothing: forbidden
+    kept = add_avatar(library.avatars, build(Recipe(vrm="1", mesh=False)), "kept.vrm")  # says nothing: forbidden
     assert made(library).get(f"/avatars/{kept.id}.glb").status_code == 200
     refused = made(library, "0.0.0.0", "http://192.168.1.5:8765", "192.168.1.9").get(f"/avatars/{kept.id}.glb")
     assert refused.status_code == 403

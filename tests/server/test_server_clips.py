@@ -1,6 +1,8 @@
 """Clips on the page's side of the server: kept, performed, configured, dropped."""
 
+import asyncio
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,14 +21,16 @@ from elbowroom.server.avatar_store import STOCK
 from elbowroom.server.clip_store import MAX_FILES, ClipStore
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
+from elbowroom.server.page_key import Sender
 from elbowroom.server.schema.commands import Configure
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import WalkSettings
 from elbowroom.server.wanted import Wanted
 from elbowroom.world.scene import Scene
+from sent_files import add_clips
 
 BVH = write_bvh(random_motion(np.random.default_rng(0), 60, smooth=8.0), BvhRecipe())
-KEY = "0123456789abcdef" * 2
+MINE = Sender("127.0.0.1", "0123456789abcdef" * 2)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +41,8 @@ def library() -> Iterator[Library]:
 
 
 def clip_walk(library: Library, *, as_planned: bool = False) -> ClipWalk:
-    stored = library.clips.add_upload(BVH, "dance.bvh")[0]
+    stored = add_clips(library.clips, BVH, "dance.bvh", library.avatars.folder)[0]
+    asyncio.run(stored.read())
     return ClipWalk(library.avatars.get(STOCK), Scene.load("a"), WalkSettings(), stored, as_planned=as_planned)
 
 
@@ -91,26 +96,41 @@ def test_configure_changes_what_is_shown(library: Library) -> None:
     assert not now.changed(Configure(walk_speed=0.5)).differs(now)
 
 
-def test_dropped_files_are_kept_and_the_oldest_goes() -> None:
+def test_dropped_files_are_kept_and_the_oldest_goes(tmp_path: Path) -> None:
     store = ClipStore()
-    first = store.add_upload(BVH, "0.bvh", KEY)[0]
+    first = add_clips(store, BVH, "0.bvh", tmp_path, MINE)[0]
     for number in range(1, MAX_FILES):
-        store.add_upload(BVH, f"{number}.bvh", KEY)
+        add_clips(store, BVH, f"{number}.bvh", tmp_path, MINE)
     store.get(first.id)
-    second = store.choices(KEY)[0]
-    store.add_upload(BVH, "last.bvh", KEY)
+    second = store.choices(MINE.key)[0]
+    add_clips(store, BVH, "last.bvh", tmp_path, MINE)
+    assert len(list(tmp_path.iterdir())) == MAX_FILES
     store.check(first.id)
     with pytest.raises(InputError, match="not known"):
         store.check(second.id)
-    assert len(store.choices(KEY)) == MAX_FILES
+    assert len(store.choices(MINE.key)) == MAX_FILES
     assert store.choices() == []
 
 
-def test_what_holds_no_motion_is_not_kept() -> None:
+def test_what_is_shown_stays(tmp_path: Path) -> None:
     store = ClipStore()
-    for data in (b"", b"HIERARCHY", BVH[:-400], build(Recipe())):
+    first = add_clips(store, BVH, "0.bvh", tmp_path)[0]
+    store.hold("a session", first.id)
+    for number in range(1, MAX_FILES + 2):
+        add_clips(store, BVH, f"{number}.bvh", tmp_path)
+    store.check(first.id)
+    store.hold("a session")
+    for number in range(MAX_FILES):
+        add_clips(store, BVH, f"{number}.bvh", tmp_path)
+    with pytest.raises(InputError, match="not known"):
+        store.check(first.id)
+
+
+def test_what_holds_no_motion_is_not_kept(tmp_path: Path) -> None:
+    store = ClipStore()
+    for data in (b"", b"HIERARCHY", BVH[:-400]):
         with pytest.raises(InputError):
-            store.add_upload(data, "a.bvh")
+            add_clips(store, data, "a.bvh", tmp_path)
     assert store.choices() == []
 
 

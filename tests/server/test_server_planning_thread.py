@@ -50,7 +50,7 @@ def executor() -> Iterator[GatedExecutor]:
 
 def walk_of(library: Library, executor: GatedExecutor) -> Walk:
     desk = PlanningThread(executor)
-    return Walk(library.avatars.get("stock"), library.find_scene("d"), WalkSettings(), desk=desk)
+    return Walk(library.avatars.get("stock"), library.scenes["d"], WalkSettings(), desk=desk)
 
 
 def under_way(library: Library, executor: GatedExecutor) -> Walk:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from elbowroom.body.stock import stock_avatar_path
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.rehearsal import rehearse_detour
 from elbowroom.planning.root.motion import RootMotionSettings
@@ -22,6 +23,7 @@ from elbowroom.server.schema.progress import Notice, Plan, Pong
 from elbowroom.server.stage import STEP, Stage
 from elbowroom.server.walk import Walk, WalkSettings, at_speed
 from elbowroom.server.warmup import warm_up
+from sent_files import add_avatar
 
 MOTION = RootMotionSettings()
 
@@ -35,7 +37,7 @@ def library() -> Iterator[Library]:
 
 @pytest.fixture
 def walk(library: Library) -> Walk:
-    return Walk(library.avatars.get("stock"), library.find_scene("empty"), WalkSettings())
+    return Walk(library.avatars.get("stock"), library.scenes["empty"], WalkSettings())
 
 
 @pytest.fixture
@@ -53,7 +55,7 @@ def test_simulated_time_follows_the_clock_whatever_the_ticks(stage: Stage) -> No
 
 
 def test_the_pose_depends_on_time_and_not_on_how_often_it_is_asked_for(library: Library, stage: Stage) -> None:
-    other = Stage(Walk(library.avatars.get("stock"), library.find_scene("empty"), WalkSettings()), 0.0)
+    other = Stage(Walk(library.avatars.get("stock"), library.scenes["empty"], WalkSettings()), 0.0)
     for one in (stage, other):
         one.obey(Input(seq=1, forward=1.0), 0.0)
     for i in range(60):
@@ -99,12 +101,12 @@ def test_a_jump_changes_the_epoch_and_a_new_avatar_the_revision(library: Library
     assert second.epoch != first.epoch
     assert second.avatar_revision == first.avatar_revision
     stage.walk.crossed = 3
-    other = library.avatars.add_upload(library.avatars.get("stock").glb.read_bytes(), "other.vrm")  # type: ignore[union-attr]
-    stage.show(Walk(other, library.find_scene("empty"), WalkSettings()))
+    other = add_avatar(library.avatars, stock_avatar_path().read_bytes(), "other.vrm")
+    stage.show(Walk(other, library.scenes["empty"], WalkSettings()))
     third = parse(stage.frame(0.2))
     assert third.avatar_revision == stage.revision != second.avatar_revision
     assert stage.walk.crossed == 3
-    stage.show(Walk(other, library.find_scene("a"), WalkSettings()))
+    stage.show(Walk(other, library.scenes["a"], WalkSettings()))
     assert (stage.walk.crossed, stage.walk.stuck_times) == (0, 0)
 
 

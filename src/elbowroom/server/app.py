@@ -6,7 +6,7 @@ from pathlib import Path
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -16,8 +16,10 @@ from starlette.websockets import WebSocket
 from elbowroom import __version__
 from elbowroom.body.permissions import Use
 from elbowroom.errors import InputError
+from elbowroom.server.apart.process import ApartError, FullDiskError
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.codec import encode, plain
+from elbowroom.server.courses import BusyError
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.library import Library
 from elbowroom.server.reports import scene_message
@@ -25,6 +27,7 @@ from elbowroom.server.schema.progress import Notice
 from elbowroom.server.session import Session
 from elbowroom.server.uploads import UploadDesk
 from elbowroom.server.usage import process_usage
+from elbowroom.server.while_there import while_there
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -89,11 +92,17 @@ class _Handlers:
     async def catalog(self, request: Request) -> Response:  # noqa: ARG002
         return JSONResponse(plain(self._library.catalog()))
 
-    def scene(self, request: Request) -> Response:
+    async def scene(self, request: Request) -> Response:
+        client = request.client.host if request.client else ""
         try:
-            return JSONResponse(plain(scene_message(self._library.find_scene(request.path_params["name"]))))
+            found = self._library.find_scene(request.path_params["name"], client)
+            return JSONResponse(plain(scene_message(await while_there(request, found))))
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
+        except ClientDisconnect:
+            return Response(status_code=408)
+        except (BusyError, ApartError, FullDiskError):
+            return JSONResponse({"error": "a course is being made already; try again in a moment"}, 503)
 
     def avatar(self, request: Request) -> Response:
         try:
@@ -123,7 +132,8 @@ class _Handlers:
 
 def _has_the_file(request: Request, avatar: StoredAvatar) -> bool:
     """Whether the client is on this machine or on the one that sent the file: what it sees then is not handed out."""
-    return request.client is not None and (is_loopback(request.client.host) or request.client.host == avatar.sender)
+    client = request.client
+    return client is not None and (is_loopback(client.host) or client.host == avatar.sender.address)
 
 
 class _Page(StaticFiles):

@@ -3,7 +3,7 @@
 import secrets
 import tempfile
 import threading
-from collections import OrderedDict
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,12 +11,17 @@ from pathlib import Path
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.errors import InputError
+from elbowroom.server.page_key import Sender
 from elbowroom.server.pose import Poser
+from elbowroom.server.recent import RecentlySent, Room
 from elbowroom.server.schema.menus import AvatarChoice
 
 STOCK = "stock"
-MAX_UPLOADS = 8  # the one that was used least recently goes first
+MAX_UPLOADS = 8  # the one that was used least recently goes first; what a session shows stays
+MAX_EACH = 4  # of one machine that is not this one
 MAX_UPLOADED = 256 * 2**20  # bytes of all of them on disk
+
+_NOBODY = Sender()
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +31,7 @@ class StoredAvatar:
     id: str
     humanoid: Humanoid
     glb: Path | None  # None for a humanoid without a file
-    sender: str = ""  # address of the machine that it was sent from: there it is no stranger's
-    owner: str = ""  # key of the page that sent it: only there the menu shows it
+    sender: Sender = _NOBODY  # on the machine that it was sent from it is no stranger's; only its page's menu shows it
 
     @property
     def title(self) -> str:
@@ -44,10 +48,15 @@ class AvatarStore:
     """Avatars by id; may be used from several threads. The files lie in a private folder that goes with `close`."""
 
     def __init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="elbowroom-avatars-")
+        self._folder = tempfile.TemporaryDirectory(prefix="elbowroom-avatars-", ignore_cleanup_errors=True)
         self._lock = threading.Lock()
         self._kept: dict[str, StoredAvatar] = {}
-        self._uploads: OrderedDict[str, StoredAvatar] = OrderedDict()
+        self._uploads = RecentlySent[StoredAvatar](lambda: Room(MAX_UPLOADS, MAX_EACH, MAX_UPLOADED), _remove)
+
+    @property
+    def folder(self) -> Path:
+        """Where the files lie."""
+        return Path(self._folder.name)
 
     def close(self) -> None:
         """Remove the private folder."""
@@ -55,51 +64,55 @@ class AvatarStore:
 
     def choices(self, owner: str = "") -> list[AvatarChoice]:
         """What the menu offers to the page with this key: the stock avatar, even before it is read, and its own."""
-        with self._lock:
-            own = [upload for upload in self._uploads.values() if owner and upload.owner == owner]
-            known = [*self._kept.values(), *own]
+        own = [upload for upload in self._uploads.items() if owner and upload.sender.key == owner]
+        known = [*self._lasting(), *own]
         stock = [] if any(avatar.id == STOCK for avatar in known) else [AvatarChoice(STOCK, "Stock avatar")]
         return stock + [AvatarChoice(avatar.id, avatar.title) for avatar in known]
 
     def check(self, avatar_id: str) -> None:
         """Raises `InputError` if there is no avatar with this id."""
-        with self._lock:
-            known = avatar_id == STOCK or avatar_id in self._kept or avatar_id in self._uploads
-        if not known:
-            raise InputError(f"avatar {avatar_id[:40]!r} is not known here (any more); drop its file on the page again")
+        if avatar_id != STOCK:
+            self.get(avatar_id)
 
     def get(self, avatar_id: str) -> StoredAvatar:
         """The avatar with this id, read if need be; raises `InputError` if there is none. May take a while."""
-        self.check(avatar_id)
-        with self._lock:
-            found = self._kept.get(avatar_id) or self._uploads.get(avatar_id)
-            if avatar_id in self._uploads:
-                self._uploads.move_to_end(avatar_id)
-        return found or self._keep(STOCK, Humanoid.default())
+        found = self._kept.get(avatar_id) or self._uploads.get(avatar_id)
+        if found is None and avatar_id == STOCK:
+            found = self._keep(STOCK, Humanoid.default())
+        if found is None:
+            raise InputError(f"avatar {avatar_id[:40]!r} is not known here (any more); drop its file on the page again")
+        return found
+
+    def hold(self, user: Hashable, *avatar_ids: str) -> None:
+        """These are the avatars that a session shows from now on: they stay."""
+        self._uploads.hold(user, *avatar_ids)
+
+    def files(self) -> set[Path]:
+        """The files of what was sent."""
+        return {avatar.glb for avatar in self._uploads.items() if avatar.glb is not None}
 
     def add_file(self, path: Path, read: LoadSettings | None = None) -> StoredAvatar:
         """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
         return self._keep(secrets.token_hex(8), Humanoid.load(path, read))
 
-    def add_upload(self, data: bytes, name: str, sender: str = "", owner: str = "") -> StoredAvatar:
-        """Keep an avatar that a page has sent as bytes from an address; raises `InputError` if they hold no humanoid.
+    def add_upload(self, humanoid: Humanoid, file: Path | None, sender: Sender = _NOBODY) -> StoredAvatar:
+        """Keep an avatar that was sent, its GLB in a file of `folder`, which goes with it.
 
-        Menus offer it to that page alone; whoever is told its id can use it.
+        Menus offer it to the page that sent it alone; whoever is told its id can use it. Raises `InputError`
+        where there is no place for it; the file is gone then.
         """
-        from elbowroom.body.loading import load_humanoid_bytes
-
-        humanoid = load_humanoid_bytes(data, name)
-        avatar = replace(self._stored(secrets.token_hex(8), humanoid), sender=sender, owner=owner)
-        with self._lock:
-            self._uploads[avatar.id] = avatar
-            while len(self._uploads) > 1 and self._too_many():
-                _, old = self._uploads.popitem(last=False)
-                _remove(old)
+        avatar = StoredAvatar(secrets.token_hex(8), replace(humanoid, glb=None), file, sender)
+        try:
+            size = 0 if file is None else file.stat().st_size
+            self._uploads.add(avatar.id, avatar, size, sender.shares)
+        except InputError:
+            _remove(avatar)
+            raise
         return avatar
 
-    def _too_many(self) -> bool:
-        sizes = [upload.glb.stat().st_size for upload in self._uploads.values() if upload.glb is not None]
-        return len(self._uploads) > MAX_UPLOADS or sum(sizes) > MAX_UPLOADED
+    def _lasting(self) -> list[StoredAvatar]:
+        with self._lock:
+            return list(self._kept.values())
 
     def _keep(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
         avatar = self._stored(avatar_id, humanoid)
@@ -109,9 +122,9 @@ class AvatarStore:
     def _stored(self, avatar_id: str, humanoid: Humanoid) -> StoredAvatar:
         if humanoid.glb is None:
             return StoredAvatar(avatar_id, humanoid, None)
-        path = Path(self._folder.name) / f"{avatar_id}.glb"
+        path = self.folder / f"{avatar_id}.glb"
         path.write_bytes(humanoid.glb)
-        return StoredAvatar(avatar_id, humanoid, path)
+        return StoredAvatar(avatar_id, replace(humanoid, glb=None), path)
 
 
 def _remove(avatar: StoredAvatar) -> None:

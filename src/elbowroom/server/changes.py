@@ -2,7 +2,7 @@
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import replace
 
 from elbowroom.body.root import RootState
@@ -17,6 +17,7 @@ from elbowroom.server.schema.progress import Notice
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import Walk
 from elbowroom.server.wanted import Wanted
+from elbowroom.world.scene import Scene
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -26,7 +27,9 @@ _WAITING = 16  # changes
 class Changes:
     """Carries out a session's changes one after the other."""
 
-    def __init__(self, library: Library, stage: Stage, outbox: Outbox) -> None:
+    def __init__(self, library: Library, stage: Stage, outbox: Outbox, session: Hashable) -> None:
+        """`session` is any key of its own: what it shows stays in the library."""
+        self._session = session
         self._library, self._stage, self._outbox = library, stage, outbox
         self._wanted: asyncio.Queue[Configure] = asyncio.Queue(_WAITING)
 
@@ -80,9 +83,12 @@ class Changes:
         self._outbox.put(notice)
         try:
             place = None if moved else self._stage.walk.place
-            walk = await asyncio.to_thread(make_walk, self._library, wanted, place)
+            self._library.hold(self._session, now, wanted)
+            walk = await prepared(self._library, wanted, place, self._session)
         finally:
+            self._library.hold(self._session, Wanted.of(self._stage.walk))
             self._outbox.put(replace(notice, active=False))
+        self._library.hold(self._session, wanted)
         self._outbox.drop_frame()
         self._stage.show(walk)
         if moved:
@@ -93,9 +99,17 @@ class Changes:
             self._outbox.put(clip_message(walk.stored))
 
 
-def make_walk(library: Library, wanted: Wanted, place: RootState | None) -> Walk | ClipWalk:
-    """A walk or a clip from the library; takes a while, so call it in a worker thread. Raises `InputError`."""
-    avatar, scene = library.avatars.get(wanted.avatar), library.find_scene(wanted.scene)
+async def prepared(library: Library, wanted: Wanted, place: RootState | None, client: Hashable) -> Walk | ClipWalk:
+    """A walk or a clip from the library, for a client (any key); takes a while. Raises `InputError`."""
+    scene = await library.find_scene(wanted.scene, client)
+    if wanted.clip:
+        await library.clips.get(wanted.clip).read()
+    return await asyncio.to_thread(make_walk, library, wanted, place, scene)
+
+
+def make_walk(library: Library, wanted: Wanted, place: RootState | None, scene: Scene) -> Walk | ClipWalk:
+    """The part of `prepared` that computes, for a worker thread."""
+    avatar = library.avatars.get(wanted.avatar)
     if wanted.clip:
         stored = library.clips.get(wanted.clip)
         return ClipWalk(avatar, scene, wanted.settings, stored, as_planned=wanted.as_planned)

@@ -26,6 +26,9 @@ POLICY = "; ".join(
         "frame-ancestors 'none'",
     ]
 )
+_API = "/api/"
+_OWN_SITES = ("same-origin", "none")  # Sec-Fetch-Site of our page, and of an address that was typed
+_FOREIGN = "That page may not talk to this server."
 HEADERS = {
     "content-security-policy": POLICY,
     "x-content-type-options": "nosniff",
@@ -55,8 +58,9 @@ class Guard:
     """ASGI middleware: refuses foreign hosts and origins, adds the security headers.
 
     A page elsewhere can make a browser send requests here; it cannot forge `Host` and `Origin`. A name that resolves
-    here by DNS rebinding is refused by `Host`, any other site by `Origin`. A program that sends no `Origin` is let in
-    from this machine only.
+    here by DNS rebinding is refused by `Host`, any other site by `Origin`, or by `Sec-Fetch-Site` where it asks as for
+    a picture and sends none. A program that sends no `Origin` is let in from this machine only. The page and its
+    avatars are handed out to who knows a `Host`.
     """
 
     def __init__(self, app: ASGIApp, bound_host: str, name: str = "") -> None:
@@ -86,7 +90,10 @@ class Guard:
         if len(hosts) != 1 or not self._knows(host_of(hosts[0])):
             return "This server does not answer to that Host; open the address that it printed."
         if scope["type"] == "http" and scope["method"] in ("GET", "HEAD"):
-            return None
+            if not scope["path"].startswith(_API):
+                return None
+            if headers.get("sec-fetch-site", "none") not in _OWN_SITES:
+                return _FOREIGN
         return self._origin_refusal(headers.getlist("origin"), hosts[0], scope.get("client"))
 
     def _knows(self, host: str) -> bool:
@@ -98,7 +105,7 @@ class Guard:
             local = client is not None and is_loopback(str(client[0]))
             return None if local else "A client without an Origin is let in from this machine only."
         allowed = {f"{scheme}://{host}".lower() for scheme in ("http", "https")}
-        return None if len(origins) == 1 and origins[0].lower() in allowed else "That page may not talk to this server."
+        return None if len(origins) == 1 and origins[0].lower() in allowed else _FOREIGN
 
 
 def _address(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:

@@ -1,22 +1,28 @@
 """What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
 
+from collections.abc import Hashable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from threading import Event
+from typing import TYPE_CHECKING
 
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.scenes import PREFIX, course_scene, load_scene, parse_name, random_names
+from elbowroom.experiment.gauntlet.scenes import PREFIX, load_scene, parse_name, random_names
 from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
+from elbowroom.server.courses import Courses
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.server.schema.menus import Catalog, SceneChoice
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
+
+if TYPE_CHECKING:
+    from elbowroom.server.wanted import Wanted
 
 _THREADS = 16  # twice as many as sessions: a walk that was given up may still be planning
 
@@ -36,6 +42,7 @@ class Library:
     walk: WalkSettings
     clips: ClipStore = field(default_factory=ClipStore)
     clip: str = ""  # that a session begins with; "": it walks
+    courses: Courses = field(default_factory=Courses)
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
@@ -72,10 +79,19 @@ class Library:
         self.planning.shutdown(wait=False, cancel_futures=True)
         self.avatars.close()
 
-    def find_scene(self, name: str) -> Scene:
-        """A scene of this server, or a random course; one that is new takes a moment. Raises as `check_scene`."""
+    async def find_scene(self, name: str, client: Hashable) -> Scene:
+        """A scene of this server, or a random course for a client. Raises as `check_scene` and `Courses.find`."""
         self.check_scene(name)
-        return self.scenes[name] if name in self.scenes else course_scene(name)
+        return self.scenes[name] if name in self.scenes else await self.courses.find(name, client)
+
+    def hold(self, user: Hashable, *shown: "Wanted") -> None:
+        """This is what a session shows from now on, or will in a moment: it stays here. Nothing: it has ended."""
+        self.avatars.hold(user, *(wanted.avatar for wanted in shown))
+        self.clips.hold(user, *(wanted.clip for wanted in shown))
+
+    def files(self) -> set[Path]:
+        """The files of what clients sent and this server keeps."""
+        return self.avatars.files() | self.clips.files()
 
     def check_scene(self, name: str) -> None:
         """Raises `InputError` if there is no scene and no course of this name."""

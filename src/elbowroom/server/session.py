@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from elbowroom import __version__
 from elbowroom.errors import InputError
-from elbowroom.server.changes import Changes, make_walk
+from elbowroom.server.changes import Changes, prepared
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.codec import decode_client, encode
 from elbowroom.server.library import Library
@@ -75,6 +75,7 @@ class Session:
             LOG.exception("a session failed")
             await self._close(sender, error)
         finally:
+            self._library.hold(self)
             await _stop(sender)
 
     def _now(self) -> float:
@@ -85,10 +86,10 @@ class Session:
         wanted = Wanted(library.scene, library.avatar, library.walk, library.clip)
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog(page_key(self._socket.query_params))))
         self._outbox.put(Loading("avatar", library.avatar, True))
-        walk = await asyncio.to_thread(make_walk, library, wanted, None)
+        walk = await prepared(library, wanted, None, self)
         self._outbox.put(Loading("avatar", library.avatar, False))
         self._stage = Stage(walk, self._now())
-        self._changes = Changes(library, self._stage, self._outbox)
+        self._changes = Changes(library, self._stage, self._outbox, self)
         self._outbox.put(self._stage.settings())
         self._outbox.put(scene_message(walk.scene))
         self._outbox.put(avatar_message(walk.avatar, self._stage.revision))

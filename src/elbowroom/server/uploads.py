@@ -1,92 +1,141 @@
-"""Avatar and motion files that arrive over HTTP."""
+"""Avatar and motion files that arrive over HTTP: received into files, read in processes of their own."""
 
 import asyncio
 import contextlib
-import logging
-from typing import NamedTuple
+import errno
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
-from elbowroom.clips.files import has_animations, is_motion_only
 from elbowroom.errors import InputError
-from elbowroom.server.clip_store import StoredClip
+from elbowroom.server.apart.process import ApartError, FullDiskError, run_apart
+from elbowroom.server.clip_store import SentMotions
 from elbowroom.server.codec import plain
 from elbowroom.server.library import Library
-from elbowroom.server.page_key import page_key
+from elbowroom.server.page_key import Sender, page_key
 from elbowroom.server.schema.bounds import MAX_UPLOAD
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
-
-LOG = logging.getLogger("elbowroom.server")
+from elbowroom.server.while_there import while_there
 
 _NAME = 120  # characters of a file's name that are kept
+_AT_ONCE = 4  # files that are received at once, one from each machine
 _PAUSE = 20.0  # seconds that a sender may be silent
+_GRACE = 20.0  # seconds after which a sender has to have sent what it should by then
+_SLOWEST = 64 * 1024  # bytes a second, on the whole
+_FULL = {errno.ENOSPC, errno.EDQUOT}
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long a sender may take; times in seconds."""
+
+    pause: float = _PAUSE
+    grace: float = _GRACE
+    slowest: float = _SLOWEST  # bytes a second
+
+    def left(self, elapsed: float, received: int) -> float:
+        """How long it may be silent now."""
+        return min(self.pause, self.grace + received / self.slowest - elapsed)
 
 
 class _TooLargeError(Exception):
     pass
 
 
-class _Sender(NamedTuple):
-    address: str
-    key: str  # of its page, "" for a program
+_LATE = (408, "the file did not arrive whole, or too slowly")
+_REFUSALS: dict[type[Exception], tuple[int, str]] = {
+    _TooLargeError: (413, f"the file is larger than {MAX_UPLOAD // 2**20} MiB"),
+    TimeoutError: _LATE,
+    ClientDisconnect: _LATE,
+    FullDiskError: (507, "there is no space left on the server's disk; try again later"),
+    ApartError: (500, "the file could not be read; the server's log says more"),
+}
 
 
 class UploadDesk:
-    """Takes one file at a time, so that the memory it needs is bounded."""
+    """Takes one file at a time from each machine, a few in all, and has them read one after the other."""
 
-    def __init__(self, library: Library) -> None:
+    def __init__(self, library: Library, pace: Pace | None = None) -> None:
         self._library = library
-        self._free = asyncio.Lock()
+        self._pace = pace or Pace()
+        self._senders: set[str] = set()
+        self._reading = asyncio.Semaphore(1)
 
     async def take(self, request: Request) -> Response:
         """POST: the raw bytes of an avatar or motion file, `?name=` its name. Answers 201 with an `Uploaded`."""
-        if self._free.locked():
+        sender = Sender(request.client.host if request.client else "", page_key(request.query_params))
+        if sender.address in self._senders or len(self._senders) >= _AT_ONCE:
             return _refused(503, "another file is being read; try again in a moment")
-        async with self._free:
-            try:
-                data = await _body(request)
-                name = request.query_params.get("name", "avatar")[:_NAME]
-                sender = _Sender(request.client.host if request.client else "", page_key(request.query_params))
-                uploaded = await asyncio.to_thread(self._read, data, name, sender)
-            except _TooLargeError:
-                return _refused(413, f"the file is larger than {MAX_UPLOAD // 2**20} MiB")
-            except InputError as error:
-                return _refused(422, str(error))
-            except (TimeoutError, ClientDisconnect):
-                return _refused(408, "the file did not arrive whole")
-            except Exception:
-                LOG.exception("an uploaded file could not be read")
-                return _refused(500, "the file could not be read; the server's log says more")
-        return JSONResponse(plain(uploaded), 201)
+        self._senders.add(sender.address)
+        try:
+            return JSONResponse(plain(await self._taken(request, sender)), 201)
+        except InputError as error:
+            return _refused(422, str(error))
+        except tuple(_REFUSALS) as error:
+            return _refused(*_REFUSALS[type(error)])
+        finally:
+            self._senders.discard(sender.address)
 
-    def _read(self, data: bytes, name: str, sender: _Sender) -> Uploaded:
-        """By content: a motion, an avatar, or an avatar with motions of its own."""
-        clips = self._library.clips
-        if is_motion_only(data, name):
-            return Uploaded(
-                None, [ClipChoice(clip.id, clip.title) for clip in clips.add_upload(data, name, sender.key)]
-            )
-        avatar = self._library.avatars.add_upload(data, name, sender.address, sender.key)
-        own: list[StoredClip] = []
-        if has_animations(data, name):
-            with contextlib.suppress(InputError):
-                own = clips.add_upload(data, name, sender.key)
-        return Uploaded(AvatarChoice(avatar.id, avatar.title), [ClipChoice(clip.id, clip.title) for clip in own])
+    async def _taken(self, request: Request, sender: Sender) -> Uploaded:
+        name = request.query_params.get("name", "avatar")[:_NAME]
+        with self._files() as (file, glb):
+            await _receive(request, file, self._pace)
+            async with self._reading:
+                read = run_apart("read_upload", name, str(file), name, str(glb))
+                humanoid, clips, kind = await while_there(request, read)
+            avatar, own = None, []
+            if humanoid is not None:
+                avatar = self._library.avatars.add_upload(humanoid, glb if glb.exists() else None, sender)
+            if clips:
+                with contextlib.suppress(InputError) if avatar else contextlib.nullcontext():
+                    own = self._library.clips.add_upload(SentMotions(file, name, kind, tuple(clips), sender))
+        choice = None if avatar is None else AvatarChoice(avatar.id, avatar.title)
+        return Uploaded(choice, [ClipChoice(clip.id, clip.title) for clip in own])
+
+    @contextmanager
+    def _files(self) -> Iterator[tuple[Path, Path]]:
+        """Where to put what comes and the avatar made of it; what nobody has taken over is gone in the end."""
+        folder = self._library.avatars.folder
+        stem = secrets.token_hex(8)
+        file, glb = folder / f"{stem}.sent", folder / f"{stem}.glb"
+        held = set[Path]()
+        try:
+            yield file, glb
+            held = self._library.files()
+        finally:
+            for path in {file, glb} - held:
+                path.unlink(missing_ok=True)
 
 
-async def _body(request: Request) -> bytes:
-    """The whole body; stops reading as soon as it is too long."""
+async def _receive(request: Request, file: Path, pace: Pace) -> None:
+    """Write the whole body to a file; stops as soon as it is too long, or comes too slowly."""
     announced = request.headers.get("content-length", "0")
     if not announced.isdecimal() or int(announced) > MAX_UPLOAD:
         raise _TooLargeError
-    data, chunks = bytearray(), aiter(request.stream())
-    with contextlib.suppress(StopAsyncIteration):
+    clock = asyncio.get_running_loop().time
+    began, size, chunks = clock(), 0, aiter(request.stream())
+    with _told_full(), file.open("wb") as out, contextlib.suppress(StopAsyncIteration):
         while True:
-            data += await asyncio.wait_for(anext(chunks), _PAUSE)
-            if len(data) > MAX_UPLOAD:
+            chunk = await asyncio.wait_for(anext(chunks), max(pace.left(clock() - began, size), 0.0))
+            size += len(chunk)
+            if size > MAX_UPLOAD:
                 raise _TooLargeError
-    return bytes(data)
+            out.write(chunk)
+
+
+@contextmanager
+def _told_full() -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        if error.errno in _FULL:
+            raise FullDiskError from None
+        raise
 
 
 def _refused(status: int, reason: str) -> JSONResponse:

@@ -80,7 +80,7 @@ def walk_and_stand(library: Library, planner: str) -> None:
 
 def _walk_a_moment(library: Library, planner: str, held_inputs: list[tuple[int, Input]]) -> None:
     settings = replace(library.walk, planner=planner)
-    walk = Walk(library.avatars.get(library.avatar), library.find_scene(library.scene), settings)
+    walk = Walk(library.avatars.get(library.avatar), library.scenes[library.scene], settings)
     stage, now = Stage(walk, 0.0), 0.0
     stage.overlays = Overlays(capsules=True, plan=True)
     for frames, held in held_inputs:

@@ -1,7 +1,7 @@
 """The XML encoding of X3D (ISO/IEC 19776-1) as a node graph.
 
-Read with expat's events: the document type is accepted and not fetched, entities that a file declares are refused, and
-nothing outside the file is opened. Elements are nodes, attributes their fields.
+Read with expat's events: the document type is accepted and not fetched, what a file declares in it (entities, values
+of attributes) is refused, and nothing outside the file is opened. Elements are nodes, attributes their fields.
 """
 
 from collections.abc import Callable
@@ -60,6 +60,7 @@ class _Builder:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.EntityDeclHandler = self._entity
+        self._parser.StartDoctypeDeclHandler = self._doctype
         self._parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
 
     def parse(self, data: bytes) -> X3dScene:
@@ -76,6 +77,12 @@ class _Builder:
 
     def _entity(self, name: str, *_: object) -> NoReturn:
         raise InputError(f"{self._place()}: the entity {name[:40]!r} is declared: files with entities are not read")
+
+    def _doctype(self, _name: str, _system: str | None, _public: str | None, has_own: int) -> None:
+        if has_own:
+            raise InputError(
+                f"{self._place()}: the document type declares entities or values of its own ([...]); remove that"
+            )
 
     def _place(self) -> str:
         return f"{self._file}: line {self._parser.CurrentLineNumber}"

@@ -1,0 +1,58 @@
+"""The work that is done apart. A job takes texts and returns records; what it raises is told by `__main__`."""
+
+import contextlib
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:  # each job imports what it needs
+    from elbowroom.body.humanoid import Humanoid
+    from elbowroom.clips.clip import Clip
+
+MAX_CLIPS = 200  # of one file
+
+
+def read_upload(file: str, name: str, glb: str) -> tuple["Humanoid | None", list[str], str]:
+    """By content: an avatar, motions, or both: the humanoid, the names of its clips, and their format.
+
+    The avatar's file for a viewer is written to `glb`. Raises `InputError`.
+    """
+    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.clips.files import has_animations, is_motion_only, parse_motion
+
+    data = Path(file).read_bytes()
+    if is_motion_only(data, name):
+        motions = parse_motion(data, name)
+        names = list(motions.clips)[:MAX_CLIPS]
+        motions.clip(names[0])  # that it can be shown is found out now
+        return None, names, motions.format
+    humanoid = load_humanoid_bytes(data, name)
+    if humanoid.glb is not None:
+        Path(glb).write_bytes(humanoid.glb)
+    names, kind = [], ""
+    if has_animations(data, name):
+        with contextlib.suppress(InputError):
+            motions = parse_motion(data, name)
+            motions.clip(next(iter(motions.clips)))
+            names, kind = list(motions.clips)[:MAX_CLIPS], motions.format
+    return replace(humanoid, glb=None), names, kind
+
+
+def read_clip(file: str, name: str, clip: str) -> "Clip":
+    """One motion of a file; raises `InputError`."""
+    from elbowroom.clips.files import parse_motion
+
+    return parse_motion(Path(file).read_bytes(), name).clip(clip)
+
+
+def make_course(name: str) -> dict[str, Any]:
+    """The scene of a random course as `Scene.to_dict` writes it; raises `InputError`."""
+    from elbowroom.experiment.gauntlet.scenes import course_scene
+
+    return course_scene(name).to_dict()
+
+
+JOBS: dict[str, Callable[..., object]] = {job.__name__: job for job in (read_upload, read_clip, make_course)}
