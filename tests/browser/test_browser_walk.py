@@ -77,16 +77,49 @@ def test_keys_are_released_on_blur(open_page: Open) -> None:
     assert abs(live.state()["root"]["z"] - z) < 0.02
 
 
-def test_keys_belong_to_form_fields(open_page: Open) -> None:
+def test_steering_keys_steer_past_lists(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.page.focus("#scene")
-    live.page.keyboard.down("s")
+    for key in ("w", "d", "t"):
+        live.page.keyboard.down(key)
+        assert live.state()["heldKeys"] == (key != "t")
+        live.page.keyboard.up(key)
+    live.wait("s.settings.assist === false")
+    assert live.page.input_value("#scene") == "empty"
+    assert live.state()["settings"]["scene"] == "empty"
+
+
+def test_arrow_keys_belong_to_a_list_reached_by_key_until_escape(open_page: Open) -> None:
+    live = open_page("scene=a")
+    live.wait("s.scene === 'a'")
+    live.page.focus("#scene")
+    live.page.keyboard.press("ArrowDown")
+    live.wait("s.scene === 'b'")
     assert live.state()["heldKeys"] == 0
-    live.page.keyboard.up("s")
     live.page.keyboard.press("Escape")
     live.page.keyboard.down("ArrowUp")
     live.wait("s.heldKeys === 1")
     live.page.keyboard.up("ArrowUp")
+
+
+def test_after_a_click_on_a_control_all_keys_steer(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(1200, 800))
+    live.page.click("#speed", position={"x": 40, "y": 8})
+    chosen = live.page.input_value("#speed")
+    live.page.keyboard.down("ArrowLeft")
+    assert live.state()["heldKeys"] == 1
+    live.page.keyboard.up("ArrowLeft")
+    assert live.page.input_value("#speed") == chosen
+    live.page.click("#scene")  # opens the list; a second click closes it without a choice
+    live.page.keyboard.press("Escape")
+    live.page.mouse.click(3, 400)
+    live.page.click("#slow")
+    live.page.click("label:has(#overlay-path)")
+    live.wait("s.settings.speed < 1 && s.overlays.length === 1")
+    live.page.keyboard.press("Space")
+    state = live.wait("s.settings.paused")
+    assert state["settings"]["speed"] < 1, "the space bar pressed the button again"
+    assert state["overlays"] == ["path"]
 
 
 def test_arrow_keys_turn_towards_the_side_of_the_picture(open_page: Open) -> None:

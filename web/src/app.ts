@@ -16,6 +16,7 @@ import { readPreferences, readWishes, storePreferences, type Preferences } from 
 import { showAvatarAbout } from "./ui/avatar_about";
 import { byId } from "./ui/dom";
 import { listenForFiles } from "./ui/file_drop";
+import { keepKeysOnView } from "./ui/focus";
 import { Help } from "./ui/help";
 import { Hud } from "./ui/hud";
 import { Menu, type MenuListener } from "./ui/menu";
@@ -64,7 +65,9 @@ export class App implements SessionListener, MenuListener {
     this.menu = new Menu(this, this.preferences);
     this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement));
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
+    keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
+    this.showHud();
     this.setBare(!wishes.showUi);
     this.session = new Session(sessionUrl(), this, wishes);
     this.subscribe();
@@ -73,8 +76,8 @@ export class App implements SessionListener, MenuListener {
 
   // What the server says.
 
-  connection(state: ConnectionState): void {
-    this.veil.connection(state);
+  connection(state: ConnectionState, why: string): void {
+    this.veil.connection(state, why);
     if (state === "open") this.controls.repeat();
   }
 
@@ -154,6 +157,7 @@ export class App implements SessionListener, MenuListener {
   prefer(change: Partial<Preferences>): void {
     Object.assign(this.preferences, change);
     for (const name of ["steering", "quality", "theme"] as const) this.menu.showPreference(name, this.preferences[name]);
+    this.showHud();
     if (change.theme) this.applyTheme();
     if (change.quality) this.picture.setQuality(change.quality);
     storePreferences(this.preferences);
@@ -201,7 +205,10 @@ export class App implements SessionListener, MenuListener {
 
   // Each action by its name; the keyboard, the gamepad and the bar share them.
   private readonly actions: Readonly<Record<Action, () => void>> = {
-    reset: () => this.session.send({ type: "reset" }),
+    reset: () => {
+      this.statusLine.restart();
+      this.session.send({ type: "reset" });
+    },
     pause: () => this.session.send({ type: "clock", paused: !this.session.settings?.paused }),
     step: () => this.session.send({ type: "clock", steps: 1 }),
     slow: () => this.session.send({ type: "clock", speed: (this.session.settings?.speed ?? 1) < 1 ? 1 : SLOW_MOTION }),
@@ -233,6 +240,11 @@ export class App implements SessionListener, MenuListener {
   private setBare(bare: boolean): void {
     document.body.classList.toggle("bare", bare);
     this.menu.setOpen(this.menu.isOpen);
+  }
+
+  private showHud(): void {
+    this.menu.showHud(this.preferences.hud);
+    byId("hud", HTMLElement).hidden = !this.preferences.hud;
   }
 
   private toggleAllOverlays(): void {

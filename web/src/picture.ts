@@ -1,5 +1,6 @@
 /** Everything that is drawn: stage, scene, avatar, overlays, and the camera that sees them. */
 
+import { Vector3 } from "three";
 import { AvatarView } from "./avatar/avatar_view";
 import type { Vec3 } from "./camera/spring_arm";
 import { ThirdPersonCamera, type Followed } from "./camera/third_person";
@@ -97,6 +98,12 @@ export class Picture {
     camera.updateMatrixWorld();
     this.stage.render();
     this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
+  }
+
+  /** Where a point of the world is in the view, in CSS pixels from its upper left corner. */
+  onScreen(point: Vec3): [number, number] {
+    const seen = new Vector3(...point).project(this.stage.camera);
+    return [((seen.x + 1) / 2) * this.host.clientWidth, ((1 - seen.y) / 2) * this.host.clientHeight];
   }
 
   /** Notes how long a frame took; on `auto`, gives up some quality where that is too long. */

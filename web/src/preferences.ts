@@ -12,6 +12,8 @@ export interface Preferences {
   quality: QualityName;
   steering: SteeringMode;
   overlays: Set<OverlayName>;
+  /** Whether the measurements are shown. */
+  hud: boolean;
 }
 
 /** Wishes for the session from the address line, sent once at the start; null where the line says nothing. */
@@ -40,6 +42,7 @@ export function readPreferences(query: URLSearchParams): Preferences {
     quality: pick("quality", QUALITIES, "auto"),
     steering: pick("steering", STEERINGS, "camera"),
     overlays: typeof overlays === "string" ? parseOverlays(overlays) : new Set(),
+    hud: stored["hud"] !== false,
   };
 }
 

@@ -7,10 +7,13 @@ import { POSE_FLAGS } from "./generated/messages";
 export interface AppState {
   readonly connected: boolean;
   readonly connection: string;
+  readonly timesOpened: number;
   readonly framesReceived: number;
   readonly framesDrawn: number;
   readonly fps: number;
   readonly root: { readonly x: number; readonly z: number; readonly heading: number } | null;
+  /** Where the avatar stands in the view, CSS pixels. */
+  readonly feet: readonly [number, number] | null;
   readonly simTime: number;
   readonly acknowledged: number;
   readonly sent: number;
@@ -59,10 +62,12 @@ function snapshot(app: App): AppState {
   return {
     connected: session.state === "open",
     connection: session.state,
+    timesOpened: session.timesOpened,
     framesReceived: session.framesReceived,
     framesDrawn: app.framesDrawn,
     fps: app.stats.fps,
     root: pose && { x: pose.x, z: pose.z, heading: pose.heading },
+    feet: pose && picture.onScreen([pose.x, pose.y, pose.z]),
     simTime: pose?.simTime ?? 0,
     acknowledged: session.newestPose?.acknowledged ?? 0,
     sent: controls.lastSequence,

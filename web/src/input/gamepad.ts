@@ -3,12 +3,34 @@
 import type { Action } from "./keyboard";
 import { NO_INTENT, radialDeadZone, type Intent } from "./steering";
 
-/** Buttons of the standard mapping and what they do. */
-const BUTTON_ACTIONS: readonly (readonly [number, Action])[] = [
-  [2, "assist"], [3, "cameraMode"], [8, "reset"], [9, "pause"], [11, "recenter"], [12, "overlays"], [13, "slow"],
-  [15, "step"],
+/** What a button does: something once, or something while it is held. */
+export type PadDeed = Action | "run" | "stepLeft" | "stepRight";
+
+/** A button of the standard mapping: its number there, and how most pads call it. */
+export interface PadButton {
+  readonly number: number;
+  readonly name: string;
+  readonly deed: PadDeed;
+}
+
+export const PAD_BUTTONS: readonly PadButton[] = [
+  { number: 0, name: "A", deed: "run" },
+  { number: 7, name: "RT", deed: "run" },
+  { number: 10, name: "L3", deed: "run" },
+  { number: 4, name: "LB", deed: "stepLeft" },
+  { number: 5, name: "RB", deed: "stepRight" },
+  { number: 11, name: "R3", deed: "recenter" },
+  { number: 2, name: "X", deed: "assist" },
+  { number: 3, name: "Y", deed: "cameraMode" },
+  { number: 8, name: "Back", deed: "reset" },
+  { number: 9, name: "Start", deed: "pause" },
+  { number: 13, name: "↓", deed: "slow" },
+  { number: 15, name: "→", deed: "step" },
+  { number: 12, name: "↑", deed: "overlays" },
+  { number: 14, name: "←", deed: "hideUi" },
 ];
-const RUN_BUTTONS = [0, 10, 7] as const;
+
+const isHeldDeed = (deed: PadDeed): deed is Exclude<PadDeed, Action> => deed === "run" || deed === "stepLeft" || deed === "stepRight";
 
 /** One reading: the stick, the look stick (right and down positive) and the buttons that went down. */
 export interface GamepadReading {
@@ -19,26 +41,28 @@ export interface GamepadReading {
 
 const NOTHING: GamepadReading = { intent: NO_INTENT, look: [0, 0], pressed: [] };
 
+/** The first connected gamepad that has the standard mapping. */
+export function connectedPad(): Gamepad | null {
+  return navigator.getGamepads?.().find((pad) => pad?.connected && pad.mapping === "standard") ?? null;
+}
+
 export class Gamepads {
   private down = new Set<number>();
 
   /** Reads the first connected standard gamepad. */
   poll(): GamepadReading {
-    const pad = navigator.getGamepads?.().find((p) => p?.connected && p.mapping === "standard");
+    const pad = connectedPad();
     if (!pad) {
       this.down.clear();
       return NOTHING;
     }
     const [right, back] = radialDeadZone(pad.axes[0] ?? 0, pad.axes[1] ?? 0);
     const look = radialDeadZone(pad.axes[2] ?? 0, pad.axes[3] ?? 0);
-    const isDown = (button: number) => pad.buttons[button]?.pressed ?? false;
-    const pressed = BUTTON_ACTIONS.filter(([b]) => isDown(b) && !this.down.has(b)).map(([, action]) => action);
-    this.down = new Set(BUTTON_ACTIONS.map(([b]) => b).filter(isDown));
-    const strafe = (isDown(4) ? 1 : 0) - (isDown(5) ? 1 : 0);
-    return {
-      intent: { right, forward: back === 0 ? 0 : -back, strafe, run: RUN_BUTTONS.some(isDown) },
-      look,
-      pressed,
-    };
+    const held = PAD_BUTTONS.filter(({ number }) => pad.buttons[number]?.pressed);
+    const pressed = held.flatMap(({ number, deed }) => (this.down.has(number) || isHeldDeed(deed) ? [] : [deed]));
+    this.down = new Set(held.map(({ number }) => number));
+    const on = (deed: PadDeed) => held.some((button) => button.deed === deed);
+    const strafe = Number(on("stepLeft")) - Number(on("stepRight"));
+    return { intent: { right, forward: back === 0 ? 0 : -back, strafe, run: on("run") }, look, pressed };
   }
 }

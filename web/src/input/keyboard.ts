@@ -7,15 +7,20 @@ export type Action =
   | "reset" | "pause" | "step" | "slow" | "cameraMode" | "overlays" | "hideUi" | "assist" | "help" | "recenter"
   | "pointerLock" | "escape" | "menu";
 
-const ACTIONS: Readonly<Record<string, Action>> = {
+/** What each key does, by `event.code`. */
+export const KEY_ACTIONS: Readonly<Record<string, Action>> = {
   KeyR: "reset", KeyP: "pause", Space: "pause", Period: "step", KeyM: "slow", KeyV: "cameraMode", KeyO: "overlays",
   KeyH: "hideUi", KeyT: "assist", F1: "help", KeyC: "recenter", KeyL: "pointerLock", Escape: "escape", KeyN: "menu",
 };
 
-const HELD = new Set([
+/** Keys that steer while they are held. */
+export const HELD_KEYS: ReadonlySet<string> = new Set([
   "KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE", "ArrowUp", "ArrowLeft", "ArrowDown", "ArrowRight", "ShiftLeft",
   "ShiftRight",
 ]);
+
+/** Keys by which lists and sliders are worked; all others steer past them. */
+const CONTROL_KEYS = /^(Arrow.*|Home|End|PageUp|PageDown|Enter|NumpadEnter|Space)$/;
 
 export class Keyboard {
   private readonly held = new Set<string>();
@@ -25,8 +30,9 @@ export class Keyboard {
     window.addEventListener("keyup", (event) => this.up(event));
     window.addEventListener("blur", () => this.releaseAll());
     document.addEventListener("visibilitychange", () => this.releaseAll());
-    document.addEventListener("focusin", (event) => {
-      if (takesKey(event.target, "")) this.releaseAll();
+    // What opens a list or takes text may swallow the key's release.
+    document.addEventListener("focusin", ({ target }) => {
+      if (target instanceof HTMLSelectElement || takesText(target)) this.releaseAll();
     });
   }
 
@@ -53,9 +59,11 @@ export class Keyboard {
 
   private down(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const action = event.key === "?" ? "help" : ACTIONS[event.code];
-    if (takesKey(event.target, event.code) && event.code !== "Escape" && event.code !== "F1") return;
-    if (HELD.has(event.code)) {
+    const action = event.key === "?" ? "help" : KEY_ACTIONS[event.code];
+    const { activeElement } = document;
+    const always = event.code === "Escape" || event.code === "F1" || (action === "help" && !takesText(activeElement));
+    if (!always && takesKey(activeElement, event.code)) return;
+    if (HELD_KEYS.has(event.code)) {
       event.preventDefault();
       if (!this.held.has(event.code)) {
         this.held.add(event.code);
@@ -63,7 +71,7 @@ export class Keyboard {
       }
       return;
     }
-    if (!action || (event.code === "Space" && pressesByKey(event.target))) return;
+    if (!action) return;
     if (action !== "escape") event.preventDefault();
     if (!event.repeat || action === "step") this.onAction(action);
   }
@@ -73,16 +81,25 @@ export class Keyboard {
   }
 }
 
-/** Whether a key belongs to the element: text fields and lists use all keys themselves, sliders the arrows. */
-function takesKey(target: EventTarget | null, code: string): boolean {
-  if (!(target instanceof HTMLElement)) return false;
-  if (target.isContentEditable || target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
-  if (!(target instanceof HTMLInputElement)) return false;
-  if (target.type === "range") return code.startsWith("Arrow");
-  return target.type !== "checkbox" && target.type !== "button";
+/** Whether a key belongs to the element that has the focus: letters steer on past lists, sliders and buttons. */
+function takesKey(focused: Element | null, code: string): boolean {
+  if (takesText(focused) || focused?.closest("dialog[open]")) return true;
+  if (focused instanceof HTMLSelectElement) return isOpen(focused) || CONTROL_KEYS.test(code);
+  if (focused instanceof HTMLInputElement && (focused.type === "range" || focused.type === "radio")) return CONTROL_KEYS.test(code);
+  return (code === "Space" || code === "Enter") && (focused?.closest("button, a, summary, input") ?? null) !== null;
 }
 
-/** Whether the space bar presses the element. */
-function pressesByKey(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && (target.closest("button, a, summary, input") !== null);
+function takesText(target: EventTarget | null): boolean {
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.isContentEditable || target instanceof HTMLTextAreaElement) return true;
+  return target instanceof HTMLInputElement && !["range", "checkbox", "radio", "button", "file"].includes(target.type);
+}
+
+/** Whether the list of a select is open; browsers that cannot tell keep the keys to themselves while it is. */
+export function isOpen(select: HTMLSelectElement): boolean {
+  try {
+    return select.matches(":open");
+  } catch {
+    return false;
+  }
 }

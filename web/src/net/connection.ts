@@ -8,18 +8,24 @@ export type ConnectionState = "connecting" | "open" | "lost";
 export interface ConnectionListener {
   pose(frame: PoseFrame): void;
   message(message: ServerMessage): void;
-  state(state: ConnectionState): void;
+  /** @param why for a lost line: one clause for the user, such as "the server does not answer" */
+  state(state: ConnectionState, why: string): void;
 }
 
 const FIRST_DELAY = 250;
 const LAST_DELAY = 3000;
-const SILENCE = 6000;
 const PING_INTERVAL = 1000;
+/** So many pings without a word in answer, and the line is given up. */
+const UNANSWERED = 6;
+const BROKE = "The line to the server broke";
+const NO_ANSWER = "The server does not answer";
 
 export class Connection {
   private socket: WebSocket | null = null;
   private delay = FIRST_DELAY;
-  private heard = 0;
+  /** Pings since the last word: a page that has itself stood still has sent none meanwhile. */
+  private unanswered = 0;
+  private why = "";
   private timer = 0;
   private roundTrip = NaN;
 
@@ -46,22 +52,25 @@ export class Connection {
 
   private open(): void {
     window.clearTimeout(this.timer);
-    this.listener.state(this.delay === FIRST_DELAY ? "connecting" : "lost");
+    this.listener.state(this.why === "" ? "connecting" : "lost", this.why);
     const socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
+    let opened = false;
     socket.onopen = () => {
-      this.heard = performance.now();
-      this.listener.state("open");
+      opened = true;
+      this.unanswered = 0;
+      this.listener.state("open", "");
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
-    socket.onclose = () => this.closed(socket);
+    socket.onclose = ({ reason }) => this.closed(socket, reason ? `The server has closed the line (${reason})` : opened ? BROKE : NO_ANSWER);
     this.socket = socket;
   }
 
   private receive(data: string | ArrayBuffer): void {
-    this.heard = performance.now();
-    this.delay = FIRST_DELAY;
+    this.unanswered = 0;
     if (typeof data !== "string") {
+      this.delay = FIRST_DELAY; // a session is there, which a server that has enough of them does not give
+      this.why = "";
       const frame = readPoseFrame(data);
       if (frame) this.listener.pose(frame);
       return;
@@ -71,10 +80,11 @@ export class Connection {
     this.listener.message(message);
   }
 
-  private closed(socket: WebSocket): void {
+  private closed(socket: WebSocket, why: string): void {
     if (socket !== this.socket) return;
     this.socket = null;
-    this.listener.state("lost");
+    this.why = why;
+    this.listener.state("lost", why);
     this.timer = window.setTimeout(() => this.open(), this.delay * (0.8 + 0.4 * Math.random()));
     this.delay = Math.min(LAST_DELAY, this.delay * 1.7);
   }
@@ -88,11 +98,14 @@ export class Connection {
   /** Asks for a sign of life, and gives up a line that has gone silent. */
   private watch(): void {
     if (!this.socket || !this.isOpen) return;
-    if (performance.now() - this.heard > SILENCE && !document.hidden) {
+    if (this.unanswered >= UNANSWERED && !document.hidden) {
       const silent = this.socket;
       silent.onclose = silent.onmessage = null;
       silent.close();
-      this.closed(silent);
-    } else this.send({ type: "ping", t: performance.now() });
+      this.closed(silent, NO_ANSWER);
+      return;
+    }
+    this.unanswered++;
+    this.send({ type: "ping", t: performance.now() });
   }
 }

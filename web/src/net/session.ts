@@ -11,7 +11,8 @@ import { ServerClock } from "./server_clock";
 
 /** Who is told what the server says. */
 export interface SessionListener {
-  connection(state: ConnectionState): void;
+  /** @param why the reason of a lost line */
+  connection(state: ConnectionState, why: string): void;
   catalog(catalog: Catalog): void;
   settings(settings: Settings): void;
   scene(scene: SceneMessage): void;
@@ -37,6 +38,7 @@ export class Session {
   settings: Settings | null = null;
   status: Status | null = null;
   framesReceived = 0;
+  timesOpened = 0;
   private readonly timeline = new PoseTimeline();
   private readonly clock = new ServerClock();
   private readonly connection: Connection;
@@ -49,7 +51,7 @@ export class Session {
     this.connection = new Connection(url, {
       pose: (frame) => this.receivePose(frame),
       message: (message) => this.receive(message),
-      state: (state) => this.changeState(state),
+      state: (state, why) => this.changeState(state, why),
     });
   }
 
@@ -87,13 +89,14 @@ export class Session {
     return this.timeline.sample(this.clock.now(localTime));
   }
 
-  private changeState(state: ConnectionState): void {
+  private changeState(state: ConnectionState, why: string): void {
     this.state = state;
+    if (state === "open") this.timesOpened++;
     if (state === "lost") {
       this.timeline.clear();
       this.clock.reset();
     }
-    this.listener.connection(state);
+    this.listener.connection(state, why);
   }
 
   private receivePose(frame: PoseFrame): void {

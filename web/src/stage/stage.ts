@@ -14,6 +14,9 @@ const SUN_DISTANCE = 24;
 const SHADOW_EXTENT = 7.5;
 const SHADOW_PIXELS = 2048;
 const FIELD_OF_VIEW = 50;
+/** The picture is shifted up by this share of its height, so that the feet stand clear of what lies at its lower edge. */
+const LIFT = 0.08;
+const LIFT_UPRIGHT = 0.02;
 
 export class Stage {
   readonly scene = new Scene();
@@ -132,7 +135,8 @@ export class Stage {
   private resize(): void {
     const width = Math.max(1, this.host.clientWidth);
     const height = Math.max(1, this.host.clientHeight);
-    this.camera.setViewOffset(width, height, this.coveredRight / 2, 0, width, height);
+    const lift = (width < height ? LIFT_UPRIGHT : LIFT) * height;
+    this.camera.setViewOffset(width, height, this.coveredRight / 2, lift, width, height);
     this.camera.aspect = width / height;
     this.camera.fov = width < height ? FIELD_OF_VIEW + 14 : FIELD_OF_VIEW;
     this.camera.updateProjectionMatrix();

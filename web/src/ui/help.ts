@@ -1,50 +1,17 @@
 /** The help dialog. */
 
+import { connectedPad } from "../input/gamepad";
 import { byId, make } from "./dom";
+import { helpSections, type Section } from "./help_sections";
 
-type Row = readonly [keys: readonly string[], meaning: string];
-
-const SECTIONS: readonly (readonly [title: string, rows: readonly Row[]])[] = [
-  ["Walk", [
-    [["W", "A", "S", "D"], "or the arrow keys: walk where the camera looks"],
-    [["S"], "back up, facing the same way"],
-    [["Q", "E"], "step to the left and right"],
-    [["Shift"], "run"],
-    [["R"], "back to the start"],
-  ]],
-  ["Look", [
-    [["drag"], "look around; the wheel or a pinch zooms"],
-    [["C"], "bring the camera behind the avatar"],
-    [["L"], "lock the pointer to the view, Esc frees it"],
-    [["V"], "steer relative to the camera or to the body"],
-  ]],
-  ["Time", [
-    [["P"], "or Space: pause"],
-    [["."], "one step of 1/60 s"],
-    [["M"], "slow motion"],
-  ]],
-  ["See", [
-    [["T"], "assist on and off: planned motion or the canned walk"],
-    [["O"], "overlays"],
-    [["N"], "menu"],
-    [["H"], "hide everything but the world"],
-    [["?"], "or F1: this help"],
-  ]],
-  ["Gamepad", [
-    [["left stick"], "walk"],
-    [["right stick"], "look; press it to recentre"],
-    [["A", "RT"], "run"],
-    [["LB", "RB"], "step aside"],
-    [["X", "Y"], "assist, steering"],
-  ]],
-  ["Touch", [
-    [["left half"], "the stick; push far out to run"],
-    [["right half"], "drag to look, two fingers zoom"],
-  ]],
-];
+const INTRO =
+  "You steer; the avatar finds its own way to fit. It bends, twists and moves its arms so that no part of it " +
+  "touches anything. Walk it through the gate. Switch Assist off to see the same walk without planning.";
 
 export class Help {
   private readonly dialog = byId("help", HTMLDialogElement);
+  private readonly columns = make("div", { class: "help-columns" });
+  private readonly touch = window.matchMedia("(pointer: coarse)");
 
   constructor() {
     const close = make("button", { class: "icon", type: "button", "aria-label": "Close help" }, "✕");
@@ -52,21 +19,24 @@ export class Help {
     this.dialog.addEventListener("click", (event) => {
       if (event.target === this.dialog) this.close();
     });
-    const intro =
-      "You steer; the avatar finds its own way to fit. It bends, twists and moves its arms so that no part of it " +
-      "touches anything. Walk it through the gate. Switch Assist off to see the same walk without planning.";
-    const columns = make("div", { class: "help-columns" }, ...SECTIONS.map(([title, rows]) => section(title, rows)));
     const header = make("header", {}, make("h2", { id: "help-title" }, "How to steer"), close);
-    this.dialog.append(make("div", { class: "help-body" }, header, make("p", {}, intro), columns));
+    this.dialog.append(make("div", { class: "help-body" }, header, make("p", {}, INTRO), this.columns));
   }
 
   get isOpen(): boolean {
     return this.dialog.open;
   }
 
+  /** Opens it, with the device at hand first, or closes it. */
   toggle(): void {
-    if (this.dialog.open) this.close();
-    else this.dialog.showModal();
+    if (this.dialog.open) {
+      this.close();
+      return;
+    }
+    const sections = helpSections({ touch: this.touch.matches, gamepad: connectedPad() !== null });
+    this.columns.replaceChildren(...sections.map(drawn));
+    this.dialog.showModal();
+    this.dialog.scrollTop = 0;
   }
 
   close(): void {
@@ -74,7 +44,7 @@ export class Help {
   }
 }
 
-function section(title: string, rows: readonly Row[]): HTMLElement {
+function drawn({ title, rows }: Section): HTMLElement {
   const list = make("dl", { class: "keys" });
   for (const [keys, meaning] of rows) {
     const caps = keys.flatMap((key, i) => (i === 0 ? [make("kbd", {}, key)] : [" ", make("kbd", {}, key)]));

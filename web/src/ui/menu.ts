@@ -1,6 +1,7 @@
 /** The menu and the playback bar: shows the settings in force and reports what the user chooses. */
 
 import type { Catalog, Configure, Settings } from "../generated/messages";
+import type { Action } from "../input/keyboard";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
 import type { Preferences } from "../preferences";
 import { ClipPanel } from "./clip_panel";
@@ -14,11 +15,10 @@ export interface MenuListener {
   file(file: File): void;
   /** The open menu covers so many pixels at the right of the view; 0 where it is closed or only a drawer. */
   menuCovers(pixels: number): void;
-  action(action: "assist" | "pause" | "step" | "slow" | "reset" | "help"): void;
+  action(action: Action): void;
 }
 
 const NARROW = "(max-width: 900px), (max-height: 540px)";
-const BAR_ACTIONS = ["assist", "pause", "step", "slow", "reset"] as const;
 
 export class Menu {
   readonly clips: ClipPanel;
@@ -30,6 +30,7 @@ export class Menu {
   private readonly queue = byId("queue", HTMLInputElement);
   private readonly speed = byId("speed", HTMLInputElement);
   private readonly file = byId("file", HTMLInputElement);
+  private readonly hud = byId("hud-shown", HTMLInputElement);
   private readonly narrow = window.matchMedia(NARROW);
   private readonly checks = new Map<OverlayName, HTMLInputElement>();
 
@@ -85,7 +86,9 @@ export class Menu {
     const pause = byId("pause", HTMLButtonElement);
     pause.setAttribute("aria-pressed", String(settings.paused));
     pause.setAttribute("aria-label", settings.paused ? "Resume" : "Pause");
-    byId("slow", HTMLButtonElement).setAttribute("aria-pressed", String(settings.speed < 1));
+    for (const slow of document.querySelectorAll("[data-action=slow]")) {
+      slow.setAttribute("aria-pressed", String(settings.speed < 1));
+    }
   }
 
   /** Adds an avatar that came as a file, unless the list has it. */
@@ -96,6 +99,10 @@ export class Menu {
 
   showOverlays(shown: ReadonlySet<OverlayName>): void {
     for (const [name, box] of this.checks) box.checked = shown.has(name);
+  }
+
+  showHud(shown: boolean): void {
+    this.hud.checked = shown;
   }
 
   showPreference(name: "steering" | "quality" | "theme", value: string): void {
@@ -129,10 +136,10 @@ export class Menu {
   }
 
   private listenToButtons(): void {
-    for (const name of BAR_ACTIONS) {
-      byId(name, HTMLButtonElement).addEventListener("click", () => this.listener.action(name));
+    for (const button of document.querySelectorAll<HTMLButtonElement>("button[data-action]")) {
+      button.addEventListener("click", () => this.listener.action(button.dataset["action"] as Action));
     }
-    byId("help-button", HTMLButtonElement).addEventListener("click", () => this.listener.action("help"));
+    byId("hud-close", HTMLButtonElement).addEventListener("click", () => this.listener.prefer({ hud: false }));
     this.button.addEventListener("click", () => this.setOpen(!this.isOpen));
   }
 
@@ -152,6 +159,8 @@ export class Menu {
       select.value = preferences[name];
       select.addEventListener("change", () => this.listener.prefer({ [name]: select.value }));
     }
+    this.hud.addEventListener("change", () => this.listener.prefer({ hud: this.hud.checked }));
+    this.showHud(preferences.hud);
     this.showOverlays(preferences.overlays);
   }
 }

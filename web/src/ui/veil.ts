@@ -16,10 +16,11 @@ export class Veil {
   private readonly reasons = new Map<string, string>();
   private timer = 0;
 
-  connection(state: ConnectionState): void {
+  /** @param why the reason of a lost line */
+  connection(state: ConnectionState, why: string): void {
     if (state === "lost") {
       for (const what of Object.keys(WHAT)) this.reasons.delete(what);
-      this.set("connection", "The server is gone; trying again");
+      this.set("connection", `${why}; trying again`);
     } else this.set("connection", state === "connecting" ? "Connecting" : null);
   }
 

@@ -1,0 +1,99 @@
+"""Panels: none on another, none over the avatar, all within reach of a thumb, all of them gone on request."""
+
+from collections.abc import Callable
+
+import pytest
+
+from live_page import LivePage
+
+Open = Callable[..., LivePage]
+
+PANELS = ("#brand", "#bar", "#hud", "#status", "#menu")
+SIZES = [(1280, 720), (1000, 600), (900, 600), (640, 480), (621, 700), (390, 844), (844, 390), (320, 568)]
+PHONES = [pytest.param((390, 844), id="portrait"), pytest.param((844, 390), id="landscape")]
+SMALLEST = """
+() => [...document.querySelectorAll("button, select, input:not([hidden]), summary")]
+  .map((control) => control.closest("label") ?? control)
+  .map((control) => [control.id || control.className || control.textContent, control.getBoundingClientRect()])
+  .filter(([, box]) => box.width > 0 && (box.width < 44 || box.height < 44))
+  .map(([name, box]) => `${name}: ${box.width} x ${box.height}`)
+"""
+
+
+def boxes(live: LivePage) -> dict[str, dict[str, float]]:
+    """The panels that can be seen, and where."""
+    found = {name: live.page.locator(name) for name in PANELS}
+    return {name: panel.bounding_box() for name, panel in found.items() if panel.is_visible()}
+
+
+def overlap(a: dict[str, float], b: dict[str, float]) -> bool:
+    across = a["x"] < b["x"] + b["width"] and b["x"] < a["x"] + a["width"]
+    return across and a["y"] < b["y"] + b["height"] and b["y"] < a["y"] + a["height"]
+
+
+def test_no_panel_lies_on_another(open_page: Open) -> None:
+    live = open_page("scene=doorway", viewport=SIZES[0])  # a long title
+    live.page.wait_for_selector("#status:not(:empty)")
+    for width, height in SIZES:
+        live.page.set_viewport_size({"width": width, "height": height})
+        live.page.wait_for_timeout(400)  # the menu slides
+        found = boxes(live)
+        assert {"#brand", "#bar", "#hud", "#status"} <= set(found)
+        for one, box in found.items():
+            assert (box["x"] >= 0, box["x"] + box["width"] <= width) == (True, True), (one, width)
+            assert box["y"] + box["height"] <= height
+            assert [other for other in found if other != one and overlap(box, found[other])] == [], (one, width)
+
+
+def test_h_and_the_address_hide_everything_but_the_world(open_page: Open) -> None:
+    live = open_page("scene=empty")
+    assert "#bar" in boxes(live)
+    live.page.keyboard.press("h")
+    assert boxes(live) == {}
+    live.page.keyboard.press("Escape")
+    assert {"#brand", "#bar", "#hud"} <= set(boxes(live))
+    assert boxes(open_page("scene=empty&ui=0")) == {}
+
+
+@pytest.mark.parametrize("viewport", PHONES)
+def test_on_a_phone_the_whole_avatar_is_in_sight(open_page: Open, viewport: tuple[int, int]) -> None:
+    live = open_page("scene=a", viewport=viewport, has_touch=True, is_mobile=True)
+    live.wait("s.scene === 'a'")
+    live.page.wait_for_selector("#status:not(:empty)")
+    feet = live.state()["feet"]
+    assert feet[1] + 12 < boxes(live)["#status"]["y"]
+
+
+@pytest.mark.parametrize("viewport", PHONES)
+def test_on_a_phone_every_control_is_as_large_as_a_thumb(open_page: Open, viewport: tuple[int, int]) -> None:
+    live = open_page(viewport=viewport, has_touch=True, is_mobile=True)
+    live.page.tap("#menu-button")
+    live.page.wait_for_selector("#menu:not(.closed)")
+    assert live.page.evaluate(SMALLEST) == []
+    live.page.tap("#menu-button")
+    live.page.tap("#help-button")
+    live.page.wait_for_selector("#help[open]")
+    assert live.page.evaluate(SMALLEST) == []
+    assert live.page.inner_text("#help h3 >> nth=0") == "Touch"
+
+
+def test_on_a_phone_panels_can_be_hidden_and_come_back(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(844, 390), has_touch=True, is_mobile=True)
+    live.page.tap("#hud-close")
+    assert "#hud" not in boxes(live)
+    live.page.tap("#menu-button")
+    live.page.tap("#hide-all")
+    assert boxes(live) == {}
+    live.page.tap("#show-all")
+    assert {"#brand", "#bar"} <= set(boxes(live))
+    live.page.tap("label:has(#hud-shown)")
+    assert "#hud" in boxes(live)
+
+
+def test_a_page_that_stands_still_keeps_its_line(open_page: Open) -> None:
+    live = open_page("scene=empty")
+    live.page.evaluate("() => { const end = performance.now() + 9000; while (performance.now() < end); }")
+    count = live.state()["framesReceived"]
+    live.wait(f"s.framesReceived > {count + 60}")
+    assert live.state()["timesOpened"] == 1
+    assert live.page.is_hidden("#veil")

@@ -1,0 +1,81 @@
+/** What the help says: one table for each device, the one at hand first. */
+
+import { PAD_BUTTONS, type PadDeed } from "../input/gamepad";
+
+export type Row = readonly [keys: readonly string[], meaning: string];
+
+/** Some rows under a title. */
+export interface Section {
+  readonly title: string;
+  readonly rows: readonly Row[];
+}
+
+/** What there is to steer with, besides a keyboard. */
+export interface Devices {
+  readonly touch: boolean;
+  readonly gamepad: boolean;
+}
+
+const KEYBOARD: readonly Section[] = [
+  { title: "Walk", rows: [
+    [["W", "A", "S", "D"], "or the arrow keys: walk where the camera looks"],
+    [["S"], "back up, facing the same way"],
+    [["Q", "E"], "step to the left and right"],
+    [["Shift"], "run"],
+    [["R"], "back to the start"],
+  ] },
+  { title: "Look", rows: [
+    [["drag"], "look around; the wheel or a pinch zooms"],
+    [["C"], "bring the camera behind the avatar"],
+    [["L"], "lock the pointer to the view, Esc frees it"],
+    [["V"], "steer relative to the camera or to the body"],
+  ] },
+  { title: "Time", rows: [
+    [["P"], "or Space: pause"],
+    [["."], "one step of 1/60 s"],
+    [["M"], "slow motion"],
+  ] },
+  { title: "See", rows: [
+    [["T"], "assist on and off: planned motion or the canned walk"],
+    [["O"], "overlays"],
+    [["N"], "menu"],
+    [["H"], "hide everything but the world; Esc shows it again"],
+    [["?"], "or F1: this help"],
+  ] },
+];
+
+const PAD_MEANINGS: Readonly<Partial<Record<PadDeed, string>>> = {
+  run: "run, while it is held",
+  stepLeft: "step to the left",
+  stepRight: "step to the right",
+  recenter: "press the right stick: camera behind the avatar",
+  assist: "assist on and off",
+  cameraMode: "steer relative to the camera or to the body",
+  reset: "back to the start",
+  pause: "pause",
+  slow: "slow motion",
+  step: "one step of 1/60 s",
+  overlays: "overlays",
+  hideUi: "hide everything but the world",
+};
+
+const GAMEPAD: Section = { title: "Gamepad", rows: [
+  [["left stick"], "walk"],
+  [["right stick"], "look around"],
+  ...Object.entries(PAD_MEANINGS).map(([deed, meaning]): Row => [
+    PAD_BUTTONS.filter((button) => button.deed === deed).map(({ name }) => name), meaning,
+  ]),
+] };
+
+const TOUCH: Section = { title: "Touch", rows: [
+  [["left half"], "put a finger down and drag: the stick; push far out to run"],
+  [["right half"], "drag to look, two fingers zoom"],
+  [["☰"], "everything else: time, overlays, measurements, hiding the panels"],
+] };
+
+/** All sections, those of the device at hand first. */
+export function helpSections({ touch, gamepad }: Devices): readonly Section[] {
+  const first = [...(touch ? [TOUCH] : []), ...(gamepad ? [GAMEPAD] : [])];
+  const last = [GAMEPAD, TOUCH].filter((section) => !first.includes(section));
+  return [...first, ...KEYBOARD, ...last];
+}
