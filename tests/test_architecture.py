@@ -10,7 +10,7 @@ import elbowroom
 
 PACKAGE = Path(elbowroom.__file__).parent
 ROOMS = ["geometry", "formats", "body", "clips", "world", "planning", "control", "experiment", "server", "cli"]
-FOR_ALL = {"errors", "held", "jit"}
+FOR_ALL = {"errors", "jit", "kernel_cache"}
 
 
 def imported_modules(path: Path) -> Iterator[str]:

@@ -8,7 +8,6 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.whole_body import whole_body
-from elbowroom.held import Held, hold
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.tangents import smooth_tangents
 from elbowroom.planning.exact.sweep import own_motion
@@ -61,7 +60,7 @@ def looked_at_closely(path: RootPath, keys: Floats, rates: Floats, k: int) -> fl
 
 
 @exact_kernel
-def looked_at(parts: Held[OwnParts], states: Floats, keys: Floats, rates: Floats, chosen: Indices) -> Floats32:
+def looked_at(parts: OwnParts, states: Floats, keys: Floats, rates: Floats, chosen: Indices) -> Floats32:
     return least_gaps(parts, states, keys, rates, T, chosen)
 
 
@@ -87,7 +86,7 @@ def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
 @pytest.mark.parametrize("wild", [0.0, 0.3])
 def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
     """Against a twin that takes every look of a level in an interval where the last one left too little room."""
-    parts = hold(OwnParts(whole_body(MODEL), PAIRS.first, PAIRS.second, PAIRS.kinds, PAIRS.limits))
+    parts = OwnParts(whole_body(MODEL), PAIRS.first, PAIRS.second, PAIRS.kinds, PAIRS.limits)
     rng, touching, near = np.random.default_rng(5), 0, 0
     for seed in range(20, 24):
         path, keys, rates = swung(seed)

@@ -5,7 +5,6 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
-from elbowroom.held import hold
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.ahead import WayFinder
 from elbowroom.planning.root.cost import prices_of, seconds_lost
@@ -33,7 +32,7 @@ class Paths:
         self.check = LegCheck(self.body, BOUNDS, SETTINGS.skin, SETTINGS.spacing)
         self.ways = WayFinder(SETTINGS, self.body)
         ground = self.body.boxes.ground
-        self.walker = hold(Walker(BOUNDS, self.ways.half, SETTINGS.skin, self.body.hull, ground, prices_of(SETTINGS)))
+        self.walker = Walker(BOUNDS, self.ways.half, SETTINGS.skin, self.body.hull, ground, prices_of(SETTINGS))
 
     def agree(self, start: RootState, command: Command, pace: float) -> bool:
         """Whether nothing is near; if so, the query must say the same."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import kernel, leaf, lean_kernel
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
 
 
-@leaf
+@helper
 def _cadence(forward: float, lateral: float, turn: float) -> float:
     """Strides per second, not yet resting at standstill."""
     side, spin = _LATERAL * lateral, _TURN * turn
@@ -67,7 +67,7 @@ def _cadence(forward: float, lateral: float, turn: float) -> float:
     return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
-@leaf
+@helper
 def _quickness(scale: float) -> float:
     return float(scale**-_PACE)
 
@@ -99,20 +99,20 @@ def stride_length(speed: float) -> float:
     return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
 
 
-@leaf
+@helper
 def _stance_part(stride: float, scale: float) -> float:
     """The part of the cycle that a foot stands: less where strides of this length outgrow the legs."""
     return float(_DUTY * (1.0 + (_DUTY / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
 
 
-@leaf
+@helper
 def _smooth(x: float) -> float:
     """Smoothstep, 0 below 0 and 1 above 1."""
     t = min(max(x, 0.0), 1.0)
     return float(t * t * (3.0 - 2.0 * t))
 
 
-@leaf
+@helper
 def _pitch_ahead(u: float, duty: float) -> float:
     """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off."""
     strike, lift = -_HEEL_STRIKE, _TOE_OFF
@@ -121,7 +121,7 @@ def _pitch_ahead(u: float, duty: float) -> float:
     return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
 
 
-@leaf
+@helper
 def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
     strike, lift = 0.5 * _TOE_OFF, -0.6 * _HEEL_STRIKE
@@ -130,7 +130,7 @@ def _pitch_back(u: float, duty: float) -> float:
     return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
 
 
-@leaf
+@helper
 def _foot_on_ground(
     x: float, z: float, time: float, forward: float, lateral: float, turn: float
 ) -> tuple[float, float]:
@@ -145,7 +145,7 @@ def _foot_on_ground(
     return px * np.cos(angle) - pz * np.sin(angle), px * np.sin(angle) + pz * np.cos(angle)
 
 
-@leaf
+@helper
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
     """Cubic from `a` to `b` over w in [0, 1]."""
     rest = 1.0 - w
@@ -166,7 +166,7 @@ class _Stride(NamedTuple):
     scale: float
 
 
-@leaf
+@helper
 def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Stride:
     period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
@@ -177,7 +177,7 @@ def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Strid
     return _Stride(forward, lateral, turn, speed, period, duty, ahead, effort, scale)
 
 
-@lean_kernel
+@kernel
 def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     forward, lateral, turn, _, period, duty, ahead, effort, scale = stride
@@ -221,7 +221,7 @@ def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) 
     out[5] = -max(pitch, 0.0) * fade
 
 
-@leaf
+@helper
 def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
     length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
@@ -230,7 +230,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
-@lean_kernel
+@kernel
 def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
     """How far the pelvis must come down for both feet to reach the ground all through the stance; `foot` is scratch."""
     stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
@@ -242,7 +242,7 @@ def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
     return low
 
 
-@lean_kernel
+@kernel
 def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Floats, scratch: Floats) -> None:
     """`foot_poses`, written to `feet` (N, 2, 6), or (0, 2, 6) where nobody asks for them, and `drops` (N,).
 
@@ -276,7 +276,7 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     return feet, drops
 
 
-@leaf
+@helper
 def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float]:
     """One row of `hips_sinks`."""
     lowered = half_leg * lowering

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import kernel, leaf
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def leg_rest(skeleton: Skeleton) -> Floats:
     return np.array(rows)
 
 
-@leaf
+@helper
 def _soft_reach(distance: float, length: float) -> float:
     """`distance`, approaching `length` exponentially: the knee does not snap when the leg straightens."""
     soft = _SOFT * length
@@ -32,7 +32,7 @@ def _soft_reach(distance: float, length: float) -> float:
     return distance if beyond <= 0.0 else length - soft * np.exp(-beyond / soft)
 
 
-@leaf
+@helper
 def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, out: Floats) -> None:
     """Columns: the bone's direction, the knee axis made perpendicular to it, and their cross product."""
     length = np.sqrt(x * x + y * y + z * z)
@@ -46,7 +46,7 @@ def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, o
     out[0, 2], out[1, 2], out[2, 2] = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
 
 
-@leaf
+@helper
 def _turn_between(rest: Floats, posed: Floats, m: Floats, out: Floats) -> None:
     """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn. `m` (3, 3) is scratch."""
     for i in range(3):
@@ -59,7 +59,7 @@ def _turn_between(rest: Floats, posed: Floats, m: Floats, out: Floats) -> None:
     out[3] = w
 
 
-@leaf
+@helper
 def _relative(a: Floats, b: Floats, out: Floats) -> None:
     """The quaternion `a^-1 b`."""
     out[0] = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1]

@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait import hips_sink
-from elbowroom.jit import inner_kernel, kernel, leaf, lean_kernel
+from elbowroom.jit import helper, kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
-_FIRST, _SECOND = 0, 1  # places in a row of capsules or joints
-_OTHER_END = 3  # where it begins in the row (6,) of a capsule
+_FIRST, _SECOND = plain(0), plain(1)  # places in a row of capsules or joints
+_OTHER_END = plain(3)  # where it begins in the row (6,) of a capsule
 
 
-@leaf
+@helper
 def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     """out[k] = a[i] b[j]."""
     ax, ay, az, aw = a[i, 0], a[i, 1], a[i, 2], a[i, 3]
@@ -30,7 +30,7 @@ def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     out[k, 3] = aw * bw - ax * bx - ay * by - az * bz
 
 
-@leaf
+@helper
 def _offset(
     q: Floats, j: int, x: float, y: float, z: float, base: Floats, i: int, out: Floats, k: int, at: int
 ) -> None:
@@ -42,7 +42,7 @@ def _offset(
     out[k, at + 2] = base[i, 2] + z + qw * tz + qx * ty - qy * tx
 
 
-@leaf
+@helper
 def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) -> None:
     """out[k] = exp(scale (x, y, z))."""
     half = 0.5 * scale * np.sqrt(x * x + y * y + z * z)
@@ -50,7 +50,7 @@ def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) 
     out[k, 0], out[k, 1], out[k, 2], out[k, 3] = factor * x, factor * y, factor * z, np.cos(half)
 
 
-@leaf
+@helper
 def _set_trunk(
     spine: Indices, spine_weights: Floats, gaze: Indices, gaze_weights: Floats, bend: float, twist: float, local: Floats
 ) -> None:
@@ -66,21 +66,21 @@ def _set_trunk(
         _set_power(x * factor, y * factor, z * factor, gaze_weights[i], local, gaze[i])
 
 
-@leaf
+@helper
 def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
     """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
     upper, lower = joints[0], joints[1]
-    _set_power(-arm[0], 0.0, mirror * arm[1], 1.0, scratch, int(_FIRST))
+    _set_power(-arm[0], 0.0, mirror * arm[1], 1.0, scratch, _FIRST)
     half = 0.5 * np.sqrt(0.5)
     # Ry(-m i) Rz(-m 90 deg): the product of two rotations about axes, written out
     c, s = 2.0 * half * np.cos(0.5 * arm[2]), -mirror * 2.0 * half * np.sin(0.5 * arm[2])
     scratch[1, 0], scratch[1, 1], scratch[1, 2], scratch[1, 3] = -mirror * s, s, -mirror * c, c
-    _product(scratch, int(_FIRST), scratch, int(_SECOND), local, upper)
+    _product(scratch, _FIRST, scratch, _SECOND, local, upper)
     local[lower, 0], local[lower, 1] = 0.0, -mirror * np.sin(0.5 * arm[3])
     local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
 
 
-@leaf
+@helper
 def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
     """Thigh, shin, foot and toes of both legs; joints (2, 4), -1 where the avatar has no such bone."""
     for side in range(2):
@@ -91,7 +91,7 @@ def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
                     local[joint, i] = rotations[side, part, i]
 
 
-@leaf
+@helper
 def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rotations: Floats, places: Floats) -> None:
     """Frames of the joints in `order`, parents first; the parent of the first is in place already."""
     for i in range(len(order)):
@@ -99,25 +99,25 @@ def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rot
         parent = parents[joint]
         _offset(
             rotations, parent, offsets[joint, 0], offsets[joint, 1], offsets[joint, 2], places, parent, places, joint,
-            int(_FIRST),
+            _FIRST,
         )  # fmt: skip
         _product(rotations, parent, local, joint, rotations, joint)
 
 
-@leaf
+@helper
 def _segments(
     joints: Indices, ends: Floats, rotations: Floats, places: Floats, row: Floats, n: int, out: Segments
 ) -> None:
     """Capsule end points of posture `n` into out (C, 6, N); `row` (1, 6) is scratch."""
     for c in range(len(joints)):
         j = joints[c]
-        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, int(_FIRST), int(_FIRST))
-        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, int(_FIRST), int(_OTHER_END))
+        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, _FIRST, _FIRST)
+        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, _FIRST, _OTHER_END)
         for i in range(6):
             out[c, i, n] = row[0, i]
 
 
-@leaf
+@helper
 def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z: float, heading: float) -> None:
     """Put a base frame at a point, turned about +Y."""
     rotations[joint, 0], rotations[joint, 1] = 0.0, np.sin(0.5 * heading)
@@ -125,7 +125,7 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
     places[joint, 0], places[joint, 1], places[joint, 2] = x, y, z
 
 
-@leaf
+@helper
 def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, places: Floats, joint: int) -> None:
     """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, `sink` (2,) below and behind."""
     c, s = np.cos(root[2]), np.sin(root[2])
@@ -134,7 +134,7 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
     _place(joint, rotations, places, x, hips[1] - sink[0], z, root[2])
 
 
-@leaf
+@helper
 def _set_body(
     spine: Indices,
     spine_weights: Floats,
@@ -203,7 +203,7 @@ def pose_body(
     chest = spine[-1]
     for n in range(len(q)):
         _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q[n], leg_rotations[n], local, scratch)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, int(_FIRST))
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, _FIRST)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
         for i in range(3):
@@ -232,7 +232,7 @@ def pose_legs(
     rotations, places = np.empty(base.shape), np.empty(offsets.shape)
     for n in range(len(roots)):
         _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, int(_FIRST))
+        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, _FIRST)
         _chain(order, parents, offsets, local, rotations, places)
         _segments(joints, ends, rotations, places, row, n, out)
     return out
@@ -248,13 +248,13 @@ class PoseScratch(NamedTuple):
     row: Floats  # (1, 6)
 
 
-@inner_kernel
+@kernel
 def pose_scratch(base: Floats, offsets: Floats) -> PoseScratch:
     """Room to pose chains of joints with the rotations `base` (J, 4) in T-pose."""
     return PoseScratch(base.copy(), np.empty(base.shape), np.empty(offsets.shape), np.empty((2, 4)), np.empty((1, 6)))
 
 
-@lean_kernel
+@kernel
 def pose_trunk_into(
     parents: Indices,
     offsets: Floats,
@@ -281,7 +281,7 @@ def pose_trunk_into(
     chest = spine[len(spine) - 1]
     for n in range(count):
         below, behind = hips_sink(half_leg, 0.0, waist[n, 2])
-        _place(int(_FIRST), room.rotations, room.places, 0.0, -below, -behind, 0.0)
+        _place(_FIRST, room.rotations, room.places, 0.0, -below, -behind, 0.0)
         _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], room.local)
         _chain(order, parents, offsets, room.local, room.rotations, room.places)
         _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)
@@ -314,12 +314,12 @@ def pose_trunk(
     chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
     pose_trunk_into(
         parents, offsets, order, spine, spine_weights, gaze, gaze_weights, joints, ends, half_leg, waist, len(waist),
-        pose_scratch(base, offsets), int(_FIRST), out, chest_places, chest_rotations,
+        pose_scratch(base, offsets), _FIRST, out, chest_places, chest_rotations,
     )  # fmt: skip
     return out, chest_places, chest_rotations
 
 
-@lean_kernel
+@kernel
 def pose_arm_into(
     parents: Indices,
     offsets: Floats,
@@ -370,13 +370,13 @@ def pose_arm(
         arm,
         len(arm),
         pose_scratch(base, offsets),
-        int(_FIRST),
+        _FIRST,
         out,
     )
     return out
 
 
-@lean_kernel
+@kernel
 def place_pelvis_into(
     hips: Floats, roots: Floats, sinks: Floats, count: int, places: Floats, rotations: Floats
 ) -> None:

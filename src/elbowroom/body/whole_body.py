@@ -13,7 +13,7 @@ from elbowroom.body.dof import LOWERING
 from elbowroom.body.gait import foot_poses, hips_sinks
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.legs import leg_rotations
-from elbowroom.jit import exact_inner_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -63,7 +63,7 @@ def whole_body(model: BodyModel) -> WholeBody:
     )
 
 
-@exact_inner_kernel
+@exact_kernel
 def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
     """All capsules (C, 6, N) for postures (N, 14) and root states (N, 7), in the world.
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import hashlib
+import os
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numba
 from llvmlite.binding import get_host_cpu_name
 
 from elbowroom.jit import kernels_made
+from elbowroom.kernel_cache import cache_folder
 
 
 def kernels() -> list[Any]:
@@ -23,17 +25,24 @@ def session_kernels() -> list[Any]:
 
 
 def kept_kernels() -> list[Any]:
-    """Those of `kernels` which lie on disk for the present source."""
-    return [kernel for kernel in kernels() if _has_index(kernel)]
+    """Those of `kernels` that lie on disk, for some source."""
+    return [kernel for kernel in kernels() if _is_kept(kernel)]
 
 
 def cache_folders() -> list[str]:
-    """Where they are kept."""
-    return sorted({str(kernel._cache.cache_path) for kernel in kernels()})
+    """Where they are kept; none if there is no place to write to."""
+    return sorted({str(folder) for kernel in kernels() if (folder := _folder(kernel)) is not None})
 
 
-def _has_index(kernel: Any) -> bool:
-    return bool(kernel._cache._cache_file._load_index()) and Path(kernel._cache.cache_path).is_dir()
+def _folder(kernel: Any) -> Path | None:
+    return cache_folder(Path(kernel.py_func.__code__.co_filename).parent)
+
+
+def _is_kept(kernel: Any) -> bool:
+    """Whether Numba has written the index of a kernel: FILE.FUNCTION-LINE.pyVERSION.nbi."""
+    code, folder = kernel.py_func.__code__, _folder(kernel)
+    name = f"{Path(code.co_filename).stem}.{kernel.py_func.__qualname__}-{code.co_firstlineno}.py*.nbi"
+    return folder is not None and any(folder.glob(name))
 
 
 def is_warm() -> bool:
@@ -51,7 +60,7 @@ def mark_warm() -> None:
 
 
 def _stamp_file() -> Path:
-    return Path(max(cache_folders())) / "elbowroom-sessions.warm"
+    return Path(max(cache_folders(), default=os.devnull)) / "elbowroom-sessions.warm"
 
 
 def _stamp() -> str:

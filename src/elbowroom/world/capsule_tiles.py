@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import inlined, kernel
+from elbowroom.jit import helper, kernel
 
 LANES = 16  # float32 lanes of the widest vector register
 TILE = 7 * LANES  # numbers of a tile
@@ -46,13 +46,13 @@ Vector = tuple[float, float, float]
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 
 
-@inlined
+@helper
 def _beyond(x: Any, h: Any) -> Any:
     """How far a coordinate lies beyond the faces at -h and h; 0 between them."""
     return x - max(min(x, h), -h)
 
 
-@inlined
+@helper
 def _span(n: Any, d: Any, h: Any, factor: Any) -> Span:
     """The least and the greatest t, times d * factor, at which t d - n is between -h and h."""
     along = d * factor
@@ -60,7 +60,7 @@ def _span(n: Any, d: Any, h: Any, factor: Any) -> Span:
     return middle - reach, middle + reach
 
 
-@inlined
+@helper
 def _squared_distance(n: Vector, d: Vector, h: Vector) -> Any:
     """Squared distance of the axis t d - n, t in [0, 1], from the box |x| <= h in its own axes."""
     u, v, w = d[0] * d[0] + _TINY, d[1] * d[1] + _TINY, d[2] * d[2] + _TINY
@@ -79,7 +79,7 @@ def _squared_distance(n: Vector, d: Vector, h: Vector) -> Any:
     return x * x + y * y + z * z
 
 
-@inlined
+@helper
 def _turned(m: Matrix, x: float, y: float, z: float) -> Vector:
     """The vector (x, y, z) in the axes of a box."""
     return m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z, m[6] * x + m[7] * y + m[8] * z

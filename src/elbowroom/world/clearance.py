@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import inner_kernel, kernel, lean_kernel
+from elbowroom.jit import kernel, plain
 from elbowroom.world.capsule_tiles import BOX, LANES, PER_METRE, TILE, lower_squares, lower_to_squares
 
-_FIRST = 0
+_FIRST = plain(0)
 _TILES = 32  # tiles that are treated together: they stay in the first-level cache
 _PAIRS = 256  # pairs of a tile and a box that are treated in one go
 _SCALE: Any = np.float32(PER_METRE)
@@ -72,7 +72,7 @@ def box_rows(table: Floats32 | NDArray[np.float64], count: int) -> Floats32:
     return rows
 
 
-@lean_kernel
+@kernel
 def fill_box_rows(table: Floats32 | NDArray[np.float64], count: int, rows: Floats32) -> None:
     """`box_rows`, written to `rows` (15 B,)."""
     for b in range(count):
@@ -80,7 +80,7 @@ def fill_box_rows(table: Floats32 | NDArray[np.float64], count: int, rows: Float
             rows[b * BOX + k] = table[b, k] if k < 3 else table[b, k] * _SCALE
 
 
-@inner_kernel
+@kernel
 def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> None:
     """Copy `count` configurations of one capsule (6, N); what is left of the last tile repeats the last of them."""
     whole, width = count // LANES, np.uint64(min(count, LANES))  # a known width would be unrolled, number by number
@@ -96,21 +96,21 @@ def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> N
                 tiles[whole * TILE + k * LANES + i] = segment[k, min(start + rest + i, last)]
 
 
-@inner_kernel
+@kernel
 def _lower_all(tiles: Floats32, used: int, rows: Floats32, pairs: Longs, squares: Floats32) -> None:
     """Lower the squares of the tiles in use to those from all boxes; `pairs` (_PAIRS, 2) is scratch."""
-    count = int(_FIRST)
+    count = _FIRST
     for b in range(rows.shape[0] // BOX):
         for t in range(used):
             pairs[count, 0], pairs[count, 1] = t, b
             count += 1
             if count == _PAIRS:
                 lower_squares(tiles, rows, pairs, count, squares)
-                count = int(_FIRST)
+                count = _FIRST
     lower_squares(tiles, rows, pairs, count, squares)
 
 
-@inner_kernel
+@kernel
 def _infinitely_far(values: Floats32) -> None:
     for i in range(np.uint64(values.shape[0])):
         values[i] = _INFINITE
@@ -152,7 +152,7 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, table: Floats32) -> 
     used = (count + LANES - 1) // LANES
     tiles, squares = np.empty(used * TILE, np.float32), np.empty(used * LANES, np.float32)
     squares[:] = _INFINITE
-    _fill_tiles(capsules, int(_FIRST), count, tiles)
+    _fill_tiles(capsules, _FIRST, count, tiles)
     _lower_all(tiles, used, box_rows(table, table.shape[0]), np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):
         least = min(least, math.sqrt(squares[i]) * _METRES - radii[i])

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.boxes import BOX_ROW
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,7 @@ class Tracks(NamedTuple):
     repeats: Longs  # (B,)
 
 
-@exact_inner_kernel
+@exact_kernel
 def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats) -> None:
     """The pose (4,) of one track, key poses (K, 4) at times (K,), at a time."""
     span, at = times[-1], time
@@ -49,7 +49,7 @@ def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats
         out[i] = poses[k, i] + share * (poses[last, i] - poses[k, i])
 
 
-@exact_inner_kernel
+@exact_kernel
 def _turning_points(times: Floats, repeat: int, first: float, last: float, out: Floats) -> int:
     """How often a track is at a key pose between two times; into `out` (N,) when, in order."""
     span, count = times[-1], 0
@@ -68,7 +68,7 @@ def _turning_points(times: Floats, repeat: int, first: float, last: float, out: 
     return count
 
 
-@inlined
+@helper
 def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
     """The times at which a track is looked at in a span, in order: evenly, and at its key poses."""
     count = _PARTS + 1 + _turning_points(times, repeat, first, last, np.empty(0))
@@ -85,7 +85,7 @@ def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
     return looks
 
 
-@inlined
+@helper
 def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
     """The row (15,) of a box, turned as the track is in the middle of a span, round its corners at all its times."""
     looks, pose = _looks(times, repeat, first, last), np.empty(4)

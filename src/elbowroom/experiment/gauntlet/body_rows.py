@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def least_gap(axes: Floats, radii: Floats, box: Floats) -> float:
     return best
 
 
-@exact_inner_kernel
+@exact_kernel
 def _slope(p: Floats, d: Floats, half: Floats, t: float) -> float:
     """Half the derivative of the squared distance from the box |x| <= half at the axis point p + t d."""
     total = 0.0
@@ -82,7 +82,7 @@ def _slope(p: Floats, d: Floats, half: Floats, t: float) -> float:
     return total
 
 
-@exact_inner_kernel
+@exact_kernel
 def _axis_to_box(p: Floats, d: Floats, half: Floats) -> float:
     """Distance of the axis p + t d, t in [0, 1], from the box |x| <= half.
 

@@ -7,7 +7,7 @@ last 16 edges and vertices; what is new is counted on or stored as a delta.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.uint32]
@@ -18,7 +18,7 @@ _TABLE, _TAIL = 16, 4  # bytes at the end
 _MASK = 0xFFFFFFFF
 
 
-@exact_inner_kernel
+@exact_kernel
 def _number(data: Bytes, state: NDArray[np.int64], end: int) -> int:
     """A number in groups of seven bits at state[0], which moves on; state[0] = -1 at the end of the data."""
     value = 0
@@ -34,7 +34,7 @@ def _number(data: Bytes, state: NDArray[np.int64], end: int) -> int:
     return value & _MASK
 
 
-@exact_inner_kernel
+@exact_kernel
 def _free(data: Bytes, state: NDArray[np.int64], end: int) -> int:
     """An index as a delta to the last free one, state[1]."""
     value = _number(data, state, end)
@@ -42,27 +42,27 @@ def _free(data: Bytes, state: NDArray[np.int64], end: int) -> int:
     return int(state[1])
 
 
-@exact_inner_kernel
+@exact_kernel
 def _keep_vertex(fifo: NDArray[np.int64], state: NDArray[np.int64], index: int, wanted: bool) -> None:
     fifo[state[2]] = index
     if wanted:
         state[2] = (state[2] + 1) & 15
 
 
-@exact_inner_kernel
+@exact_kernel
 def _keep_edge(fifo: NDArray[np.int64], state: NDArray[np.int64], a: int, b: int) -> None:
     fifo[state[3], 0], fifo[state[3], 1] = a, b
     state[3] = (state[3] + 1) & 15
 
 
-@exact_inner_kernel
+@exact_kernel
 def _fresh(state: NDArray[np.int64]) -> int:
     """The next index that was not used yet, counted by state[4]."""
     state[4] += 1
     return int(state[4] - 1)
 
 
-@exact_inner_kernel
+@exact_kernel
 def _on_edge(
     data: Bytes, end: int, code: int, recent: int, edges: Queue, vertices: Queue, state: Queue, out: Indices
 ) -> None:
@@ -84,7 +84,7 @@ def _on_edge(
     out[0], out[1], out[2] = a, b, c
 
 
-@exact_inner_kernel
+@exact_kernel
 def _corner(data: Bytes, end: int, code: int, kept: int, may_be_free: bool, state: Queue) -> int:
     """A corner by its code: 0 a new index, 15 a free one, else one that was kept."""
     if code == 0:
@@ -94,7 +94,7 @@ def _corner(data: Bytes, end: int, code: int, kept: int, may_be_free: bool, stat
     return kept
 
 
-@exact_inner_kernel
+@exact_kernel
 def _apart(data: Bytes, end: int, code: int, edges: Queue, vertices: Queue, state: Queue, out: Indices) -> None:
     """A triangle without a known edge; the codes of its corners are in a table or in the data."""
     in_table = code < 0xFE

@@ -13,14 +13,14 @@ from elbowroom.body import posing
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import BodyModel, arm_capsules, chest_frames, trunk_capsules
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.self_contact import allowed_distances
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-_FIRST = 0  # place in a row of capsules
+_FIRST = plain(0)  # place in a row of capsules
 
 
 class Limb(NamedTuple):
@@ -95,7 +95,7 @@ class LimbScratch(NamedTuple):
     none: Floats32  # (0, 6, 0) no capsules
 
 
-@exact_inner_kernel
+@exact_kernel
 def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     """Room to pose a limb in `count` configurations at once."""
     return LimbScratch(
@@ -106,7 +106,7 @@ def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int, first: int, out: Floats32) -> None:
     """`pose` for the first `count` configurations (N, d), written to `out` (C, 6 or more, M) from `first` on.
 
@@ -125,12 +125,12 @@ def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: i
         )  # fmt: skip
 
 
-@exact_lean_kernel
+@exact_kernel
 def carry_frames(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int) -> None:
     """The frames that the waist's limb carries, the chest's, in the pelvis frame, into the room; no capsules."""
     posing.pose_trunk_into(
         limb.parents, limb.offsets, limb.order, limb.spine, limb.spine_weights, limb.gaze, limb.gaze_weights,
-        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, scratch.joints, int(_FIRST), scratch.none,
+        limb.joints[:0], limb.ends, limb.half_leg, configurations, count, scratch.joints, _FIRST, scratch.none,
         scratch.places, scratch.turns,
     )  # fmt: skip
 
@@ -140,5 +140,5 @@ def pose(limb: Limb, configurations: Floats) -> Floats32:
     """Capsule end points (C, 6, N) for configurations (N, d), in the pelvis frame (waist) or the chest frame (arms)."""
     count = configurations.shape[0]
     out = np.empty((limb.joints.shape[0], 6, count), np.float32)
-    pose_into(limb, limb_scratch(limb, count), configurations, count, int(_FIRST), out)
+    pose_into(limb, limb_scratch(limb, count), configurations, count, _FIRST, out)
     return out

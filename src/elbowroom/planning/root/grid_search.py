@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.room import Room
 
 Floats = NDArray[np.float64]
@@ -84,7 +84,7 @@ def cheapest(
     return way, least
 
 
-@exact_inner_kernel
+@exact_kernel
 def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats) -> None:
     """What it costs (turns,) to begin in another turn than `begin`, where there is room for it."""
     cost[begin] = 0.0
@@ -95,7 +95,7 @@ def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats)
             t += side
 
 
-@exact_inner_kernel
+@exact_kernel
 def _settle(
     clear: Floats32,
     standing: Floats,
@@ -126,7 +126,7 @@ def _settle(
     return reached
 
 
-@exact_inner_kernel
+@exact_kernel
 def _best_move(clear: Floats32, prices: Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
     """The cheapest way to a cell from the row before it, and by which of nine moves."""
     best, move = np.inf, 0

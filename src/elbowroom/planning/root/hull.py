@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_inner_kernel, exact_kernel, leaf
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -76,7 +76,7 @@ def stride_hull(model: BodyModel) -> StrideHull:
     return StrideHull(np.ascontiguousarray(reach) + _SPARE, np.array([axis[1] for axis in axes]))
 
 
-@leaf
+@helper
 def _meets(x: float, z: float, heading: float, low: Floats, high: Floats, ground: Ground) -> bool:
     """Whether the rectangle from `low` to `high` (2,), to the left and ahead of a place, may meet a box."""
     sine, cosine = np.sin(heading), np.cos(heading)
@@ -105,7 +105,7 @@ def _meets(x: float, z: float, heading: float, low: Floats, high: Floats, ground
     return found
 
 
-@leaf
+@helper
 def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, low: Floats, high: Floats) -> bool:
     """The rectangle in the frame of state `a` that holds the strides from there to place and heading of `b`.
 
@@ -136,7 +136,7 @@ def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, l
     return True
 
 
-@leaf
+@helper
 def _change(a: Floats, b: Floats) -> float:
     """The change of the ground velocity between two states, m/s."""
     sine_a, cosine_a, sine_b, cosine_b = np.sin(a[2]), np.cos(a[2]), np.sin(b[2]), np.cos(b[2])
@@ -195,7 +195,7 @@ def way_is_open(route: Floats, half: float, ground: Ground) -> bool:
     return True
 
 
-@exact_inner_kernel
+@exact_kernel
 def ground_near(ground: Ground, x: float, z: float, reach: float) -> Ground:
     """What of it may come within `reach` metres of a place."""
     near, count = np.empty(ground.least.shape[0], np.int64), 0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
 
 Floats = NDArray[np.float64]
@@ -21,7 +21,7 @@ Indices = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
-_FIRST = 0
+_FIRST = plain(0)
 _STILL = 1e-9  # lengths and speeds that are divided by are at least this
 _REST = 1e-6  # m/s and rad/s: what is slower stands
 _SIDLE = 0.6  # radians: the greatest angle between the way and the body's front when walking forward
@@ -63,13 +63,13 @@ class Travel(NamedTuple):
     stops: bool  # whether it must stand at the route's end
 
 
-@exact_inner_kernel
+@exact_kernel
 def wrapped(angle: float) -> float:
     """The same angle in [-pi, pi)."""
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
 
-@inlined
+@helper
 def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, quickness: float) -> None:
     """Write state k+1: velocities change linearly from those of state k to (vx, vz) on the ground and `turn`."""
     a, b = states[k], states[k + 1]
@@ -87,7 +87,7 @@ def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, inte
     b[6] = a[6] + quickness * strides * interval / _PHASE_STEPS
 
 
-@exact_inner_kernel
+@exact_kernel
 def limited_step(
     states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds
 ) -> None:
@@ -105,7 +105,7 @@ def limited_step(
     _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds.quickness)
 
 
-@exact_inner_kernel
+@exact_kernel
 def turn_towards(state: Floats, heading: float, interval: float, bounds: MotionBounds) -> float:
     """Heading rate at the end of the next step that brings the body round to `heading` without overshoot."""
     error = wrapped(heading - state[2])
@@ -133,7 +133,7 @@ def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds)
         limited_step(states, k, vx, vz, wanted[2], interval, bounds)
 
 
-@inlined
+@helper
 def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, float, float]:
     """The point `look_ahead` metres along the route after the point nearest to (x, z), and the way left to its end."""
     best, leg, part = np.inf, 0, 0.0
@@ -206,7 +206,7 @@ def stopping_states(
             continue
         for c in range(ROOT_STATE):
             tail[0, c] = states[k, c]
-        brake(tail, int(_FIRST), interval, bounds)
+        brake(tail, _FIRST, interval, bounds)
         for i in range(steps):
             if abs(tail[i, 3]) + abs(tail[i, 4]) + abs(tail[i, 5]) < _REST:
                 break

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
     return out
 
 
-@exact_lean_kernel
+@exact_kernel
 def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, float]:
     """Velocities along world x and z in state `a` and in `b`, and the strides per second there."""
     ax, az = _ground_velocity(a)
@@ -70,7 +70,7 @@ def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, f
     return ax, az, bx, bz, phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5])
 
 
-@exact_lean_kernel
+@exact_kernel
 def interpolate_between(
     a: Floats, b: Floats, rates: tuple[float, float, float, float, float, float], u: float, interval: float, out: Floats
 ) -> None:
@@ -87,14 +87,14 @@ def interpolate_between(
     out[6] = a[6] + (b[6] - a[6]) * done
 
 
-@exact_lean_kernel
+@exact_kernel
 def _ground_velocity(state: Floats) -> tuple[float, float]:
     """Velocity along world x and z."""
     sine, cosine = np.sin(state[2]), np.cos(state[2])
     return state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
 
 
-@exact_lean_kernel
+@exact_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, interval: float) -> tuple[float, float]:
     """Value and rate of change of the cubic from `a` to `b` with the given rates at its ends."""
     rest = 1.0 - u
@@ -104,7 +104,7 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, inter
     return value, slope / interval
 
 
-@exact_lean_kernel
+@exact_kernel
 def ground_covered(states: Floats) -> tuple[float, float, float, float]:
     """The rectangle that holds the places of states (N, 7): least and greatest x, least and greatest z."""
     low_x, high_x, low_z, high_z = np.inf, -np.inf, np.inf, -np.inf

@@ -14,7 +14,6 @@ from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.held import hold
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.ahead import WayFinder
 from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
@@ -57,8 +56,8 @@ class RootPaths:
         )
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
         self._ways = WayFinder(settings, body)
-        self._walker = hold(
-            Walker(self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings))
+        self._walker = Walker(
+            self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings)
         )
         self.evasions = tuple(
             EvasionFinder(humanoid, scene.boxes.table, grid) for grid in (settings.evasion, settings.wide)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.motion import MotionBounds, limited_step, wrapped
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ def turned_speed(forward: float, sideways: float, angle: float) -> float:
     return speed
 
 
-@exact_inner_kernel
+@exact_kernel
 def _at(rows: Floats, place: float, column: int) -> float:
     """A column of the profile at a place in steps, interpolated; the ends hold outside."""
     inside = min(max(place, 0.0), rows.shape[0] - 1.0)
@@ -58,7 +58,7 @@ def _at(rows: Floats, place: float, column: int) -> float:
     return value
 
 
-@exact_inner_kernel
+@exact_kernel
 def _allowed(rows: Floats, step: float, place: float, course: Course) -> float:
     """The speed here from which one can still slow down for every turn of the body that comes."""
     speed = np.inf
@@ -104,7 +104,7 @@ def follow_profile(
         limited_step(states, k, vx, vz, turn, interval, bounds)
 
 
-@exact_inner_kernel
+@exact_kernel
 def _along(state: Floats, heading: float) -> tuple[float, float]:
     """The velocity of a root state (7,) along a heading and to its left."""
     angle = state[2] - heading

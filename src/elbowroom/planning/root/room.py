@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.world.boxes import BOX_ROW
 from elbowroom.world.clearance import clearance_into
 
@@ -79,7 +79,7 @@ def lower_rows(
                         clear[i, g, t, j] = min(clear[i, g, t, j], found[j])
 
 
-@exact_inner_kernel
+@exact_kernel
 def _extents(bodies: Floats32, groups: Indices, radii: Floats32, axis: Floats32) -> tuple[Floats, float]:
     """How far the parts of a body reach from its axis, seen from above, their lowest and highest point, (T, 3, 3).
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.walkable import WalkableMap, interpolate_grid
 
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Search(NamedTuple):
     roomy: float
 
 
-_EMPTY = 0  # size of a heap
+_EMPTY = plain(0)  # size of a heap
 _ESCAPE = 0.4  # metres around the start where less clearance than the margin is accepted: one must be able to leave
 _MOVES = np.array(
     [
@@ -113,7 +113,7 @@ def _search(grid: Floats32, search: Search) -> Floats:
     return _pulled_tight(grid, search, _trace(parents, goal, grid.shape[1], search))
 
 
-@exact_inner_kernel
+@exact_kernel
 def _needed(search: Search, here: float, a: float, b: float) -> float:
     """Clearance that is asked for at (a, b); `here` is the start's own."""
     if here >= search.margin:
@@ -122,7 +122,7 @@ def _needed(search: Search, here: float, a: float, b: float) -> float:
     return min(here - 1e-3, search.margin) if distance < _ESCAPE else search.margin
 
 
-@inlined
+@helper
 def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices]:
     """Cost and parent of every cell (row by row); unreached cells cost infinity."""
     rows, columns = grid.shape
@@ -131,7 +131,7 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
     cost[:], parents[:], done[:] = np.inf, -1, False
     keys, nodes = np.empty(rows * columns * 16 + 1), np.empty(rows * columns * 16 + 1, np.int64)
     here = float(grid[first // columns, first % columns])
-    size = _push(keys, nodes, int(_EMPTY), 0.0, first)
+    size = _push(keys, nodes, _EMPTY, 0.0, first)
     cost[first] = 0.0
     while size > 0:
         node = nodes[0]
@@ -161,7 +161,7 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
     return cost, parents
 
 
-@exact_inner_kernel
+@exact_kernel
 def _push(keys: Floats, nodes: Indices, size: int, key: float, node: int) -> int:
     """Add to the binary heap; returns its new size."""
     at = size
@@ -172,7 +172,7 @@ def _push(keys: Floats, nodes: Indices, size: int, key: float, node: int) -> int
     return size + 1
 
 
-@exact_inner_kernel
+@exact_kernel
 def _pop(keys: Floats, nodes: Indices, size: int) -> int:
     """Remove the least entry of the binary heap; returns its new size."""
     size -= 1
@@ -190,7 +190,7 @@ def _pop(keys: Floats, nodes: Indices, size: int) -> int:
     return size
 
 
-@exact_inner_kernel
+@exact_kernel
 def _trace(parents: Indices, goal: int, columns: int, search: Search) -> Floats:
     """The cells from the start to the goal; the first is the exact start."""
     count, node = 1, goal
@@ -206,7 +206,7 @@ def _trace(parents: Indices, goal: int, columns: int, search: Search) -> Floats:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     """Only the corners that are needed: from each, the farthest cell in sight is the next."""
     here = float(interpolate_grid(grid, search.start_a, search.start_l))
@@ -223,7 +223,7 @@ def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     return corners[:count].copy()
 
 
-@exact_inner_kernel
+@exact_kernel
 def _in_sight(grid: Floats32, search: Search, here: float, a: Floats, b: Floats) -> bool:
     """Whether the straight way between two points keeps the clearance."""
     steps = int(np.ceil(2.0 * max(abs(b[0] - a[0]), abs(b[1] - a[1]))))

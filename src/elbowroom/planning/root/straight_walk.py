@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.held import Held
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.cost import Prices, lost_on_line
 from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, to_look_at, way_is_open
@@ -42,14 +41,14 @@ class Stretch(NamedTuple):
 
 @exact_kernel
 def straight_walk(
-    walker: Held[Walker], start: Floats, line: TravelLine, speed: float, pace: float, stretch: Stretch
+    walker: Walker, start: Floats, line: TravelLine, speed: float, pace: float, stretch: Stretch
 ) -> tuple[bool, Floats, bool, float, float, float]:
     """A walk from `start` (7,) along a line of travel, whose wanted speed it makes at a share `pace`.
 
     Returns whether nothing is near; if so, the states (n+1, 7), whether they get nowhere, the seconds that they lose,
     and x and z of the end of the way.
     """
-    who, x, z = walker.value, start[0], start[1]
+    who, x, z = walker, start[0], start[1]
     states = np.empty((stretch.horizon + 1, ROOT_STATE))
     ground, route = ground_near(who.ground, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
     ends = not way_is_open(route, who.half, ground)

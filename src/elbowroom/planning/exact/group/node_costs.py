@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.problem import GroupTask, Weights
 from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, squares_from
 from elbowroom.planning.exact.lattice.postures import Postures
@@ -29,7 +29,7 @@ Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _INFINITE = np.float32(np.inf)
-_ONE, _FIRST = 1, 0  # posture; place
+_ONE, _FIRST = plain(1), plain(0)  # posture; place
 
 
 class Carriers(NamedTuple):
@@ -40,7 +40,7 @@ class Carriers(NamedTuple):
     turns: Floats  # (n, SWEEP+1, 4)
 
 
-@exact_inner_kernel
+@exact_kernel
 def carriers_at(ids: Longs, places: Floats, turns: Floats, entries: Longs) -> Carriers:
     """The ways at `slots` (n,), one after the other."""
     count = entries.shape[0]
@@ -56,7 +56,7 @@ def carriers_at(ids: Longs, places: Floats, turns: Floats, entries: Longs) -> Ca
     return out
 
 
-@inlined
+@helper
 def _clearances(
     scratch: Scratch,
     tables: NodeClearances,
@@ -90,14 +90,14 @@ def _clearances(
     return checks
 
 
-@exact_lean_kernel
+@exact_kernel
 def _lower(row: Floats32, other: Floats32) -> None:
     """Lower the beginning of a row to another."""
     for i in range(np.uint64(other.shape[0])):
         row[i] = min(row[i], other[i])
 
 
-@inlined
+@helper
 def _costs(
     columns: Floats32,
     goals: Floats,
@@ -130,18 +130,18 @@ def _costs(
             row[node] = cost if free[node] >= margin else _INFINITE
 
 
-@inlined
+@helper
 def _unfold(scratch: Scratch, limb: Limb, own: Floats, needed: Bools, price: Floats32) -> None:
     """Rule out ways back that lead through the trunk."""
     width = price.shape[1] - EXTRA
     for t in range(own.shape[0]):
         if needed[t, BACK]:
-            pose_into(limb, scratch.limb, own[t, BACK : BACK + 1], int(_ONE), int(_FIRST), scratch.segments)
-            if not is_clear_of_trunk(scratch.segments, int(_FIRST), limb.trunk, limb.allowed, scratch.axis):
+            pose_into(limb, scratch.limb, own[t, BACK : BACK + 1], _ONE, _FIRST, scratch.segments)
+            if not is_clear_of_trunk(scratch.segments, _FIRST, limb.trunk, limb.allowed, scratch.axis):
                 price[t, width + BACK] = _INFINITE
 
 
-@exact_lean_kernel
+@exact_kernel
 def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
     """Lanes that only fill up the last block, and postures of a key time alone that are not needed, are no nodes."""
     width = price.shape[1] - EXTRA
@@ -154,7 +154,7 @@ def _rule_out(price: Floats32, size: int, needed: Bools) -> None:
                 row[width + e] = _INFINITE
 
 
-@exact_lean_kernel
+@exact_kernel
 def node_costs(
     scratch: Scratch,
     tables: NodeClearances,
@@ -176,7 +176,7 @@ def node_costs(
     most, checks = np.inf, 0
     if not task.settled:
         clearance, checks = held_clearance_in(
-            scratch, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], int(HELD_AT_START)
+            scratch, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], HELD_AT_START
         )
         most = max(0.5 * clearance, 0.0)
     checks += _clearances(scratch, tables, postures, carriers, goals, boxes, own, needed, clear)

@@ -8,8 +8,7 @@ So steps are swept only where the search is blocked, and every candidate is swep
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.held import Held
-from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.caches import GroupCache
 from elbowroom.planning.exact.group.node_costs import Carriers, carriers_at, node_costs
 from elbowroom.planning.exact.group.problem import Group, GroupPath, GroupTask, Weights
@@ -38,10 +37,10 @@ Bools = NDArray[np.bool_]
 
 _BAN_RADIUS = 0.1  # radians: steps so near to one that touches are banned with it
 _FIRST_SLACK = 0.1  # squared radians: how much dearer ways are looked at where one touches; doubled when those were
-_BEGIN = 0  # the depth at which the search begins
+_BEGIN = plain(0)  # the depth at which the search begins
 
 
-@inlined
+@helper
 def _carrier(roots: RootSweeps, waists: LimbSweeps, task: GroupTask, k: int, is_waist: bool) -> Carrier:
     """What carries the limb in interval k, as a proof needs it."""
     root = task.roots[k]
@@ -60,7 +59,7 @@ def _carrier(roots: RootSweeps, waists: LimbSweeps, task: GroupTask, k: int, is_
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def _proven(
     scratch: Scratch,
     group: Group,
@@ -98,7 +97,7 @@ def _proven(
     return checks, harsh
 
 
-@exact_lean_kernel
+@exact_kernel
 def _stiffened(stiff: Bools, touches: Bools) -> bool:
     """Make the key times (n+1,) stiff at both ends of the intervals (n,) that touch; whether any does."""
     found = False
@@ -108,7 +107,7 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
     return found
 
 
-@exact_lean_kernel
+@exact_kernel
 def _closed(
     lattice: Lattice, work: Work, masks: ClosedEdges, keys: Floats, way: Longs, touches: Bools
 ) -> tuple[int, float]:
@@ -128,7 +127,7 @@ def _closed(
     return first, farthest
 
 
-@exact_lean_kernel
+@exact_kernel
 def _close_promising(
     scratch: Scratch,
     postures: Postures,
@@ -160,12 +159,12 @@ def _close_promising(
 
 
 @exact_kernel
-def search_group(cache: Held[GroupCache], task: GroupTask, weights: Weights) -> GroupPath:
+def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
     """The cheapest way whose motion is free as shown, at every moment.
 
     It begins gently; if there is no such way, only who is told so begins as hard as it takes.
     """
-    group, roots, waists, chain, work = cache.value
+    group, roots, waists, chain, work = cache
     postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
@@ -202,7 +201,7 @@ def search_group(cache: Held[GroupCache], task: GroupTask, weights: Weights) -> 
     touches[:] = False
     for k in range(horizon):
         motion_margins[k] = min(task.motion_margins[k], most)
-    first, deepest, spent, nodes, gentle, harsh = int(_BEGIN), 0, weights.rounds, 0, True, False
+    first, deepest, spent, nodes, gentle, harsh = _BEGIN, 0, weights.rounds, 0, True, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(weights.rounds):
         reached, count = cheapest_path(lattice, work, first, rounds == 0)
@@ -210,7 +209,7 @@ def search_group(cache: Held[GroupCache], task: GroupTask, weights: Weights) -> 
         way = traced(lattice, work, reached)
         set_keys(lattice, way, keys)
         if reached < horizon and gentle and harsh and task.harsh:
-            gentle, first = False, int(_BEGIN)
+            gentle, first = False, _BEGIN
             reopen(masks, lattice.masks[0])
             continue
         if reached < horizon:

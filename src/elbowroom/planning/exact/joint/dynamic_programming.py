@@ -7,17 +7,17 @@ the right arm's, or the postures of both arms.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import inner_kernel, kernel
+from elbowroom.jit import kernel, plain
 from elbowroom.planning.exact.joint.bounds import Problem
 
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-_START = 0  # the first slice
+_START = plain(0)  # the first slice
 
 
-@inner_kernel
+@kernel
 def _compact(steps: Floats32, sources: Indices, targets: Indices) -> Floats32:
     out = np.empty((sources.shape[0], targets.shape[0]), np.float32)
     for i in range(sources.shape[0]):
@@ -27,14 +27,14 @@ def _compact(steps: Floats32, sources: Indices, targets: Indices) -> Floats32:
     return out
 
 
-@inner_kernel
+@kernel
 def _lower(out: Floats32, values: Floats32, cost: float) -> None:
     """out[i] = min(out[i], values[i] + cost)."""
     for i in range(np.uint64(out.shape[0])):
         out[i] = min(out[i], values[i] + cost)
 
 
-@inner_kernel
+@kernel
 def _over_right(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the right arm: (W, L, R) to (W, L, R')."""
     out = np.empty((known.shape[0], known.shape[1], steps.shape[1]), np.float32)
@@ -48,7 +48,7 @@ def _over_right(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@inner_kernel
+@kernel
 def _over_left(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the left arm: (W, L, R) to (W, L', R)."""
     out = np.empty((known.shape[0], steps.shape[1], known.shape[2]), np.float32)
@@ -61,7 +61,7 @@ def _over_left(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@inner_kernel
+@kernel
 def _over_waist(known: Floats32, steps: Floats32) -> Floats32:
     """The least over the waist: (W, LR) to (W', LR)."""
     out = np.empty((steps.shape[1], known.shape[1]), np.float32)
@@ -73,7 +73,7 @@ def _over_waist(known: Floats32, steps: Floats32) -> Floats32:
     return out
 
 
-@inner_kernel
+@kernel
 def _add_prices(problem: Problem, depth: int, waist: Indices, left: Indices, right: Indices, costs: Floats32) -> bool:
     """Add what the triples of a slice cost to `costs` (W, L, R); whether any is left that is finite."""
     found = False
@@ -90,7 +90,7 @@ def _add_prices(problem: Problem, depth: int, waist: Indices, left: Indices, rig
     return found
 
 
-@inner_kernel
+@kernel
 def _before(
     known: Floats32, waist_steps: Floats32, left_steps: Floats32, right_steps: Floats32, target: Indices
 ) -> Indices:
@@ -113,7 +113,7 @@ def _before(
     return out
 
 
-@inner_kernel
+@kernel
 def _least(costs: Floats32) -> Indices:
     """The cheapest triple (3,)."""
     best, out = np.float32(np.inf), np.empty(3, np.int64)
@@ -127,7 +127,7 @@ def _least(costs: Floats32) -> Indices:
     return out
 
 
-@inner_kernel
+@kernel
 def _numbers(chosen: Bools) -> Indices:
     """The numbers of those that are chosen (V,)."""
     out, count = np.empty(chosen.shape[0], np.int64), 0
@@ -149,7 +149,7 @@ def sweep(problem: Problem, waist: Bools, left: Bools, right: Bools) -> tuple[fl
     costs: list[Floats32] = [np.empty((rows[0][0].shape[0], rows[0][1].shape[0], rows[0][2].shape[0]), np.float32)]
     costs[0][:] = 0.0
     path = np.empty((depths, 3), np.int64)
-    if not _add_prices(problem, int(_START), rows[0][0], rows[0][1], rows[0][2], costs[0]):
+    if not _add_prices(problem, _START, rows[0][0], rows[0][1], rows[0][2], costs[0]):
         return np.inf, path[:0]
     for t in range(depths - 1):
         here, there = rows[t], rows[t + 1]

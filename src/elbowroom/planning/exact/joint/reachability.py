@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.joint.bounds import Problem
 
 Bits = NDArray[np.uint64]
@@ -18,7 +18,7 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
 _WORD = 64
-_START = 0  # the first slice
+_START = plain(0)  # the first slice
 
 
 class Reach(NamedTuple):
@@ -28,7 +28,7 @@ class Reach(NamedTuple):
     triples: Bools  # (W, L, R)
 
 
-@exact_inner_kernel
+@exact_kernel
 def _packed(flags: Bools) -> Bits:
     """Rows of flags (N, R) as words (N, ceil(R / 64))."""
     out = np.empty((flags.shape[0], (flags.shape[1] + _WORD - 1) // _WORD), np.uint64)
@@ -40,7 +40,7 @@ def _packed(flags: Bools) -> Bits:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _open(costs: Floats32) -> Bools:
     """Which prices or steps (N, R) are finite."""
     out = np.empty(costs.shape, np.bool_)
@@ -50,7 +50,7 @@ def _open(costs: Floats32) -> Bools:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _free(problem: Problem, depth: int) -> Bits:
     """The triples (W, L, words) that are free in a slice."""
     waist, left = problem.waist[depth], problem.left[depth]
@@ -67,7 +67,7 @@ def _free(problem: Problem, depth: int) -> Bits:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _keep(known: Bits, free: Bits) -> bool:
     """Keep those triples of `known` that are free; whether there are any."""
     previous = np.uint64(0)
@@ -79,7 +79,7 @@ def _keep(known: Bits, free: Bits) -> bool:
     return bool(previous != 0)
 
 
-@exact_inner_kernel
+@exact_kernel
 def _same(first: Bits, second: Bits) -> bool:
     differing = np.uint64(0)
     for i in range(first.shape[0]):
@@ -87,7 +87,7 @@ def _same(first: Bits, second: Bits) -> bool:
     return bool(differing == 0)
 
 
-@inlined
+@helper
 def _stepped(known: Bits, steps: Bits) -> Bits:
     """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
     out = np.empty(known.shape, np.uint64)
@@ -108,7 +108,7 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
     return out
 
 
-@inlined
+@helper
 def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     """The steps of left arm and waist: unions of sets (W, L, words)."""
     half, out = np.empty(known.shape, np.uint64), np.empty(known.shape, np.uint64)
@@ -128,7 +128,7 @@ def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _unpacked(bits: Bits, size: int) -> Bools:
     out = np.empty((bits.shape[0], bits.shape[1], size), np.bool_)
     for w in range(bits.shape[0]):
@@ -138,7 +138,7 @@ def _unpacked(bits: Bits, size: int) -> Bools:
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _after(problem: Problem, depth: int, known: Bits) -> Bits:
     """The triples of the next slice to which a step leads from `known`, free or not."""
     stepped = _stepped(known, _packed(_open(problem.right_steps[depth])))
@@ -157,7 +157,7 @@ def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
 def reach(problem: Problem) -> Reach:
     """The deepest slice to which a way leads, every triple of every slice looked at."""
     size = problem.right.shape[2]
-    depth, last = int(_START), problem.waist_steps.shape[0]
+    depth, last = _START, problem.waist_steps.shape[0]
     known = _free(problem, depth)
     if not _keep(known, known):
         return Reach(-1, _unpacked(known, size))

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, begin_round, find, new_cache_index
 
@@ -31,7 +31,7 @@ def new_closed_edges(count: int, size: int, nodes: int) -> ClosedEdges:
     )
 
 
-@exact_inner_kernel
+@exact_kernel
 def known_closed_edges(masks: ClosedEdges, keys: Floats, previous: Longs) -> Longs:
     """The masks (n,) of intervals with these keys (n, K), -1 where there is none.
 
@@ -54,7 +54,7 @@ def known_closed_edges(masks: ClosedEdges, keys: Floats, previous: Longs) -> Lon
     return out
 
 
-@exact_lean_kernel
+@exact_kernel
 def admit_closed_edges(masks: ClosedEdges, key: Floats) -> int:
     """The mask of an interval under `key` (K,), with all steps open."""
     at = admit(masks.entries, key)
@@ -62,14 +62,14 @@ def admit_closed_edges(masks: ClosedEdges, key: Floats) -> int:
     return int(at)
 
 
-@exact_lean_kernel
+@exact_kernel
 def reopen(masks: ClosedEdges, at: int) -> None:
     """Open all steps of a mask, if it is one."""
     if at >= 0:
         masks.closed[at], masks.seen[at], masks.slack[at] = False, False, 0.0
 
 
-@exact_inner_kernel
+@exact_kernel
 def closed_edge_keys(ids: Longs, goals: Floats) -> Floats:
     """The keys (n, 1 + 2 d): number of the carrier's way, goals at both ends."""
     horizon, size = goals.shape[0] - 1, goals.shape[1]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.lattice import (
     EXTRA,
     HOLD,
@@ -29,11 +29,11 @@ Bools = NDArray[np.bool_]
 
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
-_FIRST = 0  # lane, depth
+_FIRST = plain(0)  # lane, depth
 _GLANCE = 0.25  # squared radians: how much dearer than the least prices a way may be at a glance
 
 
-@exact_lean_kernel
+@exact_kernel
 def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
     """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
@@ -44,7 +44,7 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
         origins[b] = origin if better else origins[b]
 
 
-@exact_lean_kernel
+@exact_kernel
 def _relax_open(
     out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Bools
 ) -> None:
@@ -57,7 +57,7 @@ def _relax_open(
         origins[b] = origin if better else origins[b]
 
 
-@inlined
+@helper
 def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
     nodes have a way."""
@@ -99,7 +99,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     return count
 
 
-@exact_lean_kernel
+@exact_kernel
 def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of a step to an own posture of the next depth, and where it comes from."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
@@ -116,7 +116,7 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     return best, origin
 
 
-@exact_lean_kernel
+@exact_kernel
 def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
     """Settle the lattice from depth `begin` on, without nodes through which no way costs at most `most`.
 
@@ -156,19 +156,19 @@ def cheapest_path(lattice: Lattice, work: Work, begin: int, glance: bool) -> tup
         begin = 0  # what was left out may be needed
     work.most[1] = most
     if glance and least[0] + _GLANCE < most:
-        reached, nodes = _settle_from(lattice, work, int(_FIRST), least[0] + _GLANCE)
+        reached, nodes = _settle_from(lattice, work, _FIRST, least[0] + _GLANCE)
         if reached == depths - 1 and least_in(work.costs[reached]) + _SLACK < least[0] + _GLANCE:
             return reached, nodes
     reached, count = _settle_from(lattice, work, begin, most)
     return reached, nodes + count
 
 
-@exact_lean_kernel
+@exact_kernel
 def widen(lattice: Lattice, work: Work) -> int:
     """Settle also what was left out at a glance, if it was one; the number of nodes that have a way."""
     if work.most[0] == work.most[1]:
         return 0
-    _, nodes = _settle_from(lattice, work, int(_FIRST), work.most[1])
+    _, nodes = _settle_from(lattice, work, _FIRST, work.most[1])
     return nodes
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, GOAL, HOLD, KEPT, place_of_least, squares_from
 from elbowroom.planning.paper.activity_graph import squared_distance
 
@@ -49,13 +49,13 @@ def extra_nodes(
     return own, needed, previous
 
 
-@exact_inner_kernel
+@exact_kernel
 def _distance(a: Floats, b: Floats) -> float:
     """How far two postures (d,) are apart, radians."""
     return float(np.sqrt(squared_distance(a, b)))
 
 
-@exact_inner_kernel
+@exact_kernel
 def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32) -> int:
     """The number of a posture (d,), or -1; `squares` (W,) is scratch."""
     squares_from(columns, posture, squares)
@@ -63,7 +63,7 @@ def _known(known: Floats, columns: Floats32, posture: Floats, squares: Floats32)
     return at if at < known.shape[0] and _near(posture, known[at]) else -1
 
 
-@exact_inner_kernel
+@exact_kernel
 def _near(a: Floats, b: Floats) -> bool:
     apart = 0.0
     for i in range(a.shape[0]):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -76,14 +76,14 @@ def new_work(depths: int, nodes: int) -> Work:
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def component_of(lattice: Lattice, depth: int, node: int, i: int) -> float:
     """One component of the configuration of a node."""
     width = lattice.moves.shape[1]
     return float(lattice.postures[node, i] if node < width else lattice.own[depth, node - width, i])
 
 
-@exact_lean_kernel
+@exact_kernel
 def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
     """The squared distances (W,) of the postures from one (d,)."""
     out[:] = 0.0
@@ -93,7 +93,7 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
             out[v] += (column[v] - place) * (column[v] - place)
 
 
-@exact_lean_kernel
+@exact_kernel
 def measure_own(lattice: Lattice, work: Work) -> None:
     """Distances of each key time's own postures from all others; too long a step is infinite."""
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
@@ -109,7 +109,7 @@ def measure_own(lattice: Lattice, work: Work) -> None:
             row[size:] = _INFINITE
 
 
-@exact_lean_kernel
+@exact_kernel
 def own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     """The squared length of the step between own postures of two successive depths; infinite if it is too long."""
     total = 0.0
@@ -118,7 +118,7 @@ def own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
     return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_lean_kernel
+@exact_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     """2 w q.g into `out` (W+OWN,) for the nodes q of `row`; returns w |g|^2; g is the goal's way from `depth` on."""
     width, weight = lattice.moves.shape[1], lattice.weight
@@ -137,7 +137,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     return square
 
 
-@exact_lean_kernel
+@exact_kernel
 def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
@@ -153,7 +153,7 @@ def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     return lattice.weight * changed if listed and moved <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_lean_kernel
+@exact_kernel
 def least_in(row: Floats32) -> Any:
     """The least of many numbers."""
     least = row[0]
@@ -162,7 +162,7 @@ def least_in(row: Floats32) -> Any:
     return least
 
 
-@exact_lean_kernel
+@exact_kernel
 def place_of_least(row: Floats32) -> int:
     """Where the least of many numbers is; the first of them."""
     place = 0

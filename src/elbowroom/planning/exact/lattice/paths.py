@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, Lattice, Work, component_of, place_of_least, step_cost
 
 Floats = NDArray[np.float64]
@@ -12,7 +12,7 @@ Longs = NDArray[np.int64]
 _INFINITE = np.float32(np.inf)
 
 
-@exact_lean_kernel
+@exact_kernel
 def own_way(lattice: Lattice, few: Floats) -> float:
     """The cost of the cheapest way through key times' own postures alone: no cheapest way costs more.
 
@@ -37,7 +37,7 @@ def own_way(lattice: Lattice, few: Floats) -> float:
     return least
 
 
-@exact_lean_kernel
+@exact_kernel
 def kept_way(lattice: Lattice) -> float:
     """The cost of the last plan's way, infinite where it is not free."""
     total, before = 0.0, lattice.moves.shape[1] + HOLD
@@ -61,7 +61,7 @@ def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     return way
 
 
-@exact_lean_kernel
+@exact_kernel
 def set_keys(lattice: Lattice, way: Longs, keys: Floats) -> None:
     """The postures of a way's nodes into the first rows of `keys` (n+1, d)."""
     for t in range(way.shape[0]):

@@ -12,7 +12,7 @@ SIAM J. Sci. Stat. Comput. 5, 1984): they pass nothing.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, leaf
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -58,7 +58,7 @@ def peak_acceleration(a: Floats, velocity: Floats, b: Floats, next_velocity: Flo
     return float(np.sqrt(max(first, last)))
 
 
-@leaf
+@helper
 def _middle(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, interval: float, i: int) -> float:
     """The second of three Bezier points of a component's velocity."""
     return float(3.0 * (b[i] - a[i]) / interval - velocity[i] - next_velocity[i])

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -39,7 +39,7 @@ def begin_round(entries: CacheIndex) -> None:
     entries.clock[_ROUND] += 1
 
 
-@exact_lean_kernel
+@exact_kernel
 def find(entries: CacheIndex, key: Floats) -> int:
     """The slot under `key` (K,), or -1."""
     for s in range(entries.ids.shape[0]):
@@ -56,7 +56,7 @@ def find(entries: CacheIndex, key: Floats) -> int:
     return -1
 
 
-@exact_lean_kernel
+@exact_kernel
 def admit(entries: CacheIndex, key: Floats) -> int:
     """A slot for a new result under `key`: one that this round has not asked for, of which there must be one."""
     count = entries.ids.shape[0]

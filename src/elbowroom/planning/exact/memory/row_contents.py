@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -14,7 +14,7 @@ _NATURAL = 1e-6  # radians from the goal
 CONTENT = ROOT_STATE - _FIRST  # numbers of a row beside those of the upper body
 
 
-@exact_lean_kernel
+@exact_kernel
 def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
     """Whole millionths of root states (n+1, 7) without place and heading, and beside them of `uppers` (n+1, K).
 
@@ -25,14 +25,14 @@ def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
         set_millionths(uppers[t], out[t, CONTENT:])
 
 
-@exact_lean_kernel
+@exact_kernel
 def set_millionths(values: Floats, out: Longs) -> None:
     """Whole millionths of values (K,), to `out` (K or more,)."""
     for j in range(values.shape[0]):
         out[j] = np.int64(np.rint(1e6 * values[j]))
 
 
-@exact_lean_kernel
+@exact_kernel
 def is_natural(upper: Floats, goals: Floats) -> bool:
     """Whether groups side by side (K,) are as their goals have them, the first of `goals` (11,)."""
     farthest = 0.0

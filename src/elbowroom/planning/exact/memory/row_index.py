@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel
+from elbowroom.jit import exact_kernel
 
 Longs = NDArray[np.int64]
 
@@ -28,7 +28,7 @@ def new_row_index(count: int, width: int) -> RowIndex:
     return RowIndex(np.empty((count, width), np.int64), places, np.zeros(1, np.int64))
 
 
-@exact_lean_kernel
+@exact_kernel
 def forget(known: RowIndex) -> None:
     """From now on no row is known."""
     known.taken[0] = 0
@@ -36,13 +36,13 @@ def forget(known: RowIndex) -> None:
         known.places[entry] = _EMPTY
 
 
-@exact_lean_kernel
+@exact_kernel
 def place_of(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), or -1 if it is not known."""
     return int(known.places[_entry_of(known, row)])
 
 
-@exact_lean_kernel
+@exact_kernel
 def admit(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), a new one if it was not known; where all are taken, all others are forgotten."""
     entry = _entry_of(known, row)
@@ -58,7 +58,7 @@ def admit(known: RowIndex, row: Longs) -> int:
     return int(known.places[entry])
 
 
-@exact_lean_kernel
+@exact_kernel
 def _entry_of(known: RowIndex, row: Longs) -> int:
     """Where among `places` that of a row is, or would be."""
     mixed = _SEED
@@ -71,7 +71,7 @@ def _entry_of(known: RowIndex, row: Longs) -> int:
     return int(entry)
 
 
-@exact_lean_kernel
+@exact_kernel
 def _same(one: Longs, other: Longs) -> bool:
     different = 0
     for i in range(one.shape[0]):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, lean_kernel
+from elbowroom.jit import exact_kernel, kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK
 from elbowroom.world.capsule_tiles import BOX, PER_METRE, TILE, lower_squares, lower_to_squares
 from elbowroom.world.clearance import fill_box_rows
@@ -16,7 +16,7 @@ Longs = NDArray[np.int64]
 
 COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
 _ROUNDING = 1e-5  # metres: balls are held against boxes in single precision
-_NONE = 0
+_NONE = plain(0)
 _PAIRS = 512  # pairs of a tile and a box that are collected before they are checked
 _FAR = np.float32(np.inf)
 _ZERO = np.float32(0.0)
@@ -24,7 +24,7 @@ _QUARTER = np.float32(0.25)
 _LAST = BLOCK - 1
 
 
-@exact_lean_kernel
+@exact_kernel
 def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> int:
     """Copy the boxes (B, 15) whose ball comes within `reach` of a place (3,) to `near`; their number."""
     count = 0
@@ -69,7 +69,7 @@ class ClearanceScratch(NamedTuple):
     apart: Floats32  # (16,)
 
 
-@exact_inner_kernel
+@exact_kernel
 def clearance_scratch(tiles: int, capsules: int, boxes: int) -> ClearanceScratch:
     """Room for checks of so many tiles, or of single capsules, against so many boxes."""
     flat = np.empty(capsules * TILE, np.float32)
@@ -85,7 +85,7 @@ def clearance_scratch(tiles: int, capsules: int, boxes: int) -> ClearanceScratch
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def spread_balls(balls: Floats, out: Floats32) -> None:
     """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
 
@@ -103,7 +103,7 @@ def spread_balls(balls: Floats, out: Floats32) -> None:
         out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
 
 
-@lean_kernel
+@kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int:
     """How far (W,) balls as `spread_balls` are out of reach of box b, negative where they are within; how many are."""
     row = rows[b * BOX : (b + 1) * BOX]
@@ -120,7 +120,7 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int
     return within
 
 
-@exact_lean_kernel
+@exact_kernel
 def lower_blocks_in(
     scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
 ) -> int:
@@ -130,7 +130,7 @@ def lower_blocks_in(
     fill_box_rows(boxes, count, rows)
     for i in range(np.uint64(total * BLOCK)):
         squares[i] = _FAR
-    found, checks, beyond = int(_NONE), 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
+    found, checks, beyond = _NONE, 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
     for b in range(count):
         if _beyond_reach(spread, rows, b, beyond) > 0:
             for t in range(total):
@@ -138,7 +138,7 @@ def lower_blocks_in(
                 found += beyond[t] < 0.0
         if found >= _PAIRS or b == count - 1:
             lower_squares(tiles, rows, pairs, found, squares)
-            checks, found = checks + found * BLOCK, int(_NONE)
+            checks, found = checks + found * BLOCK, _NONE
     if checks > 0:
         for t in range(total):
             if squares[t * BLOCK] < _FAR:
@@ -158,7 +158,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out:
     return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, boxes, count, out))
 
 
-@exact_lean_kernel
+@exact_kernel
 def place_capsules(
     segments: Floats32, count: int, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32
 ) -> None:
@@ -186,7 +186,7 @@ def place_capsules(
             lanes[c, 6, n] = radii[c]
 
 
-@lean_kernel
+@kernel
 def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
@@ -203,7 +203,7 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     ball[0], ball[1], ball[2], ball[3] = x, y, z, lanes[6, 0] + np.sqrt(farthest)
 
 
-@exact_lean_kernel
+@exact_kernel
 def capsule_clearances_in(scratch: ClearanceScratch, boxes: Floats, count: int, out: Floats32) -> int:
     """`capsule_clearances` of the capsules in the room."""
     for c in range(scratch.lanes.shape[0]):
@@ -223,7 +223,7 @@ def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32
     return int(capsule_clearances_in(scratch, boxes, count, out))
 
 
-@exact_lean_kernel
+@exact_kernel
 def least_of(rows: Floats32, scratch: Floats32) -> float:
     """The least number in rows (C, 16) of clearances; `scratch` (16,)."""
     for i in range(np.uint64(BLOCK)):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
 from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_WAY, Postures
 from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, capsule_clearances_in
@@ -19,10 +19,10 @@ Longs = NDArray[np.int64]
 
 MOST_EDGES = 128  # looked at in one go
 _INFINITE = np.float32(np.inf)
-_ONE = 1  # posture
+_ONE = plain(1)  # posture
 
 
-@exact_lean_kernel
+@exact_kernel
 def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
     width = lattice.moves.shape[1]
@@ -32,7 +32,7 @@ def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
         out[width + e] = squared_distance(lattice.own[depth, e], posture)
 
 
-@exact_lean_kernel
+@exact_kernel
 def close_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
     """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
     nodes, most = lattice.cost.shape[1], np.float32(radius * radius)
@@ -51,7 +51,7 @@ def close_near(lattice: Lattice, work: Work, depth: int, source: int, target: in
     closed[source, target] = True
 
 
-@exact_lean_kernel
+@exact_kernel
 def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
     """The steps of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
@@ -96,7 +96,7 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
     return count
 
 
-@inlined
+@helper
 def _posed_between(
     scratch: Scratch, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
 ) -> None:
@@ -119,7 +119,7 @@ def _posed_between(
             end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
             for i in range(start.shape[0]):
                 scratch.configurations[0, i] = start[i] + share * (end[i] - start[i])
-            pose_into(postures.limb, scratch.limb, scratch.configurations, int(_ONE), n, lanes)
+            pose_into(postures.limb, scratch.limb, scratch.configurations, _ONE, n, lanes)
     for c in range(lanes.shape[0]):
         for i in range(6):
             for n in range(filled, BLOCK):
@@ -128,7 +128,7 @@ def _posed_between(
             lanes[c, 6, n] = postures.limb.radii[c]
 
 
-@exact_lean_kernel
+@exact_kernel
 def close_edges(
     scratch: Scratch,
     postures: Postures,

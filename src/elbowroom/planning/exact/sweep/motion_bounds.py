@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import hips_sinks, quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
-from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.model.frames import compose_into
 from elbowroom.planning.model.limb import Limb, LimbScratch
@@ -153,7 +153,7 @@ def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
     return levers
 
 
-@exact_lean_kernel
+@exact_kernel
 def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
     """The third derivative of the cubic with these values and slopes at its ends."""
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3
@@ -187,7 +187,7 @@ def root_sweeps(ways: RootSweeps, chain: KinematicChain, states: Floats, interva
     return out
 
 
-@exact_lean_kernel
+@exact_kernel
 def _root_sweep(
     ways: RootSweeps, chain: KinematicChain, a: Floats, b: Floats, interval: float, stamp: float, scratch: RootScratch
 ) -> int:
@@ -210,7 +210,7 @@ def _root_sweep(
     return int(at)
 
 
-@inlined
+@helper
 def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
@@ -229,7 +229,7 @@ def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: 
         sway[i] = part * (ground + turn * chain.span + lift)
 
 
-@exact_lean_kernel
+@exact_kernel
 def configurations_into(ends: Ends, interval: float, shares: Floats, count: int, out: Floats) -> None:
     """`configurations_at` for the first `count` parts, written to `out` (N, d)."""
     q, m, p, n = ends
@@ -253,7 +253,7 @@ def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
     return out
 
 
-@exact_lean_kernel
+@exact_kernel
 def moves_into(ends: Ends, interval: float, count: int, rates: Floats, moved: Floats) -> None:
     """`moves_between`, written to `moved` (count, 3); `rates` (count+2, 4) is scratch."""
     q, m, p, n = ends
@@ -288,7 +288,7 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
     return moved
 
 
-@exact_lean_kernel
+@exact_kernel
 def carry(
     chain: KinematicChain,
     waist: LimbScratch,

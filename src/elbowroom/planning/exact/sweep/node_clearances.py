@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined, leaf
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
@@ -26,7 +26,7 @@ _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
-_ONE, _BOTH, _FIRST = 1, 2, 0  # postures; place
+_ONE, _BOTH, _FIRST = plain(1), plain(2), plain(0)  # postures; place
 
 
 class NodeClearances(NamedTuple):
@@ -46,7 +46,7 @@ def new_node_clearances(count: int, size: int, width: int) -> NodeClearances:
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def interval_clearances(
     scratch: Scratch,
     tables: NodeClearances,
@@ -78,7 +78,7 @@ def interval_clearances(
     return int(at), checks + count
 
 
-@leaf
+@helper
 def _set_frame(scratch: Scratch, n: int, places: Floats, turns: Floats, sample: int) -> None:
     """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` in the room."""
     for i in range(3):
@@ -87,7 +87,7 @@ def _set_frame(scratch: Scratch, n: int, places: Floats, turns: Floats, sample: 
         scratch.turns[n, i] = turns[sample, i]
 
 
-@inlined
+@helper
 def _goals_held(
     scratch: Scratch, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
 ) -> tuple[Any, Any, int]:
@@ -101,7 +101,7 @@ def _goals_held(
         return _FAR, _FAR, 0
     for i in range(goals.shape[1]):
         scratch.configurations[0, i], scratch.configurations[1, i] = goals[0, i], goals[1, i]
-    pose_into(postures.limb, scratch.limb, scratch.configurations, int(_BOTH), int(_FIRST), segments)
+    pose_into(postures.limb, scratch.limb, scratch.configurations, _BOTH, _FIRST, segments)
     total = _EARLY + _MOMENTS + 1 - _LATE
     for n in range(total):
         sample = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
@@ -122,7 +122,7 @@ def _goals_held(
     return early, late, checks
 
 
-@inlined
+@helper
 def _moments(
     scratch: Scratch, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
 ) -> int:
@@ -145,7 +145,7 @@ def _moments(
     return checks
 
 
-@exact_lean_kernel
+@exact_kernel
 def _lower(row: Floats32, blocks: Floats32) -> None:
     """Lower the beginning of a row to what is in blocks (B, 16)."""
     for b in range(blocks.shape[0]):
@@ -154,7 +154,7 @@ def _lower(row: Floats32, blocks: Floats32) -> None:
             lanes[i] = min(lanes[i], block[i])
 
 
-@exact_lean_kernel
+@exact_kernel
 def held_clearance_in(
     scratch: Scratch, postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
 ) -> tuple[float, int]:
@@ -166,7 +166,7 @@ def held_clearance_in(
         return float(_FAR), 0
     for i in range(configuration.shape[0]):
         scratch.configurations[0, i] = configuration[i]
-    pose_into(postures.limb, scratch.limb, scratch.configurations, int(_ONE), int(_FIRST), segments)
+    pose_into(postures.limb, scratch.limb, scratch.configurations, _ONE, _FIRST, segments)
     total = end - begin
     for n in range(total):
         sample = (begin + n) * _STRIDE

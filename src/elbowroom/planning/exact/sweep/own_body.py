@@ -14,7 +14,6 @@ from elbowroom.body.dof import DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
-from elbowroom.held import Held, hold
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.memory.row_contents import CONTENT
@@ -51,7 +50,7 @@ class OwnBody:
         self._goals = goals
         self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
         self._prices: dict[int, tuple[Floats, Floats32]] = {}
-        self._foldings: dict[int, tuple[Floats, Held[OwnBodyNodes]]] = {}
+        self._foldings: dict[int, tuple[Floats, OwnBodyNodes]] = {}
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -89,7 +88,7 @@ class OwnBody:
             known = self._prices[side] = postures.configurations, costs
         return known[1]
 
-    def own_body_nodes(self, side: int, postures: Postures) -> Held[OwnBodyNodes]:
+    def own_body_nodes(self, side: int, postures: Postures) -> OwnBodyNodes:
         """What arm `side` is held against with `postures`, for `own_body_costs`, and what was looked at."""
         known = self._foldings.get(side)
         if known is None or known[0] is not postures.configurations:
@@ -106,6 +105,6 @@ class OwnBody:
                 new_row_index(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
                 np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
             )  # fmt: skip
-            known = postures.configurations, hold(own_body_nodes)
+            known = postures.configurations, own_body_nodes
             self._foldings[side] = known
         return known[1]

@@ -9,8 +9,7 @@ from elbowroom.body import posing
 from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
-from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import BLOCK
 from elbowroom.planning.exact.memory.row_contents import is_natural, set_contents
@@ -73,7 +72,7 @@ def touches_body(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _spheres(lanes: Floats32, balls: Floats) -> Floats:
     """The balls of the axes (C, 4, B): centre and radius without the capsule's own."""
     out = np.empty((balls.shape[1], 4, balls.shape[0]))
@@ -85,7 +84,7 @@ def _spheres(lanes: Floats32, balls: Floats) -> Floats:
     return out
 
 
-@exact_lean_kernel
+@exact_kernel
 def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> bool:
     """Whether a segment (6,) comes within `least` of any ball (4, B); which of them, into `near` (B,)."""
     ax, ay, az = float(axis[0]), float(axis[1]), float(axis[2])
@@ -103,7 +102,7 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 @exact_kernel
 def own_body_costs(
-    own_body_nodes: Held[OwnBodyNodes],
+    own_body_nodes: OwnBodyNodes,
     goals: Floats,
     previous: Floats,
     start: Floats,
@@ -118,7 +117,7 @@ def own_body_costs(
     are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states` (n+1, 7). Where they are as
     the goals of all groups, `walk` (n+1, 11), have them the arm's goal is free.
     """
-    it = own_body_nodes.value
+    it = own_body_nodes
     width = it.resting.shape[0]
     own, needed, _ = extra_nodes(it.configurations, it.columns, it.step, goals, previous, start, settled)
     natural, contents = np.empty(own.shape[0], np.bool_), np.empty((own.shape[0], it.known.rows.shape[1]), np.int64)
@@ -148,7 +147,7 @@ def own_body_costs(
     return costs
 
 
-@exact_lean_kernel
+@exact_kernel
 def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
     """Write down the key times `rows` at which more is asked for than the goal in a natural walk; their number."""
     count = 0
@@ -162,7 +161,7 @@ def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
     return count
 
 
-@exact_lean_kernel
+@exact_kernel
 def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
     """Write down the `places` (R,) of what surrounds the arm at `rows` (R,), and the `fresh` ones; their number."""
     if known.taken[0] + rows.shape[0] > known.rows.shape[0]:
@@ -177,7 +176,7 @@ def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indic
     return count
 
 
-@inlined
+@helper
 def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
     """Keep what surrounds the arm at `fresh` rows, and which postures come too near to it."""
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
@@ -196,7 +195,7 @@ def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, pl
             it.marks[place, v] = marks[v]
 
 
-@exact_lean_kernel
+@exact_kernel
 def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn: Floats, out: Floats32) -> None:
     """Some capsules (P,) of posture `n` of (C, 6, N) as seen from a frame, into `out` (P, 6)."""
     x, y, z, w = -turn[0], -turn[1], -turn[2], turn[3]
@@ -211,7 +210,7 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
             out[p, e + 2] = c + w * tz + x * ty - y * tx
 
 
-@inlined
+@helper
 def _own_gaps(it: OwnBodyNodes, own: Floats, rows: Indices, places: Indices) -> Floats32:
     """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
     body, extra, size = it.body, own.shape[1], own.shape[2]

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.whole_body import whole_body
-from elbowroom.held import Held, hold
-from elbowroom.jit import exact_inner_kernel, exact_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_contents, set_millionths
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
 from elbowroom.planning.exact.sweep.own_samples import OwnParts, least_gaps
@@ -41,9 +40,9 @@ class OwnMotion:
     """One avatar's motion among its own parts."""
 
     def __init__(self, model: BodyModel, pairs: SelfPairs) -> None:
-        self._parts = hold(OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits))
+        self._parts = OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits)
         known = new_row_index(ROOM, 2 * (CONTENT + 2 * LOCAL))
-        self._seen = hold(Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM)))
+        self._seen = Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM))
 
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
         """The arm, 0 or 1, that runs into the body in each interval (n,) of a shown motion, or -1.
@@ -57,11 +56,11 @@ class OwnMotion:
 
 @exact_kernel
 def _contacts(
-    parts: Held[OwnParts], seen: Held[Seen], states: Floats, keys: Floats, rates: Floats, goals: Floats,
+    parts: OwnParts, seen: Seen, states: Floats, keys: Floats, rates: Floats, goals: Floats,
     interval: float, ahead: int,
 ) -> Indices:  # fmt: skip
     """See `OwnMotion.contacts`."""
-    it, out = seen.value, np.empty(keys.shape[0] - 1, np.int64)
+    it, out = seen, np.empty(keys.shape[0] - 1, np.int64)
     out[:] = -1
     chosen = _beside(keys, goals)
     if not chosen.shape[0]:
@@ -94,7 +93,7 @@ def _contacts(
     return out
 
 
-@exact_inner_kernel
+@exact_kernel
 def _beside(keys: Floats, goals: Floats) -> Indices:
     """The intervals (K,) at whose ends the upper body (n+1, 11) is not as the goals (n+1, 11) have it."""
     chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0])
@@ -106,7 +105,7 @@ def _beside(keys: Floats, goals: Floats) -> Indices:
     return chosen[:count]
 
 
-@exact_lean_kernel
+@exact_kernel
 def _touches(gap: float, ahead: int) -> bool:
     """Whether a gap of parts is too little, so many key intervals ahead."""
     return bool(gap < _UNSEEN * (1.0 if ahead < _SOON else _AFAR))

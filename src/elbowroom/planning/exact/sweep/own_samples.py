@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
-from elbowroom.held import Held
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel, inlined, leaf
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.axis_distances import clear_pairs
 from elbowroom.planning.root.path import interpolate_root
 
@@ -44,16 +43,16 @@ class OwnParts(NamedTuple):
     limits: Floats32
 
 
-@inlined
+@helper
 def least_gaps(
-    parts: Held[OwnParts], states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices
+    parts: OwnParts, states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices
 ) -> Floats32:
     """The least gaps (3, K) of left arm and body, right arm and body, and both arms, in chosen intervals (K,).
 
     Upper bodies lead through `keys` (n+1, 11) with `rates` (n+1, 11), roots through `states` (n+1, 7). A gap of less
     than 0.4 mm is the least of all moments; of more room it is the least that was seen.
     """
-    own, count = parts.value, chosen.shape[0]
+    own, count = parts, chosen.shape[0]
     least, at = np.empty((3, count), np.float32), np.empty((count, MOMENTS + 1), np.int64)
     samples = np.empty((at.size, 2), np.int64)
     segments = np.empty((at.size, own.body.joints.shape[0], 6), np.float32)
@@ -80,7 +79,7 @@ def least_gaps(
     return least
 
 
-@exact_lean_kernel
+@exact_kernel
 def _first_looks(chosen: Indices, at: Indices, samples: Indices) -> int:
     """Write down the looks (M, 2), an interval's place among the chosen and a moment, that come first; their number."""
     made = 0
@@ -93,7 +92,7 @@ def _first_looks(chosen: Indices, at: Indices, samples: Indices) -> int:
     return made
 
 
-@exact_lean_kernel
+@exact_kernel
 def _closer_looks(
     own: OwnParts,
     segments: Floats32,
@@ -122,7 +121,7 @@ def _closer_looks(
     return made
 
 
-@exact_inner_kernel
+@exact_kernel
 def _shown(
     states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices, samples: Indices
 ) -> tuple[Floats, Floats]:
@@ -140,7 +139,7 @@ def _shown(
     return postures, roots
 
 
-@inlined
+@helper
 def _measure(
     capsules: Floats32,
     first: Indices,
@@ -176,7 +175,7 @@ def _measure(
         near[p] = nearest < _FAR
 
 
-@inlined
+@helper
 def _clear_between(
     first: Indices,
     second: Indices,
@@ -206,7 +205,7 @@ def _clear_between(
     return True
 
 
-@leaf
+@helper
 def _second_difference(segments: Floats32, c: int, before: int, at: int, after: int) -> float:
     """How far the ends of capsule `c` at a look are from halfway between two others, twice that, metres."""
     most = 0.0
@@ -218,7 +217,7 @@ def _second_difference(segments: Floats32, c: int, before: int, at: int, after: 
     return float(np.sqrt(most))
 
 
-@leaf
+@helper
 def _kept_apart(segments: Floats32, one: int, other: int, at: int, then: int) -> float:
     """How wide a gap (metres) planes keep open between the axes of two capsules at both of two looks.
 
@@ -241,13 +240,13 @@ def _kept_apart(segments: Floats32, one: int, other: int, at: int, then: int) ->
     return float(min(here, there) / np.sqrt(max(x * x + y * y + z * z, 1e-18)))
 
 
-@leaf
+@helper
 def _on_axis(segments: Floats32, sample: int, c: int, share: float, i: int) -> float:
     """A coordinate of the point at a share of a capsule's axis."""
     return float(segments[sample, c, i] + share * (segments[sample, c, 3 + i] - segments[sample, c, i]))
 
 
-@leaf
+@helper
 def _least_along(segments: Floats32, sample: int, c: int, x: float, y: float, z: float) -> float:
     """The least of a capsule's axis along a direction."""
     start = segments[sample, c, 0] * x + segments[sample, c, 1] * y + segments[sample, c, 2] * z

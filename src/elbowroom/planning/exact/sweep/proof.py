@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.posing import place_pelvis_into
-from elbowroom.jit import exact_kernel, exact_lean_kernel, inlined
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import admit, find
 from elbowroom.planning.exact.sweep.block_clearances import COMFORT, boxes_around, least_of
@@ -36,7 +36,7 @@ Longs = NDArray[np.int64]
 
 ENOUGH = 4e-4  # metres: proven clearance that counts as free; more than rounding, and than the bob's bend between looks
 _UNKNOWN = -np.inf
-_NONE, _UNPOSED = 0, False  # at first; not yet
+_NONE = plain(0)  # at first
 
 
 class Carrier(NamedTuple):
@@ -51,7 +51,7 @@ class Carrier(NamedTuple):
     waist: Floats  # the waist's way's key; not used where the limb is the waist
 
 
-@exact_lean_kernel
+@exact_kernel
 def _samples(
     scratch: Scratch,
     postures: Postures,
@@ -75,11 +75,11 @@ def _samples(
     if near == 0:
         return 0
     if not posed:
-        pose_into(postures.limb, scratch.limb, scratch.configurations, count, int(_NONE), scratch.segments)
+        pose_into(postures.limb, scratch.limb, scratch.configurations, count, _NONE, scratch.segments)
     return int(held_against(scratch, postures.limb.radii, near, count, places[0], places, turns, out))
 
 
-@exact_lean_kernel
+@exact_kernel
 def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, share: float, levers: Floats) -> float:
     """The bound on the clearance between two looks that found `before` (C,) and `after` (C,).
 
@@ -94,7 +94,7 @@ def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, shar
     return least
 
 
-@inlined
+@helper
 def _frames_between(
     scratch: Scratch, chain: KinematicChain, is_waist: bool, carrier: Carrier, waist: Ends, count: int
 ) -> None:
@@ -118,7 +118,7 @@ def _frames_between(
         compose_into(places, scratch.turns, scratch.stem.places, scratch.stem.turns, count, places, scratch.turns)
 
 
-@exact_lean_kernel
+@exact_kernel
 def _enter(parts: Parts, now: int, n: int, at: float, sample: int, before: Floats32, after: Floats32) -> None:
     """Note a part that is not proven yet."""
     parts.at[now, n], parts.sample[now, n] = at, sample
@@ -127,7 +127,7 @@ def _enter(parts: Parts, now: int, n: int, at: float, sample: int, before: Float
         ends[0, c], ends[1, c] = before[c], after[c]
 
 
-@inlined
+@helper
 def _refined(
     scratch: Scratch,
     postures: Postures,
@@ -144,7 +144,7 @@ def _refined(
     """
     is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], scratch.moves, carrier.sway
     columns, found, parts, shares = scratch.coarse.T, scratch.found.T, scratch.parts, scratch.shares
-    open_parts, now, proven, checks, share = int(_NONE), int(_NONE), np.inf, 0, 1.0
+    open_parts, now, proven, checks, share = _NONE, _NONE, np.inf, 0, 1.0
     for i in range(SWEEP):
         low = _between(columns[i], columns[i + 1], sway[i], moved[i], 1.0, levers)
         if low < ENOUGH:
@@ -154,16 +154,14 @@ def _refined(
             proven = min(proven, low)
     for _ in range(HALVINGS):
         share *= 0.5
-        left = int(_NONE)
+        left = _NONE
         for begin in range(0, open_parts, BLOCK):
             batch = min(BLOCK, open_parts - begin)
             for n in range(batch):
                 shares[n] = parts.at[now, begin + n] + share / SWEEP
             _frames_between(scratch, chain, is_waist, carrier, waist, batch)
             configurations_into(ends, interval, shares, batch, scratch.configurations)
-            checks += _samples(
-                scratch, postures, bool(_UNPOSED), batch, scratch.places, scratch.turns, boxes, scratch.found
-            )
+            checks += _samples(scratch, postures, False, batch, scratch.places, scratch.turns, boxes, scratch.found)
             for n in range(batch):
                 one, i = parts.ends[now, begin + n], parts.sample[now, begin + n]
                 for half in range(2):
@@ -182,7 +180,7 @@ def _refined(
     return 0.0, checks
 
 
-@exact_lean_kernel
+@exact_kernel
 def _set_key(number: int, ends: Ends, key: Floats) -> None:
     """Of a limb's way with the velocities and postures `ends` on the carrier's way `number`."""
     first, velocity, last, next_velocity = ends
@@ -193,7 +191,7 @@ def _set_key(number: int, ends: Ends, key: Floats) -> None:
         key[1 + 2 * size + i], key[1 + 3 * size + i] = last[i], next_velocity[i]
 
 
-@exact_lean_kernel
+@exact_kernel
 def limb_sweep_in(
     scratch: Scratch,
     ways: LimbSweeps,
@@ -219,7 +217,7 @@ def limb_sweep_in(
     configurations_into(ends, interval, scratch.shares, count, scratch.configurations)
     moves_into(ends, interval, SWEEP, scratch.rates, scratch.moves)
     if is_waist:
-        pose_into(postures.limb, scratch.limb, scratch.configurations, count, int(_NONE), scratch.segments)
+        pose_into(postures.limb, scratch.limb, scratch.configurations, count, _NONE, scratch.segments)
         carry(
             chain,
             scratch.limb,

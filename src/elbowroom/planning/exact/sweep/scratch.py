@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_inner_kernel, exact_lean_kernel
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.sweep.block_clearances import (
     ClearanceScratch,
@@ -61,7 +61,7 @@ class Scratch(NamedTuple):
     parts: Parts
 
 
-@exact_inner_kernel
+@exact_kernel
 def new_scratch(postures: Postures, stem: Limb, boxes: int) -> Scratch:
     """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
     limb, scratch = postures.limb, SWEEP << HALVINGS
@@ -71,8 +71,8 @@ def new_scratch(postures: Postures, stem: Limb, boxes: int) -> Scratch:
     spread_balls(postures.balls, spread)
     return Scratch(
         checks,
-        limb_scratch(limb, int(BLOCK)),
-        limb_scratch(stem, int(BLOCK)),
+        limb_scratch(limb, BLOCK),
+        limb_scratch(stem, BLOCK),
         np.empty((boxes, 15)),
         np.empty((boxes, 15)),
         postures.lanes.reshape(postures.lanes.size),
@@ -97,7 +97,7 @@ def new_scratch(postures: Postures, stem: Limb, boxes: int) -> Scratch:
     )
 
 
-@exact_lean_kernel
+@exact_kernel
 def held_against(
     scratch: Scratch,
     radii: Floats32,

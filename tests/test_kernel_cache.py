@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from elbowroom import kernel_sources
+from elbowroom import kernel_cache
 from elbowroom.planning.exact.group import search as group_search
 
 SOURCES = {
@@ -28,9 +28,9 @@ def made(folder: Path) -> Path:
 
 
 def digests(package: Path) -> dict[str, str]:
-    for kept in (kernel_sources.digest_of, kernel_sources._imported, kernel_sources._file, kernel_sources._line):
+    for kept in (kernel_cache.digest_of, kernel_cache._imported, kernel_cache._file, kernel_cache._line):
         kept.cache_clear()
-    return {name: kernel_sources.digest_of(package / name, package) for name in SOURCES}
+    return {name: kernel_cache.digest_of(package / name, package) for name in SOURCES}
 
 
 def test_a_change_reaches_all_that_import_it_and_nothing_else(tmp_path: Path) -> None:
@@ -50,8 +50,8 @@ def test_the_place_of_the_package_says_nothing(tmp_path: Path) -> None:
 
 
 def test_a_kernel_knows_what_it_calls() -> None:
-    sources = kernel_sources.sources_of(Path(group_search.__file__))
-    names = {str(path.relative_to(kernel_sources.PACKAGE).as_posix()) for path in sources}
+    sources = kernel_cache.sources_of(Path(group_search.__file__))
+    names = {str(path.relative_to(kernel_cache.PACKAGE).as_posix()) for path in sources}
     assert {
         "planning/exact/lattice/lattice.py",
         "planning/exact/group/node_costs.py",
@@ -65,7 +65,7 @@ def test_a_kernel_that_is_kept_is_compiled_anew_when_a_constant_elsewhere_has_ch
     """The toy package takes the place of ours, so that its kernels are stamped as ours are."""
     package = made(tmp_path)
     (package / "high/user.py").write_text(
-        "import elbowroom.kernel_sources as sources\n"
+        "import elbowroom.kernel_cache as sources\n"
         "sources.digest_of.__wrapped__.__defaults__ = (sources.Path(__file__).parents[1],)\n"
         "from elbowroom.jit import exact_kernel\n"
         "from toy.low.constants import SIZE\n\n\n"
