@@ -84,6 +84,11 @@ export class Picture {
     else this.avatar.show(message, file, disposeAvatarFile);
   }
 
+  /** Metres from the avatar's soles to the top of its head. */
+  get height(): number {
+    return this.message?.height ?? DEFAULT_EYE;
+  }
+
   setPlan(plan: Plan | null): void {
     this.overlays.setPlan(plan);
   }
@@ -96,6 +101,7 @@ export class Picture {
     camera.position.set(...this.camera.position);
     camera.lookAt(...this.camera.target);
     camera.updateMatrixWorld();
+    this.overlays.seenBy(camera);
     this.stage.render();
     this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
   }
@@ -133,6 +139,7 @@ export class Picture {
     this.world.clearSight(this.camera.position, [this.camera.target, knees], dt);
     this.avatar.fade(this.camera.avatarOpacity);
     this.stage.follow(pose.x, pose.z);
+    this.world.follow(pose.x, pose.z);
     this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.drawCapsules ?? false });
   }
 

@@ -12,8 +12,9 @@ export interface AppState {
   readonly framesDrawn: number;
   readonly fps: number;
   readonly root: { readonly x: number; readonly z: number; readonly heading: number } | null;
-  /** Where the avatar stands in the view, CSS pixels. */
+  /** Where the avatar's feet and the top of its head are in the view, CSS pixels. */
   readonly feet: readonly [number, number] | null;
+  readonly head: readonly [number, number] | null;
   readonly simTime: number;
   readonly acknowledged: number;
   readonly sent: number;
@@ -68,6 +69,7 @@ function snapshot(app: App): AppState {
     fps: app.stats.fps,
     root: pose && { x: pose.x, z: pose.z, heading: pose.heading },
     feet: pose && picture.onScreen([pose.x, pose.y, pose.z]),
+    head: pose && picture.onScreen([pose.x, pose.y + picture.height, pose.z]),
     simTime: pose?.simTime ?? 0,
     acknowledged: session.newestPose?.acknowledged ?? 0,
     sent: controls.lastSequence,

@@ -4,7 +4,7 @@ import { damp, dampAngle } from "./damping";
 import { backwards, NO_SHIFT, roomierView, type ViewShift } from "./roomier_view";
 import { cameraReach, distanceToBoxes, pointAlong, type CameraObstacles, type Vec3 } from "./spring_arm";
 
-const DEFAULT_PITCH = 0.3;
+const DEFAULT_PITCH = 0.24;
 const MIN_PITCH = -0.25;
 const MAX_PITCH = 1.35;
 const MIN_WANTED = 1.2;

@@ -1,27 +1,23 @@
 /** Many capsules in few draw calls: three instanced parts (a tube and two half spheres), placed by their end points. */
 
 import {
-  CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, MeshLambertMaterial,
-  Quaternion, SphereGeometry, Vector3, type Material,
+  CylinderGeometry, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion,
+  SphereGeometry, Vector3, type Material,
 } from "three";
+import { MarkMaterial, type MarkLook } from "./capsule_material";
 
 const UP = new Vector3(0, 1, 0);
 
-export interface CapsuleLook {
-  readonly color: number;
-  readonly opacity: number;
-  /** Shaded like a body instead of flat like a mark. */
-  readonly solid?: boolean;
-  /** Drawn over everything. */
-  readonly onTop?: boolean;
-}
+/** A mark that one sees through, or a solid body of some colour. */
+export type CapsuleLook = MarkLook | { readonly solid: number };
 
 export class CapsuleSet {
   readonly group = new Group();
   private readonly tubes: InstancedMesh;
   private readonly tops: InstancedMesh;
   private readonly bottoms: InstancedMesh;
-  private readonly material: MeshBasicMaterial | MeshLambertMaterial;
+  private readonly material: MarkMaterial | MeshLambertMaterial;
+  private readonly shares: InstancedBufferAttribute;
   private readonly start = new Vector3();
   private readonly end = new Vector3();
   private readonly middle = new Vector3();
@@ -32,21 +28,29 @@ export class CapsuleSet {
 
   /** @param capacity the most capsules at once */
   constructor(private readonly capacity: number, look: CapsuleLook) {
-    const options = {
-      color: look.color, transparent: look.opacity < 1, opacity: look.opacity, depthWrite: look.opacity === 1,
-      depthTest: !look.onTop,
-    };
-    this.material = look.solid ? new MeshLambertMaterial(options) : new MeshBasicMaterial({ ...options, toneMapped: false });
+    const solid = "solid" in look;
+    this.material = solid ? new MeshLambertMaterial({ color: look.solid }) : new MarkMaterial(look);
+    this.shares = new InstancedBufferAttribute(new Float32Array(capacity).fill(1), 1);
     this.tubes = instanced(new CylinderGeometry(1, 1, 1, 14, 1, true), this.material, capacity);
     this.tops = instanced(halfSphere(0), this.material, capacity);
     this.bottoms = instanced(halfSphere(Math.PI / 2), this.material, capacity);
-    this.group.renderOrder = look.onTop ? 6 : 4;
-    for (const part of this.parts) part.castShadow = look.solid === true;
+    this.group.renderOrder = !solid && look.onTop ? 6 : 4;
+    for (const part of this.parts) {
+      part.castShadow = solid;
+      part.geometry.setAttribute("share", this.shares);
+    }
     this.group.add(...this.parts);
   }
 
-  setColor(color: number): void {
-    this.material.color.set(color);
+  /** Says how far the avatar is from the viewer, metres: ghosts give way in front of it. */
+  setAvatarDepth(metres: number): void {
+    if (this.material instanceof MarkMaterial) this.material.setAvatarDepth(metres);
+  }
+
+  /** Gives each capsule, in the order of `place`, a share of the opacity of ghosts. */
+  setShares(share: (i: number) => number): void {
+    for (let i = 0; i < this.capacity; i++) this.shares.setX(i, share(i));
+    this.shares.needsUpdate = true;
   }
 
   /**

@@ -1,17 +1,19 @@
 /** Draws what the planner knows: the collision body, the way ahead, ghosts, postures and the nearest distance. */
 
-import { Group, type PerspectiveCamera } from "three";
+import { Group, Vector3, type PerspectiveCamera } from "three";
 import type { PreparedBox } from "../camera/spring_arm";
 import type { AvatarCapsule, Plan, Status } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
 import type { Palette } from "../stage/palette";
 import { CapsuleSet } from "./capsule_set";
+import { ghostShare } from "./ghost_share";
 import { NearestLine } from "./nearest_line";
 import type { OverlayName } from "./overlay_names";
 import { PathRibbon } from "./path_ribbon";
 import { capsuleTouches } from "./touching";
 
 const MOST_GHOSTS = 9;
+const BREAST = 1.1;
 
 interface Drawings {
   readonly body: CapsuleSet;
@@ -44,6 +46,7 @@ export class OverlayDrawing {
   private plan: Plan | null = null;
   private planShown: string | null = null;
   private touchingNames: readonly string[] = [];
+  private readonly avatarAt = new Vector3();
 
   constructor(private readonly palette: () => Palette, private readonly label: HTMLElement) {
     this.drawings = this.create(0);
@@ -87,6 +90,12 @@ export class OverlayDrawing {
     this.drawBody(moment);
     this.drawNearest(moment);
     this.drawPlan(moment.shown);
+    this.fadeGhosts(moment.pose);
+  }
+
+  /** The picture is about to be drawn by this camera. */
+  seenBy(camera: PerspectiveCamera): void {
+    this.drawings.ghosts.setAvatarDepth(-this.avatarAt.clone().applyMatrix4(camera.matrixWorldInverse).z);
   }
 
   placeLabels(camera: PerspectiveCamera, width: number, height: number): void {
@@ -138,15 +147,24 @@ export class OverlayDrawing {
     chosen.place(plan && shown.has("goal") ? plan.chosen : [], radius);
   }
 
+  /** Ghosts that stand where the avatar does now, and those far ahead, are weaker. */
+  private fadeGhosts({ x, y, z }: ShownPose): void {
+    const { plan } = this;
+    this.avatarAt.set(x, y + BREAST, z);
+    if (!plan || this.capsules.length === 0) return;
+    const shares = plan.root.map(([gx, gz]) => ghostShare(Math.hypot(gx - x, gz - z)));
+    this.drawings.ghosts.setShares((i) => shares[Math.floor(i / this.capsules.length)] ?? 0);
+  }
+
   private create(count: number): Drawings {
     const p = this.palette();
     const drawings: Drawings = {
-      body: new CapsuleSet(count, { color: p.capsule, opacity: 0.42 }),
-      solidBody: new CapsuleSet(count, { color: p.accent, opacity: 1, solid: true }),
-      touching: new CapsuleSet(count, { color: p.touching, opacity: 0.72, onTop: true }),
-      ghosts: new CapsuleSet(count * MOST_GHOSTS, { color: p.ghost, opacity: 0.13 }),
-      goal: new CapsuleSet(count, { color: p.goal, opacity: 0.4 }),
-      chosen: new CapsuleSet(count, { color: p.chosen, opacity: 0.45 }),
+      body: new CapsuleSet(count, { color: p.capsule, opacity: 0.7, middle: 0.1 }),
+      solidBody: new CapsuleSet(count, { solid: p.accent }),
+      touching: new CapsuleSet(count, { color: p.touching, opacity: 0.72, middle: 1, onTop: true }),
+      ghosts: new CapsuleSet(count * MOST_GHOSTS, { color: p.ghost, opacity: 0.34, middle: 0.25, ghost: true }),
+      goal: new CapsuleSet(count, { color: p.goal, opacity: 0.7, middle: 0.06 }),
+      chosen: new CapsuleSet(count, { color: p.chosen, opacity: 0.7, middle: 0.06 }),
       path: new PathRibbon(p.path),
       nearest: new NearestLine(p.nearest, this.label),
     };

@@ -1,16 +1,18 @@
-/** The floor: a wide field that fades into the horizon, and the scene's own slab with a metre grid on it. */
+/** The floor: a field without an end that fades into the horizon, and on it the scene's own slab; both with a metre grid. */
 
 import {
-  CanvasTexture, CircleGeometry, Color, Group, LinearFilter, LinearMipmapNearestFilter, Mesh, MeshBasicMaterial,
+  CanvasTexture, Group, LinearFilter, LinearMipmapLinearFilter, LinearMipmapNearestFilter, Mesh, MeshBasicMaterial,
   MeshLambertMaterial, MultiplyBlending, PlaneGeometry, RepeatWrapping, SRGBColorSpace, type BufferGeometry,
 } from "three";
 import type { PreparedBox } from "../camera/spring_arm";
 import { drawContactShadows } from "./contact_shadows";
+import { FIELD_REACH, FIELD_TILE, fieldMiddle } from "./field";
 import type { Palette } from "./palette";
 
 const TILE_METRES = 5;
 const TILE_PIXELS = 640;
-const FIELD_RADIUS = 90;
+const FIELD_TILE_PIXELS = 512;
+const FIELD_SQUARES = FIELD_TILE / TILE_METRES; // of alternating tone along a side of the field's tile
 const SHADOW_PIXELS_PER_METRE = 48;
 const SHADOW_MAX_PIXELS = 1536;
 
@@ -18,6 +20,12 @@ type FloorMaterial = MeshLambertMaterial | MeshBasicMaterial;
 
 export class Ground {
   readonly group = new Group();
+  private field: Mesh | null = null;
+
+  /** Brings the field along, in whole tiles: its lines stay where they are. */
+  follow(x: number, z: number): void {
+    this.field?.position.setX(fieldMiddle(x)).setZ(fieldMiddle(z));
+  }
 
   /** Lays the floor anew. `width` along x and `depth` along z in metres, round `center` (x, z). */
   lay(
@@ -30,24 +38,25 @@ export class Ground {
     if (rich) {
       this.add(plane(), new MeshLambertMaterial({ map: gridTexture(palette, width, depth, center) }), center, 0, 0);
       this.add(plane(), multiplied(shadows), center, 0.004, 1);
-      this.add(new CircleGeometry(FIELD_RADIUS, 64), new MeshLambertMaterial({ color: palette.field }), center, -0.012, 0.5);
     } else {
       this.add(plane(), unlit(palette, paintedFloor(palette, shadows, width, depth, center)), center, 0, 0);
-      const field = unlit(palette, null);
-      field.color.multiply(new Color(palette.field));
-      this.add(new CircleGeometry(FIELD_RADIUS, 64), field, center, -0.012, 0.5);
     }
+    const map = fieldTexture(palette, rich);
+    const field = new PlaneGeometry(2 * FIELD_REACH, 2 * FIELD_REACH);
+    this.field = this.add(field, rich ? new MeshLambertMaterial({ map }) : unlit(palette, map), [0, 0], -0.012, 0.5);
+    this.follow(...center);
   }
 
   private add(
     geometry: BufferGeometry, material: FloorMaterial, center: readonly [number, number], height: number, order: number,
-  ): void {
+  ): Mesh {
     const mesh = new Mesh(geometry, material);
     mesh.rotation.x = -Math.PI / 2;
     mesh.position.set(center[0], height, center[1]);
     mesh.receiveShadow = true;
     mesh.renderOrder = order;
     this.group.add(mesh);
+    return mesh;
   }
 
   private clear(): void {
@@ -62,7 +71,7 @@ export class Ground {
 }
 
 /** A flat floor without shadows has one brightness all over, so the cheap one is not lit but painted with it. */
-function unlit(palette: Palette, map: CanvasTexture | null): MeshBasicMaterial {
+function unlit(palette: Palette, map: CanvasTexture): MeshBasicMaterial {
   return new MeshBasicMaterial({ color: palette.floorLight, map, toneMapped: false });
 }
 
@@ -81,6 +90,29 @@ function shadowScale(width: number, depth: number): number {
   return Math.min(SHADOW_PIXELS_PER_METRE, SHADOW_MAX_PIXELS / Math.max(width, depth));
 }
 
+/** The field's tile: squares of two tones with a faint metre grid; its corners lie on whole multiples of its size. */
+function fieldTexture(palette: Palette, rich: boolean): CanvasTexture {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = FIELD_TILE_PIXELS;
+  const pen = canvas.getContext("2d");
+  if (pen) {
+    const square = FIELD_TILE_PIXELS / FIELD_SQUARES;
+    for (let i = 0; i < FIELD_SQUARES * FIELD_SQUARES; i++) {
+      const [column, row] = [i % FIELD_SQUARES, Math.floor(i / FIELD_SQUARES)];
+      pen.fillStyle = palette.field[((column + row) % 2) as 0 | 1];
+      pen.fillRect(column * square, row * square, square, square);
+    }
+    drawLines(pen, palette, FIELD_TILE_PIXELS, FIELD_TILE, [2, 3]);
+  }
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  texture.repeat.setScalar((2 * FIELD_REACH) / FIELD_TILE);
+  texture.minFilter = rich ? LinearMipmapLinearFilter : LinearMipmapNearestFilter;
+  texture.anisotropy = rich ? 8 : 1;
+  return texture;
+}
+
 /** The tile of the metre grid; it repeats every `TILE_METRES`. */
 function drawTile(palette: Palette): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
@@ -89,19 +121,26 @@ function drawTile(palette: Palette): HTMLCanvasElement {
   if (!pen) return canvas;
   pen.fillStyle = palette.slab;
   pen.fillRect(0, 0, TILE_PIXELS, TILE_PIXELS);
-  const metre = TILE_PIXELS / TILE_METRES;
-  for (let i = 0; i <= TILE_METRES; i++) {
+  drawLines(pen, palette, TILE_PIXELS, TILE_METRES, [3, 5]);
+  return canvas;
+}
+
+/** A line every metre, a bold one every `TILE_METRES`. */
+function drawLines(
+  pen: CanvasRenderingContext2D, palette: Palette, pixels: number, metres: number, widths: readonly [fine: number, bold: number],
+): void {
+  const metre = pixels / metres;
+  for (let i = 0; i <= metres; i++) {
     const bold = i % TILE_METRES === 0;
     pen.strokeStyle = bold ? palette.gridBold : palette.gridFine;
-    pen.lineWidth = bold ? 5 : 3;
+    pen.lineWidth = bold ? widths[1] : widths[0];
     pen.beginPath();
     pen.moveTo(i * metre, 0);
-    pen.lineTo(i * metre, TILE_PIXELS);
+    pen.lineTo(i * metre, pixels);
     pen.moveTo(0, i * metre);
-    pen.lineTo(TILE_PIXELS, i * metre);
+    pen.lineTo(pixels, i * metre);
     pen.stroke();
   }
-  return canvas;
 }
 
 /** The grid as a repeating texture whose lines lie on whole metres of the world. */

@@ -6,7 +6,10 @@ export interface Palette {
   readonly skyTop: number;
   readonly horizon: number;
   readonly skyGround: number;
-  readonly field: number;
+  /** Far hills along the horizon. */
+  readonly hills: number;
+  /** The open field round a scene, in two tones that change every few metres. */
+  readonly field: readonly [string, string];
   readonly slab: string;
   readonly gridFine: string;
   readonly gridBold: string;
@@ -22,6 +25,8 @@ export interface Palette {
   readonly exposure: number;
   readonly obstacles: readonly number[];
   readonly accent: number;
+  /** The finish: light and dark. */
+  readonly banner: readonly [string, string];
   readonly path: number;
   readonly ghost: number;
   readonly goal: number;
@@ -37,7 +42,8 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     skyTop: 0x9db9c7,
     horizon: 0xe9e7e0,
     skyGround: 0xd8d5cc,
-    field: 0xdcd8ce,
+    hills: 0xb3bdb8,
+    field: ["#dcd8ce", "#d3cfc3"],
     slab: "#f2efe8",
     gridFine: "rgba(80, 72, 58, 0.13)",
     gridBold: "rgba(80, 72, 58, 0.26)",
@@ -52,6 +58,7 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     exposure: 1.0,
     obstacles: [0xc98a72, 0xd9b978, 0x8fa893, 0x7f97ab, 0xa88da2, 0xb99f8c],
     accent: 0x17756c,
+    banner: ["#fbf9f4", "#23302e"],
     path: 0x17756c,
     ghost: 0x2c6f93,
     goal: 0xc98a12,
@@ -64,7 +71,8 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     skyTop: 0x0d141f,
     horizon: 0x2a3546,
     skyGround: 0x1b222d,
-    field: 0x272e38,
+    hills: 0x1f2836,
+    field: ["#272e38", "#2c343f"],
     slab: "#3a424e",
     gridFine: "rgba(190, 210, 235, 0.055)",
     gridBold: "rgba(190, 210, 235, 0.13)",
@@ -79,6 +87,7 @@ export const PALETTES: Readonly<Record<Theme, Palette>> = {
     exposure: 1.0,
     obstacles: [0xb27460, 0xbd9a5a, 0x78917f, 0x66809a, 0x8d7489, 0x9c7f6c],
     accent: 0x4fc7b8,
+    banner: ["#e3e9ee", "#18211f"],
     path: 0x4fc7b8,
     ghost: 0x6fb5df,
     goal: 0xf0b64a,

@@ -5,6 +5,7 @@ import {
   PMREMGenerator, Scene, Vector3, WebGLRenderer, type Texture,
 } from "three";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
+import { HAZE } from "./field";
 import { PALETTES, type Palette, type Theme } from "./palette";
 import type { Quality } from "./quality";
 import { Sky } from "./sky";
@@ -72,7 +73,7 @@ export class Stage {
     const palette = PALETTES[theme];
     this.palette = palette;
     this.sky.paint(palette);
-    this.scene.fog = new Fog(new Color(palette.horizon), 10, 42);
+    this.scene.fog = new Fog(new Color(palette.horizon), ...HAZE);
     this.sun.color.set(palette.keyLight);
     this.sun.intensity = palette.keyIntensity;
     this.hemisphere.color.set(palette.skyLight);

@@ -56,6 +56,11 @@ export class World {
     });
   }
 
+  /** Brings the open field along with the avatar. */
+  follow(x: number, z: number): void {
+    this.ground.follow(x, z);
+  }
+
   /** Makes boxes see-through that stand between the camera and the avatar. */
   clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
