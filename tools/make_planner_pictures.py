@@ -17,7 +17,6 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.pauses import finished
 from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
@@ -81,7 +80,7 @@ def slice_table(humanoid: Humanoid) -> str:
     """Left arm in scene D: key times across, postures down, the nearest to hanging on top."""
     body, path = UpperBodyPlanner(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
-    ways = finished(dressing.apart()).ways
+    ways = dressing.apart().ways
     way, points_of = ways[1], dressing.caches.group(DofGroup.LEFT_ARM).postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
@@ -122,11 +121,11 @@ def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArra
     path = walk(12, 0.0)
     for seed in range(TRIES):
         dressing = dressing_of(UpperBodyPlanner(humanoid, random_scene(seed), ExactSettings()), path)
-        alone = finished(dressing.apart())
+        alone = dressing.apart()
         if alone.failed is None or not alone.ways:
             continue
         step = dressing.joint_step(alone.ways[0])
-        answer = finished(step.search())
+        answer = step.search()
         if len(answer.nodes):
             return dressing, step, answer.nodes
     raise SystemExit(f"no scene of {TRIES} needs the joint step")

@@ -12,7 +12,6 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.plan import farther
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
@@ -133,56 +132,13 @@ def test_who_is_elsewhere_or_wants_something_else_is_planned_for_anew(otherwise,
 
     def query_under_way() -> MotionQuery:
         query = first_query()._replace(root=scene.start)
-        for _ in range(5):
+        for _ in range(4):
             query = after(query, planner.plan_motion(roots, query))
-        return query  # when its plan has just been made longer
+        return query  # while its plan is still long enough
 
     assert planner.plan_motion(roots, query_under_way()).local.nodes == 0
     planner.reset()
     assert planner.plan_motion(roots, otherwise(query_under_way())).local.nodes > 0
-
-
-@pytest.mark.parametrize("part", [0.0, np.inf])
-def test_a_plan_made_longer_in_parts_is_the_one_made_at_once(
-    part: float, humanoid: Humanoid, posts: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def walked() -> list[Motion]:
-        planner, roots, query, motions = ExactPlanner(humanoid, posts), RootPlanner(humanoid, posts), first_query(), []
-        for _ in range(22):  # the last one needs what was made longer
-            motions.append(planner.plan_motion(roots, query))
-            query = after(query, motions[-1])
-        return motions
-
-    in_parts = walked()
-    monkeypatch.setattr(farther, "_PART", part)  # 0: nothing before it is needed; infinite: all as soon as it can be
-    at_once = walked()
-    for one, other in zip(in_parts, at_once, strict=True):
-        assert np.array_equal(one.local.configurations, other.local.configurations)
-        assert np.array_equal(one.root.path.states, other.root.path.states)
-    searched = [[motion.local.nodes for motion in motions[1:]] for motions in (in_parts, at_once)]
-    assert sum(searched[0]) == sum(searched[1])
-    assert max(searched[0][1:]) < max(searched[1][1:])
-
-
-def test_a_plan_for_something_else_calls_off_what_was_begun(
-    humanoid: Humanoid, posts: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(farther, "_PART", 1.0)  # so that there is always something begun
-    states = np.zeros((9, 7))
-    states[:, 1], states[:, 3] = 0.1 * np.arange(9.0), 0.7
-    elsewhere, rng = RootPath(0.0, T, states), np.random.default_rng(0)
-
-    def walked(*, disturbed: bool) -> list[Motion]:
-        planner, roots, query, motions = ExactPlanner(humanoid, posts), RootPlanner(humanoid, posts), first_query(), []
-        for _ in range(14):
-            motions.append(planner.plan_motion(roots, query))
-            query = after(query, motions[-1])
-            if disturbed:
-                planner.plan(elsewhere, first_query().upper, rng)
-        return motions
-
-    for one, other in zip(walked(disturbed=False), walked(disturbed=True), strict=True):
-        assert np.array_equal(one.local.configurations, other.local.configurations)
 
 
 def test_while_something_moves_every_plan_is_new(humanoid: Humanoid, posts: Scene) -> None:

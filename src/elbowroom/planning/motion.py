@@ -24,6 +24,13 @@ class SupersededError(Exception):
     """Nobody waits for the motion any more."""
 
 
+GoOn = Callable[[], None]  # called now and then in a search; raises `SupersededError` to call it off
+
+
+def keep_going() -> None:
+    """Nobody calls the search off."""
+
+
 def _wanted() -> bool:
     return False
 

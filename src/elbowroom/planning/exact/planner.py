@@ -17,9 +17,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.memory.previous_plan import Start
 from elbowroom.planning.exact.plan.attempts import AttemptOrder, same_place
 from elbowroom.planning.exact.plan.extension import OngoingPlan, extended, rest_of, settled
-from elbowroom.planning.exact.plan.farther import AheadOfTime
-from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, costing, first_part, stands
-from elbowroom.planning.exact.plan.pauses import Pausing, finished
+from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans
 from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner, UpperPlan
 from elbowroom.planning.exact.settings import ExactSettings
@@ -62,7 +60,6 @@ class ExactPlanner:
         self._recent = RecentPlans()
         self._stand: StandingPlan | None = None
         self._walk: OngoingPlan | None = None
-        self._farther: AheadOfTime | None = None
         self._blockade: Blockade | None = None
         self._turns = AttemptOrder()
         self._body.reset()
@@ -70,7 +67,6 @@ class ExactPlanner:
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
-        self._farther = None
         return self._body.plan(path, Start(start, np.zeros_like(start))).plan
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
@@ -79,7 +75,6 @@ class ExactPlanner:
         left = self._walk.left(query) if alone and self._walk is not None else None
         whole = None if left is None else self._gone_on(left, root_planner, query)
         if whole is None:
-            self._farther = None
             whole = self._answered(left, root_planner, query, alone=alone)
             lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
             self._walk = OngoingPlan(query, whole) if alone and lasts else None
@@ -113,44 +108,32 @@ class ExactPlanner:
         if not _is_commanded(left, root_planner):
             return left if known >= horizon - self._spare(query) else None
         if known >= horizon:
-            self._farther = self._farther or AheadOfTime(query, self._extending(left, root_planner, query))
-            self._farther.do_part(query.go_on)
-            return costing(left, self._farther.costs())
-        begun, self._farther = self._farther, None
-        found = None if begun is None else self._taken_on(begun, query)
-        if found is not None or (begun is not None and begun.searched):
-            return found
-        return self._taken_on(AheadOfTime(query, self._extending(left, root_planner, query)), query)
+            return left
+        whole = self._prolonged(left, root_planner, query)
+        self._walk = None if whole is None else OngoingPlan(query, whole)
+        return whole
 
-    def _taken_on(self, farther: AheadOfTime, query: MotionQuery) -> FullPlan | None:
-        """What was found farther on becomes the walk; None if there is nothing."""
-        self._walk = farther.walk(query.go_on)
-        left = None if self._walk is None else self._walk.left(query)
-        return None if left is None else costing(left, farther.costs())
-
-    def _extending(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> Pausing[FullPlan | None]:
-        """What is left of a walk, prolonged to where it has to lead when it has become too short."""
-        near = max(left.root.path.horizon + 1, self._horizon(query))
+    def _prolonged(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
+        """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
+        near = self._horizon(query)
         far = near + self._spare(query)
         root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:
             return None
-        whole = yield from self._extended(left, root, query, Effort.QUICK)
-        if whole is None:
-            shorter = root.along(root.path.until(near))
-            whole = yield from self._extended(left, shorter, query, Effort.QUICK)
-        return whole
+        shorter = root.along(root.path.until(near))
+        return self._extended(left, root, query, Effort.QUICK) or self._extended(left, shorter, query, Effort.QUICK)
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)
 
-    def _extended(self, left: FullPlan, root: RootPlan, query: MotionQuery, effort: Effort) -> Pausing[FullPlan | None]:
+    def _extended(self, left: FullPlan, root: RootPlan, query: MotionQuery, effort: Effort) -> FullPlan | None:
         """What is left of a walk with a new end on a path that goes on from it; None if that has no way."""
         previous = settled(left, root.path, round(self.settings.revisited / root.path.interval))
         if previous is None:
             return None
         path = rest_of(root.path, previous.at)
-        rest = yield from self._body.planning(path, previous.begins, self._recent.previous(path), query.others, effort)
+        last = self._recent.previous(path)
+        rest = self._body.plan(path, previous.begins, last, query.others, effort, query.go_on)
         return extended(previous, rest, root) if rest.reached == path.horizon else None
 
     def _whole(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery) -> FullPlan:
@@ -167,7 +150,7 @@ class ExactPlanner:
             if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
                 refined = None
                 if left is not None:
-                    refined = finished(self._extended(left, root, query, Effort.REFINED), query.go_on)
+                    refined = self._extended(left, root, query, Effort.REFINED)
                 if refined is not None:
                     self._turns.found()
                     return refined
@@ -256,10 +239,8 @@ class ExactPlanner:
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort, *, harsh: bool = False) -> UpperPlan:
-        query.go_on()
         begins = Start(query.upper, query.velocity, harsh=harsh)
-        work = self._body.planning(path, begins, self._recent.previous(path), query.others, effort)
-        return finished(work, query.go_on)
+        return self._body.plan(path, begins, self._recent.previous(path), query.others, effort, query.go_on)
 
 
 def _is_commanded(whole: FullPlan, root_planner: RootPlanner) -> bool:

@@ -20,7 +20,6 @@ from elbowroom.planning.exact.lattice.postures import postures_of
 from elbowroom.planning.exact.memory.own_contacts import rule_out_near
 from elbowroom.planning.exact.memory.previous_plan import Start, jolts
 from elbowroom.planning.exact.plan.extension import leads_to
-from elbowroom.planning.exact.plan.pauses import finished
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
@@ -51,7 +50,7 @@ def rehearse(humanoid: Humanoid) -> None:
         body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
         start = body.goals(path)[0]
         search = body.plan(path, Start(start, np.zeros_like(start))).search
-        finished(search.together(1))
+        search.together(1)
         search.blockade()
     rehearse_own_body(humanoid)
     rehearse_detour(humanoid)

@@ -12,7 +12,6 @@ from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, extra_p
 from elbowroom.planning.exact.joint.guide import Guide
 from elbowroom.planning.exact.memory.own_contacts import OwnContacts, rule_out_near
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
-from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
@@ -58,7 +57,7 @@ class Arms:
         self._shelves, self._problem, self._contacts, self._rounds = caches, problem, contacts, rounds
         self._own_body, self._own_motion = own_body, own_motion
 
-    def under(self, waist: GroupPath, guides: list[Guide] | None, evidence_log: EvidenceLog) -> Pausing[Ways]:
+    def under(self, waist: GroupPath, guides: list[Guide] | None, evidence_log: EvidenceLog) -> Ways:
         """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
         horizon = self._problem.path.horizon
         if waist.reached < horizon:
@@ -67,9 +66,7 @@ class Arms:
         for _ in range(self._rounds):
             del ways[1 + first :]
             for side in range(first, len(_ARMS)):
-                way = yield from self._way(
-                    side, ways, None if guides is None else guides[1 + side], evidence_log, whole=whole
-                )
+                way = self._way(side, ways, None if guides is None else guides[1 + side], evidence_log, whole=whole)
                 if way.reached < horizon:
                     return Ways(tuple(ways), way, way.reached)
                 ways.append(way)
@@ -79,18 +76,17 @@ class Arms:
                 return found
             first, touching, whole = *contact, True
             self._remember(ways, *contact)
-            yield None
         return Ways(tuple(ways[:-1]), ways[-1], touching)
 
     def _way(
         self, side: int, ways: list[GroupPath], follow: Guide | None, evidence_log: EvidenceLog, *, whole: bool
-    ) -> Pausing[GroupPath]:
+    ) -> GroupPath:
         """The way of one arm among the ways of the groups before it; if `whole`, the body is where these have it."""
         task = self._problem.task(_ARMS[side], ways[0].entries, None if whole else self._resting(side), follow)
         if whole:
             touches_body = self._folded(side, ways, task)
             task = task._replace(extra=touches_body if follow is None else touches_body + task.extra)
-        return (yield from evidence_log.search(_ARMS[side], task))
+        return evidence_log.search(_ARMS[side], task)
 
     def _resting(self, side: int) -> Floats32:
         """Infinite where a node touches the naturally walking body."""

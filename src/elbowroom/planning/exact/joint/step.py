@@ -18,12 +18,12 @@ from elbowroom.planning.exact.joint.bounds import Problem, way_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
 from elbowroom.planning.exact.joint.product import JointPath, joint_path
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
-from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.axis_distances import arm_clearances
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import pose
+from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import PlanStatus
 
 Floats = NDArray[np.float64]
@@ -88,8 +88,8 @@ class JointStep:
         self._lanes: dict[tuple[int, int], Lanes] = {}
         self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
 
-    def search(self) -> Pausing[JointPath]:
-        """The cheapest way for all three groups; nodes count as in `GroupNodes`."""
+    def search(self, go_on: GoOn = keep_going) -> JointPath:
+        """The cheapest path for all three groups; nodes count as in `GroupNodes`. `go_on` is called now and then."""
         for g in range(len(self.nodes)):
             if g not in self._alone:
                 self._alone[g] = way_costs(self.nodes[g].base, self.steps[g])
@@ -100,8 +100,8 @@ class JointStep:
             wanted = np.isfinite(alone)
             if not whole:
                 wanted &= alone <= np.partition(alone, count - 1, axis=1)[:, count - 1 : count]
+            go_on()
             way = self._among(wanted)
-            yield None
             if way.status is PlanStatus.FOUND:
                 break
             if whole or way.status is PlanStatus.OUT_OF_BUDGET or self._spent:
@@ -110,6 +110,7 @@ class JointStep:
         needed = np.isfinite(alone) & (alone <= way.cost)
         if (self.filled >= needed).all():
             return way
+        go_on()
         better = self._among(self.filled | needed)
         return way if better.status is PlanStatus.OUT_OF_BUDGET else better
 

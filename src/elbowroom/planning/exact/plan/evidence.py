@@ -8,27 +8,27 @@ from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.group.search import search_group
 from elbowroom.planning.exact.joint.step import JointStep
-from elbowroom.planning.exact.plan.pauses import Pausing
+from elbowroom.planning.motion import GoOn
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
 
 
 class EvidenceLog:
     """Searches one group after the other and keeps what each group's searches cost together."""
 
-    def __init__(self, caches: PlanCaches, weights: Weights) -> None:
-        self._shelves, self._weights = caches, weights
+    def __init__(self, caches: PlanCaches, weights: Weights, go_on: GoOn) -> None:
+        """`go_on` is called before each search, and raises an exception to call the plan off."""
+        self._shelves, self._weights, self.go_on = caches, weights, go_on
         self._rows: list[GroupEvidence] = []
         self.joint: JointEvidence | None = None
 
-    def search(self, group: DofGroup, task: GroupTask) -> Pausing[GroupPath]:
+    def search(self, group: DofGroup, task: GroupTask) -> GroupPath:
         """`search_group`, entered under `group`."""
+        self.go_on()
         began = perf_counter_ns()
         way: GroupPath = search_group(self._shelves.held[group], task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
-        row = GroupEvidence(group, status, way.checks, way.nodes, 0, spent)
-        self._rows.append(row)
-        yield row
+        self._rows.append(GroupEvidence(group, status, way.checks, way.nodes, 0, spent))
         return way
 
     def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:

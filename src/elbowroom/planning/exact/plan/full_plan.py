@@ -71,17 +71,6 @@ def later(whole: FullPlan, at: int) -> FullPlan:
     return FullPlan(root.going_on(path), rest, asked)
 
 
-def costing(whole: FullPlan, rows: tuple[GroupEvidence, ...]) -> FullPlan:
-    """A motion that is as it was found, for whose groups so much was searched meanwhile, a row for each of them."""
-    if not rows:
-        return whole
-    spent = {row.group: row for row in rows}
-    evidence = tuple(
-        row if row.group not in spent else spent[row.group]._replace(status=row.status) for row in whole.local.evidence
-    )
-    return whole._replace(local=whole.local._replace(evidence=evidence))
-
-
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
     return tuple(GroupEvidence(row.group, row.status, 0, 0, 0, 0) for row in local.evidence)
 

@@ -24,7 +24,6 @@ from elbowroom.planning.exact.lattice.lattice import EXTRA, Work, new_work
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.memory.own_contacts import OwnContacts
 from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start, clearances
-from elbowroom.planning.exact.plan.pauses import Pausing, finished
 from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.refine.blocked import arms_for, waists_for
 from elbowroom.planning.exact.refine.sampling import Pool, RefinementSettings, drawn_postures
@@ -38,6 +37,7 @@ from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import Limb, limb_of, pose
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.model.self_contact import clear_of_trunk
+from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
@@ -111,23 +111,21 @@ class UpperBodyPlanner:
         previous: PreviousPlan | None = None,
         others: MovingBoxes | None = None,
         effort: Effort = Effort.REFINED,
+        go_on: GoOn = keep_going,
     ) -> UpperPlan:
-        """Motion along `path` from where it `begins`; near `kept`, the last plan. `others` move besides the scene's."""
-        return finished(self.planning(path, begins, previous, others, effort))
+        """Motion along `path` from where it `begins`, near the `previous` plan; `others` move besides the scene's.
 
-    def planning(
-        self, path: RootPath, begins: Start, previous: PreviousPlan | None, others: MovingBoxes | None, effort: Effort
-    ) -> Pausing[UpperPlan]:
-        """`plan`, with pauses, in which nothing else may be planned: who does calls the rest off."""
+        `go_on` is called before each search, and raises an exception to call the plan off.
+        """
         moving = self._moving + others if others else self._moving
         near = near_boxes(path, self._boxes, moving, self._shelves_for(path).span + _NEARLY)
         legs = self._legs.among(moving, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
         for attempt in range(self.settings.refinements + 1):
-            search = self._dressing(path, begins, previous, near, legs, weights)
+            search = self._dressing(path, begins, previous, near, legs, weights, go_on)
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
-            found = yield from search.motion(0 if between else rounds)
+            found = search.motion(0 if between else rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, search, search.asked)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(search):
@@ -162,6 +160,7 @@ class UpperBodyPlanner:
         near: NearBoxes,
         legs: LoweredLegs,
         weights: Weights,
+        go_on: GoOn,
     ) -> UpperBodySearch:
         caches = self._shelves_for(path)
         goals = self.goals(path)
@@ -170,7 +169,7 @@ class UpperBodyPlanner:
         asked = self._asked(path, begins.ahead)
         problem = PathProblem.of(path, goals, previous, begins, roots, near, asked)
         parts = self.own_body, self._own_motion, self._contacts
-        return UpperBodySearch(caches, weights, self.settings, *parts, legs, problem)
+        return UpperBodySearch(caches, weights, self.settings, *parts, legs, problem, go_on)
 
     def _refine(self, search: UpperBodySearch) -> bool:
         """Take in postures that are free where a group was blocked; whether there are any that were not known."""

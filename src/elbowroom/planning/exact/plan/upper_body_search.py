@@ -23,7 +23,6 @@ from elbowroom.planning.exact.lattice.lattice import EXTRA, KEPT
 from elbowroom.planning.exact.memory.own_contacts import OwnContacts
 from elbowroom.planning.exact.memory.previous_plan import Asked, jolts
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
-from elbowroom.planning.exact.plan.pauses import Pausing
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
@@ -31,6 +30,7 @@ from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_c
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
 from elbowroom.planning.model.lowered_legs import LoweredLegs
+from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
 
@@ -55,13 +55,14 @@ class UpperBodySearch:
     contacts: OwnContacts
     legs: LoweredLegs
     problem: PathProblem
+    go_on: GoOn = keep_going  # called before each search
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
         self._arms = Arms(
             self.caches, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
         )
-        self.evidence_log = EvidenceLog(self.caches, self.weights)
+        self.evidence_log = EvidenceLog(self.caches, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self._waist: GroupPath | None = None
@@ -78,20 +79,20 @@ class UpperBodySearch:
         """The goals (n+1, 11)."""
         return self.problem.goals
 
-    def motion(self, rounds: int) -> Pausing[LocalPlan | None]:
+    def motion(self, rounds: int) -> LocalPlan | None:
         """The motion, if there is one: group after group, then in so many rounds of the joint step.
 
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
-        found, last = (yield from self.apart()), self.problem.last
+        found, last = self.apart(), self.problem.last
         if last is not None and (found.failed is not None or jolts(found.keys, last.keys, last.known)):
-            previous = yield from self.with_previous_waist()
+            previous = self.with_previous_waist()
             if found.failed is not None or (
                 previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
             ):
                 found = previous
         if found.failed is not None and rounds > 0:
-            found = yield from self.together(rounds)
+            found = self.together(rounds)
         if found.failed is not None:
             return None
         self.asked = self._asked(found)
@@ -109,30 +110,30 @@ class UpperBodySearch:
         away = found.keys - self.goals
         return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
-    def apart(self) -> Pausing[Ways]:
+    def apart(self) -> Ways:
         """Each group by itself."""
-        self._waist = yield from self._waist_path(self._crouching)
-        found = yield from self._under(self._waist)
+        self._waist = self._waist_path(self._crouching)
+        found = self._under(self._waist)
         self.blocked = len(found.ways), min(found.reached + 1, self.path.horizon)
         return found
 
-    def _under(self, waist: GroupPath, guides: list[Guide] | None = None) -> Pausing[Ways]:
+    def _under(self, waist: GroupPath, guides: list[Guide] | None = None) -> Ways:
         """The arms under a way of the waist."""
-        found = yield from self._arms.under(waist, guides, self.evidence_log)
+        found = self._arms.under(waist, guides, self.evidence_log)
         if found.failed is not None:
             self.deepest = max(self.deepest, found.reached)
         return found
 
-    def with_previous_waist(self) -> Pausing[Ways]:
+    def with_previous_waist(self) -> Ways:
         """The waist held to the last plan's way while there is one."""
         costs = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
         _, _, previous = extra_postures(self.caches.group(DofGroup.WAIST), task)
         costs[np.arange(len(costs)), previous] = 0.0
-        waist = yield from self._waist_path(costs + self._crouching)
-        return (yield from self._under(waist))
+        waist = self._waist_path(costs + self._crouching)
+        return self._under(waist)
 
-    def together(self, rounds: int) -> Pausing[Ways]:
+    def together(self, rounds: int) -> Ways:
         """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
         waist = self._waist
         assert waist is not None
@@ -142,13 +143,13 @@ class UpperBodySearch:
         ways = Ways((), waist, 0)
         for _ in range(rounds):
             began = perf_counter_ns()
-            answer = yield from step.search()
+            answer = step.search(self.evidence_log.go_on)
             self.evidence_log.enter_joint(step, answer.status, perf_counter_ns() - began)
             if answer.status is not PlanStatus.FOUND:
                 break
             guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
-            way = yield from self._waist_path(self._crouching, guides[0])
-            ways = yield from self._under(way, guides)
+            way = self._waist_path(self._crouching, guides[0])
+            ways = self._under(way, guides)
             if len(ways.ways) == len(LOCAL_GROUPS):
                 break
             failed, at = len(ways.ways), min(ways.reached, self.path.horizon - 1)
@@ -201,7 +202,7 @@ class UpperBodySearch:
         problem = self.problem
         return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.slices)
 
-    def _waist_path(self, costs: Floats32, follow: Guide | None = None) -> Pausing[GroupPath]:
+    def _waist_path(self, costs: Floats32, follow: Guide | None = None) -> GroupPath:
         """The waist's way on which the legs have room to crouch as it does."""
         at, postures = columns_of(DofGroup.WAIST), self.caches.group(DofGroup.WAIST).postures
         previous, closed = self.problem.previous[:, at], costs.copy()
@@ -216,7 +217,7 @@ class UpperBodySearch:
 
         crouch = Crouch(self.legs, self.path, lowerings)
         for attempt in range(ROUNDS):
-            way = yield from self._search(closed, follow)
+            way = self._search(closed, follow)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
                 if follow is None and attempt > 0:
                     self._crouching[np.isinf(closed)] = np.inf
@@ -236,7 +237,7 @@ class UpperBodySearch:
         clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
-    def _search(self, extra: Floats32, follow: Guide | None) -> Pausing[GroupPath]:
+    def _search(self, extra: Floats32, follow: Guide | None) -> GroupPath:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
         task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
-        return (yield from self.evidence_log.search(DofGroup.WAIST, task))
+        return self.evidence_log.search(DofGroup.WAIST, task)
