@@ -4,11 +4,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
+from elbowroom.cli import walk
 from elbowroom.cli.main import app
+from elbowroom.experiment.crossing import CrossingResult
 
 RUNNER = CliRunner()
 SCENE = {
@@ -56,6 +59,17 @@ def test_walk_prints_a_table_and_no_progress_on_stdout(run: tuple[Path, Path, di
     assert "Walking" not in result.stdout
 
 
+def test_real_time_is_told_by_both_criteria(
+    run: tuple[Path, Path, dict[str, object]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns: dict[str, Any] = run[2] | {"frames": 300, "frame_ms_worst": 498.0, "late_frames": 30, "realtime": True}
+    del columns["recording"]
+    walk._report(CrossingResult(**columns), None, False)
+    words = " ".join(capsys.readouterr().out.split())
+    assert "real time, the paper's yes: more than one frame in every second" in words
+    assert "real time, ours no: 30 of 300 frames over 1/60 s late" in words
+
+
 def test_a_walk_that_falls_short_ends_with_1(run: tuple[Path, Path, dict[str, object]]) -> None:
     result = RUNNER.invoke(app, ["walk", "--scene", str(run[0]), "--limit", "0.2", "--quiet"])
     assert result.exit_code == 1
@@ -89,7 +103,8 @@ def test_replay_with_another_avatar_is_refused(run: tuple[Path, Path, dict[str, 
     [
         (["nonsense"], "nonsense"),
         (["walk", "--nonsense"], "--nonsense"),
-        (["walk", "--scene", "zz"], "zz"),
+        (["walk", "--scene", "zz"], "nor a random course (gauntlet:LEVEL:SEED, for example gauntlet:5:1013)"),
+        (["walk", "--scene", "Gauntlet:9:1"], "level: 9"),
         (["walk", "--planner", "psychic"], "psychic"),
         (["walk", "--queue", "1"], "queue size"),
         (["walk", "--queue", "many"], "--queue"),

@@ -19,6 +19,7 @@ from starlette.routing import Route
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.stock import stock_avatar_path
+from elbowroom.control.settings import QUEUE_SIZES
 from elbowroom.errors import InputError
 from elbowroom.server import app as app_module
 from elbowroom.server import avatar_store, uploads
@@ -73,7 +74,7 @@ def page(library: Library) -> Page:
 
 def test_the_catalog_and_the_scenes(page: Page) -> None:
     catalog = page.get("/api/catalog").json()
-    assert catalog["queueSizes"] == [3, 4, 5, 6, 7]
+    assert catalog["queueSizes"] == list(QUEUE_SIZES)
     for choice in catalog["scenes"]:
         scene = page.get(f"/api/scenes/{choice['name']}").json()
         course = choice["name"].startswith("gauntlet:")  # its title is known once it is made

@@ -43,7 +43,9 @@ def test_play_takes_the_next_port_serves_and_ends_with_ctrl_c(tmp_path: Path) ->
         (["--avatar", "missing.vrm"], "missing.vrm"),
         (["--planner", "magic"], "planner 'magic' is unknown"),
         (["--host", "203.0.113.7", "--port", "0"], "203.0.113.7"),
-        (["--queue", "9"], "queue size 9: allowed are 3 to 7"),
+        (["--queue", "33"], "queue size: 33 is not a whole number from 2 to 32"),
+        (["--queue", "1"], "queue size: 1 is not a whole number from 2 to 32"),
+        (["--scene", "gauntlet"], "gauntlet:LEVEL:SEED"),
         (["--port", "70000"], "70000"),
     ],
 )

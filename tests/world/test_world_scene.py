@@ -97,12 +97,15 @@ def mutants() -> list[Any]:
     return out
 
 
+SAID_BY_NO_SCHEMA = ("stands in the obstacle", "leads on at", "off the ground", "lies behind it already")
+
+
 def _read_unless_start_is_blocked(mutant: Any) -> None:
-    """The two rules that a schema cannot state: the start is no obstacle's, and nothing leaps."""
+    """The rules that a schema cannot state: start and finish lie on the ground and apart, and nothing leaps."""
     try:
         Scene.from_dict(mutant)
     except InputError as error:
-        if not any(rule in str(error) for rule in ("stands in the obstacle", "leads on at")):
+        if not any(rule in str(error) for rule in SAID_BY_NO_SCHEMA):
             raise
 
 
@@ -134,6 +137,9 @@ def test_reader_and_published_schema_agree_on_every_mutant() -> None:
         (("obstacles", 2, "rotation"), [0.1, 0, 0, 0], ["$.obstacles[2].rotation", "unit quaternion"]),
         (("version",), 2, ["$.version is 2", "must be 1"]),
         (("start", "position"), [1.0, 2.0], ["$.start.position", "stands in the obstacle 'one'"]),
+        (("finish", "position"), [0, 60], ["$.finish.position is [0.0, 60.0]", "m off the ground"]),
+        (("start", "position"), [-40, 0], ["$.start.position is [-40.0, 0.0]", "m off the ground"]),
+        (("finish", "position"), [0, -1], ["$.finish", "the start lies behind it already"]),
         (("start", "heading"), math.nan, ["$.start.heading is NaN", "must be a number"]),
         (("ground", "size"), [1, 2, 3], ["$.ground.size", "list of 2 numbers"]),
         (("name",), "", ["$.name", "1 to 100 characters"]),
@@ -203,6 +209,39 @@ def test_files_that_are_no_text_too_big_or_absent(tmp_path: Path) -> None:
         Scene.load(path)
     path.write_bytes(b"\xef\xbb\xbf" + json.dumps(document()).encode())
     assert Scene.load(path).name == "test"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "kind"),
+    [
+        ("room.glb", b"glTF\x02\x00\x00\x00\xff\xfe", "a glTF model"),
+        ("room.json", b"glTF\x02\x00\x00\x00\xff\xfe", "a glTF model"),
+        ("room.gltf", b'{"asset": {"version": "2.0"}}', "a glTF model"),
+        ("room.json", b'{"asset": {"version": "2.0"}}', "a glTF model"),
+        ("room.obj", b"v 0 0 0\nf 1 1 1\n", "an OBJ model"),
+        ("room.x3d", b'<?xml version="1.0"?>\n<X3D version="4.0"/>', "an X3D model"),
+        ("room.x3dv", b"#X3D V3.3 utf8\n", "an X3D model"),
+        ("room.wrl", b"#VRML V2.0 utf8\n", "a VRML model"),
+        ("room.ifc", b"\nISO-10303-21;\nHEADER;", "an IFC or STEP model"),
+        ("room.dae", b'<COLLADA version="1.4.1"/>', "a COLLADA model"),
+        ("room.fbx", b"Kaydara FBX Binary  \x00", "an FBX model"),
+        ("room.stl", b"\x00" * 84, "an STL model"),
+        ("run.elbow", b"ELBOWROOM RECORDING 2\n", "a recording"),
+        ("walk.bvh", b"HIERARCHY\nROOT Hips\n", "a BVH motion"),
+        ("room.svg", b"<svg/>", "an XML file"),
+    ],
+)
+def test_what_is_no_scene_is_called_what_it_is(tmp_path: Path, name: str, content: bytes, kind: str) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=f"{name}: is {kind}.*; a scene is a JSON file") as error:
+        Scene.load(tmp_path / name)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["missing.glb", "missing.json", "missing.x3d"])
+def test_a_missing_file_is_missing(name: str) -> None:
+    with pytest.raises(InputError, match=f"{name}: cannot be read: No such file"):
+        Scene.load(name)
 
 
 def test_stock_scenes_by_name() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
-from elbowroom.cli.output import PLANNER_HELP, json_text, print_json, print_row, progress_bar
+from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -33,7 +33,7 @@ def gauntlet(
     courses: Annotated[int, typer.Option(help="How many courses; course K has the seed S + K.")] = 20,
     seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|.")] = 5,
+    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
     jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
     judge: Annotated[

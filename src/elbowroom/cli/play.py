@@ -12,7 +12,7 @@ import typer
 
 from elbowroom.cli import clip_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
-from elbowroom.cli.output import PLANNER_HELP, SCENE_HELP
+from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def play(
     height: Height = None,
     include_hair: IncludeHair = False,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help="Size of the key-frame queue, |Q|: 3 to 7.")] = 5,
+    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,

@@ -25,7 +25,7 @@ def table1(
     *,
     planner: Annotated[str, typer.Option(help="Planners to compare, with commas between: exact, figure6.")] = FIGURE6,
     scenes: Annotated[str, typer.Option(help="Stock scenes by name, or scene files.")] = "a,b,c,d",
-    queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|.")] = "3,4,5,6,7",
+    queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|: each 2 to 32.")] = "3,4,5,6,7",
     seeds: Annotated[int, typer.Option(help="Trials for each cell, with the seeds 1 to N; the paper has 3.")] = 20,
     jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for results; an interrupted run goes on there.")] = Path("table1"),

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 
-QUEUE_SIZES = range(2, 33)
+QUEUE_SIZES = range(2, 33)  # key frames; the paper has 3 to 7
+
+
+def check_queue_size(size: int) -> None:
+    """Raises `InputError` if a key-frame queue cannot hold so many."""
+    if size not in QUEUE_SIZES:
+        limits = f"{QUEUE_SIZES.start} to {QUEUE_SIZES.stop - 1}"
+        raise InputError(f"queue size: {size} is not a whole number from {limits} key frames")
 
 
 @dataclass(frozen=True)
@@ -21,9 +28,7 @@ class ControlSettings:
 
     def __post_init__(self) -> None:
         check_planner(self.planner)
-        if self.queue_size not in QUEUE_SIZES:
-            limits = f"{QUEUE_SIZES.start} to {QUEUE_SIZES.stop - 1}"
-            raise InputError(f"queue size: {self.queue_size} is not a whole number from {limits} key frames")
+        check_queue_size(self.queue_size)
         if not (math.isfinite(self.interval) and 0.05 <= self.interval <= 1.0):
             raise InputError(f"interval: {self.interval} is not between 0.05 and 1 seconds")
         if self.seed < 0:

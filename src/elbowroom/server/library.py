@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.scenes import PREFIX, load_scene, parse_name, random_names
+from elbowroom.experiment.gauntlet.scenes import NAMED, PREFIX, load_scene, parse_name, random_names
 from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
@@ -98,7 +98,8 @@ class Library:
         if name in self.scenes:
             return
         if not name.startswith(PREFIX):
-            raise InputError(f"scene {name[:40]!r} is not known here; there are {', '.join(self.scenes)}")
+            known = ", ".join(self.scenes)
+            raise InputError(f"scene {name[:40]!r} is not known here; there are {known}, and courses: {NAMED}")
         parse_name(name)
 
     @cached_property

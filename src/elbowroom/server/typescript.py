@@ -66,7 +66,6 @@ def _constants() -> str:
         f"PROTOCOL = {bounds.PROTOCOL}",
         f"MAX_MESSAGE = {bounds.MAX_MESSAGE}",
         f"MAX_UPLOAD = {bounds.MAX_UPLOAD}",
-        f"QUEUE_SIZES = [{', '.join(map(str, bounds.QUEUE_SIZES))}] as const",
         f"INPUT_TIMEOUT = {bounds.INPUT_TIMEOUT:g}",
         f"POSE_KIND = {pose_frame.KIND}",
         f"POSE_LAYOUT = {pose_frame.LAYOUT}",

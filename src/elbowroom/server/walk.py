@@ -8,13 +8,14 @@ from elbowroom.control import steering
 from elbowroom.control.controller import Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
+from elbowroom.control.settings import check_queue_size
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
-from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
+from elbowroom.server.schema.bounds import WALK_SPEEDS
 from elbowroom.world.scene import Scene
 
 _MOTION = RootMotionSettings()
@@ -32,10 +33,7 @@ class WalkSettings:
 
     def __post_init__(self) -> None:
         check_planner(self.planner)
-        if self.queue_size not in QUEUE_SIZES:
-            raise InputError(
-                f"queue size {self.queue_size}: allowed are {QUEUE_SIZES[0]} to {QUEUE_SIZES[-1]} key frames"
-            )
+        check_queue_size(self.queue_size)
         if not WALK_SPEEDS[0] <= self.walk_speed <= WALK_SPEEDS[1]:
             limits = f"{WALK_SPEEDS[0]:g} to {WALK_SPEEDS[1]:g} m/s"
             raise InputError(f"walking speed {self.walk_speed:g}: allowed are {limits}")

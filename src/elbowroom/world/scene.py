@@ -11,10 +11,16 @@ from typing import Any
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.world.boxes import Boxes
+from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.moving import MovingBoxes
 
 MAX_FILE_BYTES = 16 * 2**20
+_SCENES_ARE = "a scene is a JSON file (docs/scenes.md), places in other formats are not read"
+
+
+class UnknownSceneError(InputError):
+    """There is no scene of this name."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +65,10 @@ class Scene:
             source = f"{stock}.json"
             return cls.from_dict(parse_json((_stock() / source).read_text("utf-8"), source), source)
         path = Path(name_or_path)
-        if path.suffix.lower() != ".json" and not path.is_file():
+        if not path.suffix and not path.is_file():
             names = ", ".join(cls.stock_names())
-            raise InputError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor a .json file")
-        return cls.from_dict(read_json(path, MAX_FILE_BYTES), str(path))
+            raise UnknownSceneError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor a .json file")
+        return cls.from_dict(_read(path), str(path))
 
     @staticmethod
     def stock_names() -> tuple[str, ...]:
@@ -106,6 +112,18 @@ class Scene:
     def finished(self, root: RootState) -> bool:
         """Whether the avatar has crossed the finish gate."""
         return self.finish.passed(root.x, root.z)
+
+
+def _read(path: Path) -> Any:
+    """The JSON document in a file; raises `InputError`, also for what is known to be something else."""
+    try:
+        kind = foreign_kind(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    document = None if kind else read_json(path, MAX_FILE_BYTES)
+    if kind := kind or foreign_document(document):
+        raise InputError(f"{path}: is {kind}; {_SCENES_ARE}")
+    return document
 
 
 def _stock() -> Traversable:

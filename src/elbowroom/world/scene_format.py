@@ -57,6 +57,7 @@ def read_scene(document: Any, source: str) -> Scene:
         box_names=names,
         moving=read_moving(fields["moving"]) if "moving" in fields else MovingBoxes(),
     )
+    _refuse_off_the_ground(scene, fields)
     _refuse_start_in_obstacle(scene, fields["start"])
     return scene
 
@@ -134,6 +135,18 @@ def _unit_quaternion(place: Place) -> NDArray[np.float64]:
     if abs(np.linalg.norm(values) - 1.0) < 1e-9:
         return values  # as written, so that writing and reading change nothing
     return quaternion.normalize(values)
+
+
+def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
+    """Start and finish lie on the ground, and the way from the one to the other is not over before it begins."""
+    for name, point in (("start", (scene.start.x, scene.start.z)), ("finish", scene.finish.position)):
+        edges = zip(point, scene.ground_center, scene.ground_size, strict=True)
+        beyond = max(abs(at - middle) - 0.5 * size for at, middle, size in edges)
+        if beyond > 0.0:
+            place = Place(fields[name].source, f"{fields[name].path}.position", list(point))
+            place.fail(f"it lies {beyond:.3g} m off the ground; move it or make the ground larger")
+    if scene.finished(scene.start):
+        fields["finish"].fail("the start lies behind it already; turn its heading or move one of them")
 
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:

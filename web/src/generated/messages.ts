@@ -4,7 +4,6 @@
 export const PROTOCOL = 1;
 export const MAX_MESSAGE = 65536;
 export const MAX_UPLOAD = 67108864;
-export const QUEUE_SIZES = [3, 4, 5, 6, 7] as const;
 export const INPUT_TIMEOUT = 1;
 export const POSE_KIND = 1;
 export const POSE_LAYOUT = 1;
@@ -37,7 +36,7 @@ export interface Configure {
   avatar?: string | null;
   /** at most 128 long */
   planner?: string | null;
-  /** from 3 to 7 */
+  /** from 2 to 32 */
   queueSize?: number | null;
   /** false plays the canned walk, right through everything */
   assist?: boolean | null;

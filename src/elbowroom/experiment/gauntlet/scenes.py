@@ -7,9 +7,10 @@ from functools import lru_cache
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import LARGEST_SEED, make_course
 from elbowroom.experiment.gauntlet.levels import LEVELS, level_of
-from elbowroom.world.scene import Scene
+from elbowroom.world.scene import Scene, UnknownSceneError
 
 PREFIX = "gauntlet:"
+NAMED = "gauntlet:LEVEL:SEED, for example gauntlet:5:1013"
 _NAME = re.compile(r"gauntlet:(\d{1,3}):(\d{1,10})")
 
 
@@ -22,7 +23,7 @@ def parse_name(name: str) -> tuple[int, int]:
     """Level and seed in the name of a course; raises `InputError` where it is no such name."""
     found = _NAME.fullmatch(name)
     if found is None or int(found[2]) > LARGEST_SEED:
-        raise InputError(f"scene {name[:40]!r}: a course is named gauntlet:LEVEL:SEED, for example gauntlet:5:1013")
+        raise InputError(f"scene {name[:40]!r}: a course is named {NAMED}")
     level_of(int(found[1]))
     return int(found[1]), int(found[2])
 
@@ -34,5 +35,10 @@ def course_scene(name: str) -> Scene:
 
 
 def load_scene(name: str) -> Scene:
-    """A course, a stock scene by name, or a scene file."""
-    return course_scene(name) if name.startswith(PREFIX) else Scene.load(name)
+    """A course, a stock scene by name, or a scene file; raises `InputError`."""
+    if name.lower().startswith(PREFIX):
+        return course_scene(name.lower())
+    try:
+        return Scene.load(name)
+    except UnknownSceneError as error:
+        raise InputError(f"{error} nor a random course ({NAMED})") from None

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from elbowroom.control import settings
+
 PROTOCOL = 1  # raised with every change that an older client would misread
 MAX_MESSAGE = 64 * 1024  # bytes in a client's text message
 MAX_UPLOAD = 64 * 1024 * 1024  # bytes in an avatar file dropped on the page
-QUEUE_SIZES = (3, 4, 5, 6, 7)
+QUEUE_SIZES = tuple(settings.QUEUE_SIZES)
 WALK_SPEEDS = (0.2, 2.0)  # m/s, slowest and fastest
 INPUT_TIMEOUT = 1.0  # seconds without any message after which the keys count as released
 

@@ -1,0 +1,66 @@
+"""What a file is that somebody took for a scene: a model of a place, an avatar, a recording."""
+
+from pathlib import Path
+from typing import Any
+
+# By how they begin, past white space; the longer ones first.
+_BEGINNINGS: tuple[tuple[bytes, str], ...] = (
+    (b"ELBOWROOM RECORDING", "a recording"),
+    (b"Kaydara FBX", "an FBX model"),
+    (b"ISO-10303-21", "an IFC or STEP model"),
+    (b"HIERARCHY", "a BVH motion"),
+    (b"PXR-USDC", "a USD model"),
+    (b"BLENDER", "a Blender file"),
+    (b"#usda", "a USD model"),
+    (b"#VRML", "a VRML model"),
+    (b"glTF", "a glTF model (GLB or VRM)"),
+    (b"#X3D", "an X3D model"),
+    (b"solid", "an STL model"),
+    (b"ply", "a PLY model"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"\x1f\x8b", "a gzipped file"),
+)
+_ELEMENTS = {b"<X3D": "an X3D model", b"<COLLADA": "a COLLADA model", b"<ifcXML": "an IFC model"}
+_ENDINGS = {
+    ".3ds": "a 3DS model",
+    ".blend": "a Blender file",
+    ".bvh": "a BVH motion",
+    ".dae": "a COLLADA model",
+    ".elbow": "a recording",
+    ".fbx": "an FBX model",
+    ".glb": "a glTF model",
+    ".gltf": "a glTF model",
+    ".ifc": "an IFC model",
+    ".obj": "an OBJ model",
+    ".ply": "a PLY model",
+    ".stl": "an STL model",
+    ".usd": "a USD model",
+    ".usda": "a USD model",
+    ".usdc": "a USD model",
+    ".usdz": "a USD model",
+    ".vrm": "a VRM avatar",
+    ".vrml": "a VRML model",
+    ".wrl": "a VRML model",
+    ".x3d": "an X3D model",
+    ".x3dv": "an X3D model",
+    ".x3dz": "an X3D model",
+}
+_LOOKED_AT = 4096  # bytes
+
+
+def foreign_kind(path: Path) -> str | None:
+    """What a file is, by how it begins or else by its name; None where it may be JSON. Raises OSError."""
+    with path.open("rb") as file:
+        head = file.read(_LOOKED_AT).removeprefix(b"\xef\xbb\xbf").lstrip()
+    for beginning, kind in _BEGINNINGS:
+        if head.startswith(beginning):
+            return kind
+    if head.startswith(b"<"):
+        return next((kind for element, kind in _ELEMENTS.items() if element in head), "an XML file")
+    return _ENDINGS.get(path.suffix.lower())
+
+
+def foreign_document(document: Any) -> str | None:
+    """What a JSON document is that is no scene; None where it may be one."""
+    is_gltf = isinstance(document, dict) and "asset" in document and "format" not in document
+    return "a glTF model" if is_gltf else None
