@@ -36,6 +36,33 @@ def test_play_takes_the_next_port_serves_and_ends_with_ctrl_c(tmp_path: Path) ->
     assert "Stopped." in said
 
 
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 0), (signal.SIGTERM, 143)])
+def test_a_signal_ends_the_server_whatever_its_threads_do(sent: signal.Signals, code: int) -> None:
+    """A thread that never ends, and one that is never done with its work."""
+    program = """
+import threading, time
+from concurrent.futures import ThreadPoolExecutor
+from elbowroom.cli import play
+from elbowroom.server.library import Library
+
+def busy(library, url, open_page):
+    threading.Thread(target=time.sleep, args=(1000,)).start()
+    ThreadPoolExecutor(1).submit(lambda: [sum(range(10**7)) for _ in range(10**6)])
+    print(library.avatars.folder, flush=True)
+
+play.warm_up_with_progress = lambda library, console: None
+play._ready = busy
+play.serve_until_interrupted(lambda: Library.open("empty"), "127.0.0.1", 0, open_page=False)
+"""
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        folder = Path(server.stdout.readline().strip())
+        assert folder.is_dir()
+        server.send_signal(sent)
+        assert server.wait(20) == code
+    assert not folder.exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

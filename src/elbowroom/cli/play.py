@@ -63,6 +63,7 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
     """Serve the page with a library until Ctrl-C; raises `InputError` where there is no such library or port."""
     from rich.console import Console
 
+    from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.heap import share_one_heap
     from elbowroom.server.serving import listen, serve, url_of
 
@@ -71,9 +72,11 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     with (
         contextlib.suppress(KeyboardInterrupt),
+        contextlib.ExitStack() as stack,
+        ended_by_signals(stack.close),
         listen(host, port) as opened,
-        contextlib.closing(make()) as library,
     ):
+        library = stack.enter_context(contextlib.closing(make()))
         warm_up_with_progress(library, console)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)

@@ -5,11 +5,14 @@ import contextlib
 import errno
 import socket
 from collections.abc import Callable
+from types import FrameType
 
 import uvicorn
 
 from elbowroom.errors import InputError
 from elbowroom.server.app import make_app
+from elbowroom.server.connections import BoundedWebSocket, looks_after
+from elbowroom.server.ending import end_at_latest
 from elbowroom.server.library import Library
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 
@@ -58,22 +61,39 @@ def url_of(opened: socket.socket) -> str:
     return f"http://{shown}:{port}"
 
 
-def make_server(library: Library, opened: socket.socket, host: str = "") -> uvicorn.Server:
+class Server(uvicorn.Server):
+    """uvicorn's, with an eye on its connections, and an end in time."""
+
+    def __init__(self, library: Library, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self._library = library
+        config.callback_notify = looks_after(lambda: self.server_state.connections)
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Begin to end; whoever is not ready in a few seconds is not waited for."""
+        if not self.should_exit:
+            end_at_latest(sig, self._library.close)
+        super().handle_exit(sig, frame)
+
+
+def make_server(library: Library, opened: socket.socket, host: str = "") -> Server:
     """The server of an application for this socket; `run(sockets=[opened])` runs it; `host` as in `listen`."""
     config = uvicorn.Config(
         make_app(library, opened.getsockname()[0], host),
-        ws="websockets-sansio",
+        http="h11",
+        ws=BoundedWebSocket,
         ws_max_size=MAX_MESSAGE,
         ws_per_message_deflate=False,
         ws_ping_interval=5.0,
         ws_ping_timeout=10.0,
-        timeout_graceful_shutdown=2,
+        timeout_graceful_shutdown=1,
+        timeout_notify=1,
         lifespan="off",
         access_log=False,
         log_config=None,
         server_header=False,
     )
-    return uvicorn.Server(config)
+    return Server(library, config)
 
 
 def serve(library: Library, opened: socket.socket, host: str, on_ready: Callable[[], None]) -> None:
@@ -81,7 +101,7 @@ def serve(library: Library, opened: socket.socket, host: str, on_ready: Callable
     asyncio.run(_serve(make_server(library, opened, host), opened, on_ready))
 
 
-async def _serve(server: uvicorn.Server, opened: socket.socket, on_ready: Callable[[], None]) -> None:
+async def _serve(server: Server, opened: socket.socket, on_ready: Callable[[], None]) -> None:
     watch = asyncio.create_task(_when_started(server, on_ready))
     try:
         await server.serve(sockets=[opened])
@@ -91,7 +111,7 @@ async def _serve(server: uvicorn.Server, opened: socket.socket, on_ready: Callab
             await watch
 
 
-async def _when_started(server: uvicorn.Server, on_ready: Callable[[], None]) -> None:
+async def _when_started(server: Server, on_ready: Callable[[], None]) -> None:
     while not server.started:
         await asyncio.sleep(0.01)
     on_ready()
