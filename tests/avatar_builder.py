@@ -7,14 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.proportions import proportional_skeleton
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.formats.packing import write_glb
 from elbowroom.geometry import quaternion
+from odd_bodies import SKELETON, Body
 
 Floats = NDArray[np.float64]
-
-SKELETON = proportional_skeleton(1.7)
 
 MIXAMO = {
     "hips": "Hips",
@@ -64,7 +62,8 @@ class Recipe:
     unit: float = 1.0  # file units per metre in world space
     root_scale: float = 1.0  # scale of the node above the hips
     mesh: bool = True
-    points: int = 20  # of the mesh, round each joint
+    points: int = 21  # of the mesh, round each bone: three for each triangle
+    body: Body | None = None  # instead of such points; for rest poses that are the T-pose
     seed: int = 0
 
 
@@ -138,21 +137,27 @@ def _add(
 def _add_mesh(
     content: dict[str, Any], worlds: list[tuple[Floats, Floats, float]], carrier: dict[int, int], recipe: Recipe
 ) -> bytes:
-    """Points round each joint, each wholly its own."""
+    """A skinned mesh: the recipe's body, or triangles round each bone, each wholly its own."""
     rng = np.random.default_rng(1)
-    points, slots, binds = [], [], []
-    for slot, node in carrier.items():
+    binds = []
+    for node in carrier.values():
         at, turn, scale = worlds[node]
-        cloud = at + 0.05 * recipe.unit * rng.uniform(-1.0, 1.0, (recipe.points, 3))
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = scale * quaternion.to_matrix(turn), at
-        points.append(cloud)
-        slots.append(np.full(recipe.points, slot))
         binds.append(np.linalg.inv(matrix).T)
-    positions, joints = np.concatenate(points).astype("<f4"), np.zeros((recipe.points * len(carrier), 4), "<u2")
-    joints[:, 0] = np.concatenate(slots)
+    if recipe.body is None:
+        clouds = [_cloud(rng, worlds, carrier, joint, recipe) for joint in carrier]
+        points, slots = np.concatenate(clouds), np.repeat(list(carrier), recipe.points)
+        indices = None
+    else:
+        points = recipe.unit * quaternion.rotate(quaternion.about_axis(1, recipe.heading), recipe.body.points)
+        slots = np.array([SKELETON.index(bone) for bone in recipe.body.bones])
+        indices = recipe.body.triangles.ravel()
+    positions, joints = points.astype("<f4"), np.zeros((len(points), 4), "<u2")
+    joints[:, 0] = slots
     weights = np.tile(np.array([255, 0, 0, 0], "<u1"), (len(joints), 1))
     arrays = [positions, joints, weights, np.array(binds, "<f4")]
+    arrays += [] if indices is None else [indices.astype("<u4")]
     views, start = [], 0
     for array in arrays:
         views.append({"buffer": 0, "byteOffset": start, "byteLength": array.nbytes})
@@ -163,17 +168,35 @@ def _add_mesh(
         {"bufferView": 2, "componentType": 5121, "normalized": True, "count": len(weights), "type": "VEC4"},
         {"bufferView": 3, "componentType": 5126, "count": len(binds), "type": "MAT4"},
     ]
+    primitive: dict[str, Any] = {"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}}
+    if indices is not None:
+        accessors.append({"bufferView": 4, "componentType": 5125, "count": len(indices), "type": "SCALAR"})
+        primitive["indices"] = 4
     content["nodes"].append({"name": "body", "mesh": 0, "skin": 0})
     content["scenes"][0]["nodes"].append(len(content["nodes"]) - 1)
-    attributes = {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}
     content |= {
         "buffers": [{"byteLength": start}],
         "bufferViews": views,
         "accessors": accessors,
-        "meshes": [{"primitives": [{"attributes": attributes, "mode": 0}]}],
+        "meshes": [{"primitives": [primitive]}],
         "skins": [{"joints": list(carrier.values()), "inverseBindMatrices": 3}],
     }
     return b"".join(array.tobytes() for array in arrays)
+
+
+def _cloud(
+    rng: np.random.Generator,
+    worlds: list[tuple[Floats, Floats, float]],
+    carrier: dict[int, int],
+    joint: int,
+    recipe: Recipe,
+) -> Floats:
+    """Points round a bone, from its joint to the next one."""
+    at = worlds[carrier[joint]][0]
+    below = np.flatnonzero(SKELETON.parents == joint)
+    along = worlds[carrier[int(below[0])]][0] - at if len(below) else np.zeros(3)
+    wide: Floats = 0.05 * recipe.unit * rng.uniform(-1.0, 1.0, (recipe.points, 3))
+    return at + rng.uniform(0.0, 1.0, (recipe.points, 1)) * along + wide
 
 
 def _add_vrm(content: dict[str, Any], carrier: dict[int, int], version: str) -> None:

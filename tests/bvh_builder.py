@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from avatar_builder import MIXAMO, SKELETON
+from avatar_builder import MIXAMO
 from elbowroom.body.bones import PARENTS
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry import quaternion
+from odd_bodies import SKELETON
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from avatar_builder import SKELETON, normalised_fk
+from avatar_builder import normalised_fk
 from elbowroom.geometry import quaternion
+from odd_bodies import SKELETON
 
 Floats = NDArray[np.float64]
 Made = tuple[str, dict[str, Any]]  # kind, fields; a "USE" has its name in the field "name"

@@ -42,7 +42,7 @@ def _row(path: Path, name: Path, scene: Scene, settings: CrossingSettings) -> st
     took = "" if result.passed_time_s is None else f"{result.passed_time_s:.1f} s"
     how = Counter(str(source["how"]) for source in facts.bones.values())
     found = ", ".join(f"{count} {source}" for source, count in how.most_common())
-    covered = f"{facts.coverage:.1%}" if humanoid.meta.has_body else "no mesh of a body"
+    covered = f"{facts.coverage.share:.1%}" if facts.coverage else "no mesh of a body"
     return f"| `{name}` | {found} | {facts.height:.2f} m | {facts.stride:.2f} m | {covered} | {walked} | {took} |"
 
 

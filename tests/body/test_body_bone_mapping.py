@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from avatar_builder import MIXAMO, SKELETON, UNREAL, Recipe, build, json_of
+from avatar_builder import MIXAMO, UNREAL, Recipe, build, json_of
 from elbowroom.body.bone_mapping.conventions import CONVENTIONS, Convention, plain
 from elbowroom.body.bone_mapping.file_nodes import FileNodes
 from elbowroom.body.bone_mapping.mapping import map_bones
@@ -19,6 +19,7 @@ from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
 from elbowroom.body.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
+from odd_bodies import SKELETON
 from shared_data import SHARED, needs_shared
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from avatar_builder import SKELETON
 from elbowroom.body.bones import REQUIRED
 from elbowroom.body.hanim_names import BY_DEF, BY_NAME
 from elbowroom.body.humanoid import Humanoid
@@ -14,6 +13,7 @@ from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from hanim_builder import HanimRecipe, build_hanim
+from odd_bodies import SKELETON
 from shared_data import SHARED, needs_shared
 
 FILES = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []

@@ -38,7 +38,8 @@ def test_json_has_all_of_it(figure: Path) -> None:
     assert facts["height"] == pytest.approx(1.2)
     assert facts["bones"]["leftHand"]["name"] == "mixamorig:LeftHand"
     assert facts["missing"] == ["jaw", "leftEye", "rightEye"]
-    assert facts["coverage"] > 0.99
+    assert facts["coverage"]["share"] > 0.99
+    assert facts["warnings"] == []
     assert facts["clips"] == []
 
 

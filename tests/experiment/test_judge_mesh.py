@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from avatar_builder import MIXAMO, Recipe, build
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.experiment.judge.ledger import Ledger
@@ -24,6 +25,7 @@ from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh
 from elbowroom.geometry import quaternion
 from judged_bodies import T_POSE, gliding, random_boxes, random_postures, scene_with, upright
+from odd_bodies import Body, ring_body
 from shared_data import SHARED, needs_shared
 
 Floats = NDArray[np.float64]
@@ -41,10 +43,7 @@ SKIN = read_skin(STOCK)
 
 
 def odd_avatar(**recipe: object) -> Humanoid:
-    """An avatar whose points are triangles."""
-    data = build(Recipe(points=21, seed=2, **recipe))  # type: ignore[arg-type]
-    points, triangles = b'"mode":0', b'"mode":4'
-    return load_humanoid_bytes(data.replace(points, triangles), "odd.glb")
+    return load_humanoid_bytes(build(Recipe(seed=2, **recipe)), "odd.glb")  # type: ignore[arg-type]
 
 
 def poses(humanoid: Humanoid, q: Floats, roots: Floats) -> Posed:
@@ -241,6 +240,32 @@ def test_without_a_mesh_only_capsules_are_judged() -> None:
         assert verdict.mesh is None
         assert note in verdict.mesh_note
         assert verdict.triangles == 0
+
+
+@pytest.mark.parametrize("bone", ["head", "hips"])
+def test_what_planning_took_for_no_body_is_not_judged(bone: str) -> None:
+    """A mesh that hangs on one bone, be it a ball on the head or a whole figure whose skin has no weights."""
+    whole = ring_body()
+    token = Body(whole.points * (1.0, 1.2, 1.0), (bone,) * len(whole.points), whole.triangles)
+    humanoid = odd_avatar(vrm="1", body=token)
+    assert not humanoid.meta.has_body
+    points = whole.points * (1.0, 1.2, 1.0)
+    ceiling = upright(((0.0, points[:, 1].max() + 0.49, 0.0), (3.0, 1.0, 3.0)))  # 1 cm into the mesh
+    verdict = judge(ShownMotion.at_rate(*gliding(T_POSE, 3, 0.1)), humanoid, scene_with(ceiling))
+    assert verdict.clean
+    assert verdict.mesh is None
+    assert "average proportions" in verdict.mesh_note
+
+
+def test_hair_that_is_counted_in_is_judged(tmp_path: Path) -> None:
+    path = tmp_path / "a.glb"
+    path.write_bytes(build(Recipe(body=ring_body())).replace(b'"name":"rightHand"', b'"name":"rightHair"'))
+    (tmp_path / "a.glb.bones.json").write_text('{"rightHand": null, "rightLowerArm": "rightLowerArm"}')
+    without, with_it = (skin_of(load_humanoid(path, LoadSettings(include_hair=hair)))[0] for hair in (False, True))
+    assert without is not None
+    assert with_it is not None
+    assert len(with_it.triangles) == len(ring_body().triangles)
+    assert len(without.triangles) < len(with_it.triangles)
 
 
 def test_regions() -> None:

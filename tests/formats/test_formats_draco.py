@@ -12,7 +12,6 @@ from compressed_vrm import with_draco, with_meshopt
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf, read_gltf
-from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh
 from shared_data import SHARED, needs_shared
@@ -25,24 +24,24 @@ def test_a_draco_mesh_is_read_with_its_skin() -> None:
     mesh = triangle_mesh(gltf, tree)
     assert len(mesh.triangles) == len(points) // 3
     plain = parse_gltf(build(Recipe(points=20)), "p.glb")
-    expected = surface_points(plain, read_nodes(plain))
-    found = surface_points(gltf, tree)
+    expected = triangle_mesh(plain, read_nodes(plain))
+    found = triangle_mesh(gltf, tree)
     world = [
-        np.einsum("pij,pj->pi", m[s.nodes][:, :3, :3], s.offsets) + m[s.nodes][:, :3, 3]
+        np.einsum("pij,pj->pi", m[s.nodes[:, 0]][:, :3, :3], s.offsets[:, 0]) + m[s.nodes[:, 0]][:, :3, 3]
         for s, m in ((expected, tree.world_matrices(tree.rotations)), (found, tree.world_matrices(tree.rotations)))
     ]
     used = world[0][: len(points) // 3 * 3]
     distance = np.linalg.norm(used[:, None] - world[1][None], axis=2)
     nearest = distance.argmin(axis=1)
     assert distance.min(axis=1).max() < 1e-3
-    assert np.array_equal(expected.nodes[: len(used)], found.nodes[nearest])
+    assert np.array_equal(expected.nodes[: len(used), 0], found.nodes[nearest, 0])
 
 
 @pytest.mark.parametrize("damage", [b"x", b"DRACO\x02\x02\x01\x01\x00\x00", bytes(300)])
 def test_damaged_data_is_one_line(damage: bytes) -> None:
     gltf = parse_gltf(draco_file(damage)[0], "d.glb")
     with pytest.raises(InputError, match="damaged") as caught:
-        surface_points(gltf, read_nodes(gltf))
+        triangle_mesh(gltf, read_nodes(gltf))
     assert "\n" not in str(caught.value)
 
 

@@ -11,9 +11,9 @@ import pytest
 from avatar_builder import Recipe, build, json_of
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf, read_gltf
-from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import pack_glb, write_glb
+from elbowroom.formats.triangles import triangle_mesh
 
 GLB = build(Recipe(vrm="1"))
 EMPTY: dict[str, Any] = {"asset": {"version": "2.0"}}
@@ -116,8 +116,8 @@ def test_scattered_buffers_and_images_are_packed_into_one_glb(tmp_path: Path) ->
     original, again = parse_gltf(GLB, "a"), parse_gltf(packed, "b")
     assert again.glb == packed
     for one, other in zip(
-        (surface_points(original, read_nodes(original))).__dict__.values(),
-        (surface_points(again, read_nodes(again))).__dict__.values(),
+        (triangle_mesh(original, read_nodes(original))).__dict__.values(),
+        (triangle_mesh(again, read_nodes(again))).__dict__.values(),
         strict=True,
     ):
         assert np.array_equal(one, other)

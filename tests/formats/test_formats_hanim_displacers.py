@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.figure import parse_figure
-from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import write_glb
 from elbowroom.formats.triangles import triangle_mesh
@@ -48,11 +47,9 @@ def read(text: str) -> Gltf:
 
 def corners(gltf: Gltf) -> Floats:
     """The places of the square's corners, in the order of `SQUARE`."""
-    tree = read_nodes(gltf)
-    points, mesh = surface_points(gltf, tree), triangle_mesh(gltf, tree)
-    np.testing.assert_allclose(np.sort(points.offsets, axis=0), np.sort(mesh.offsets[:, 0], axis=0), atol=1e-6)
-    distances = np.linalg.norm(points.offsets[None, :, :2] - PLAIN[:, None, :2], axis=2)
-    found: Floats = points.offsets[distances.argmin(axis=1)]
+    points = triangle_mesh(gltf, read_nodes(gltf)).offsets[:, 0]
+    distances = np.linalg.norm(points[None, :, :2] - PLAIN[:, None, :2], axis=2)
+    found: Floats = points[distances.argmin(axis=1)]
     return found
 
 

@@ -15,12 +15,12 @@ from compressed_vrm import with_meshopt
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import parse_gltf, read_gltf
-from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.meshopt import filters
 from elbowroom.formats.meshopt.index_codec import decode_sequence, decode_triangles
 from elbowroom.formats.meshopt.vertex_codec import decode_vertices
 from elbowroom.formats.meshopt.views import compressed, decode_view
 from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.triangles import triangle_mesh
 from shared_data import SHARED, needs_shared
 
 meshoptimizer = pytest.importorskip("meshoptimizer")
@@ -209,6 +209,6 @@ def test_a_compressed_avatar_has_the_same_surface() -> None:
         parse_gltf(with_meshopt(build(Recipe(points=20))), "m.glb"),
         parse_gltf(build(Recipe(points=20)), "p.glb"),
     )
-    one, other = (surface_points(gltf, read_nodes(gltf)) for gltf in (found, plain))
+    one, other = (triangle_mesh(gltf, read_nodes(gltf)) for gltf in (found, plain))
     assert np.array_equal(one.offsets, other.offsets)
     assert np.array_equal(one.nodes, other.nodes)

@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.proportions import last_spine
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,17 +34,9 @@ class BodyPoints:
     positions: Floats  # (P, 3) metres, in the skeleton's frame
     joints: Ints  # (P,) index of the joint
 
-
-def with_relaxed_hands(skeleton: Skeleton, points: BodyPoints) -> BodyPoints:
-    """The points of a T-posed avatar as they are when its fingers are relaxed, which they always are when it walks."""
-    local, rest = relaxed_rotations(skeleton), skeleton.positions
-    turned, places = local.copy(), rest.copy()
-    for joint, parent in enumerate(skeleton.parents):
-        if parent >= 0:
-            turned[joint] = quaternion.multiply(turned[parent], local[joint])
-            places[joint] = places[parent] + quaternion.rotate(turned[parent], rest[joint] - rest[parent])
-    offsets = points.positions - rest[points.joints]
-    return BodyPoints(places[points.joints] + quaternion.rotate(turned[points.joints], offsets), points.joints)
+    def scaled(self, factor: float) -> "BodyPoints":
+        """The points of an avatar so many times as large."""
+        return BodyPoints(factor * self.positions, self.joints)
 
 
 def part_of_points(skeleton: Skeleton, capsules: Capsules, points: BodyPoints) -> Ints:

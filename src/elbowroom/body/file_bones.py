@@ -14,8 +14,8 @@ from elbowroom.body.humanoid import BoneSource
 from elbowroom.body.rig_repair import repaired
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
-from elbowroom.formats.meshes import skin_joints
 from elbowroom.formats.nodes import NodeTree, read_nodes
+from elbowroom.formats.skins import skin_joints
 from elbowroom.formats.vrm import Vrm
 
 if TYPE_CHECKING:  # its readers are for those that have such a file

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from elbowroom.body.body_parts import BodyPoints
 from elbowroom.body.bones import PARENTS
-from elbowroom.body.fitting import coverage, coverage_of_parts
+from elbowroom.body.coverage import Coverage, coverage
 from elbowroom.body.gait import gait_shape, quickness, stride_length
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading import load_with_surface
 from elbowroom.body.size import crown_of
+from elbowroom.body.surface import Surface
 from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations
 from elbowroom.formats.gltf import parse_gltf
@@ -20,6 +20,7 @@ from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh
 
 WALK = 1.1  # m/s
+_FAR_OUT = 0.03  # metres: a place that is farther outside is worth a warning, however small
 _LEVEL, _HANGING = (
     15.0,
     65.0,
@@ -54,21 +55,32 @@ class AvatarFacts:
     bones: dict[str, dict[str, str | int]]  # bone -> node, name, how
     missing: tuple[str, ...]  # optional bones of the body that the file lacks
     capsules: dict[str, float]  # name -> radius
-    coverage: float  # of the surface by the capsules and 1 cm
-    coverage_of_parts: dict[str, float]
+    coverage: Coverage | None  # of the surface by the capsules and 1 cm; None without a mesh that is the body
     vertices: int  # of the body
     triangles: int
     clips: tuple[ClipFact, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What may go wrong with this avatar."""
+        found = self.coverage
+        if found is None or (found.is_enough and found.worst <= _FAR_OUT):
+            return ()
+        part, worst = found.worst_part, 100.0 * found.worst
+        return (
+            f"{1.0 - found.share:.1%} of the surface is more than 1 cm outside the collision body, up to "
+            f"{worst:.1f} cm at the {part}: there it may pass through things",
+        )
+
 
 def inspect_avatar(path: Path, settings: LoadSettings | None = None) -> tuple[AvatarFacts, Humanoid]:
     """Read an avatar and say what is in it; raises `InputError`."""
-    humanoid, points = load_with_surface(path, settings)
-    return facts_of(humanoid, points), humanoid
+    humanoid, surface = load_with_surface(path, settings)
+    return facts_of(humanoid, surface), humanoid
 
 
-def facts_of(humanoid: Humanoid, points: BodyPoints) -> AvatarFacts:
+def facts_of(humanoid: Humanoid, surface: Surface) -> AvatarFacts:
     """The same for an avatar that is read already."""
     skeleton, meta, rig = humanoid.skeleton, humanoid.meta, humanoid.rig
     if humanoid.glb is None or rig is None:
@@ -85,7 +97,7 @@ def facts_of(humanoid: Humanoid, points: BodyPoints) -> AvatarFacts:
         licence=meta.licence,
         contact=meta.contact,
         permissions=meta.permissions.lines(),
-        height=crown_of(humanoid, points),
+        height=crown_of(humanoid, surface),
         head_joint=skeleton.height,
         hip_joint=float(skeleton.positions[0, 1]),
         stride=float(stride_length(WALK) / quickness(gait_shape(skeleton).scale)),
@@ -94,9 +106,8 @@ def facts_of(humanoid: Humanoid, points: BodyPoints) -> AvatarFacts:
         bones={bone.bone: {"node": bone.node, "name": bone.name, "how": bone.how} for bone in meta.bones},
         missing=tuple(bone for bone in body if not skeleton.has(bone)),
         capsules=dict(zip(humanoid.capsules.names, humanoid.capsules.radii.tolist(), strict=True)),
-        coverage=coverage(skeleton, humanoid.capsules, points),
-        coverage_of_parts=coverage_of_parts(skeleton, humanoid.capsules, points),
-        vertices=len(points.positions),
+        coverage=coverage(skeleton, humanoid.capsules, surface.samples) if meta.has_body else None,
+        vertices=len(surface.vertices.positions),
         triangles=len(triangle_mesh(gltf, tree).triangles),
         clips=tuple(ClipFact(a.name, a.span[1] - a.span[0]) for a in read_animations(gltf, len(tree))),
         notes=meta.notes,

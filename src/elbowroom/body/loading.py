@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from elbowroom.body.body_parts import SIDES, BodyPoints
+from elbowroom.body.body_mesh import body_mesh, left_out_note, loose_nodes
+from elbowroom.body.body_parts import SIDES
 from elbowroom.body.bone_mapping.override import override_beside, read_override
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.figure import figure_of, rig_of, skeleton_of
@@ -18,21 +19,21 @@ from elbowroom.body.proportions import proportional_capsules
 from elbowroom.body.size import sized
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.body.stock_fit import stock_fit
-from elbowroom.body.surface import body_points, loose_nodes
+from elbowroom.body.surface import Surface, surface_of, vertex_points
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf, parse_gltf, read_gltf
-from elbowroom.formats.meshes import surface_points
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.packing import pack_glb
+from elbowroom.formats.triangles import triangle_mesh
 from elbowroom.formats.vrm import VRM_0, Vrm, read_vrm
 from elbowroom.formats.x3d.recognised import SUFFIXES, is_x3d
 
 if TYPE_CHECKING:  # few avatars need it
     from elbowroom.body.loading_hanim import HanimAsset
 
-# A mesh that leaves more of these parts bare than so many is no body: tokens, a ball on a rig.
+# A mesh that shows next to nothing of more of these parts than so many is no body: tokens, a ball on a rig.
 _CORE = frozenset({"chest", "head"} | {s + p for s in SIDES for p in ("Thigh", "Shin", "UpperArm", "Forearm")})
-_CORE_BARE = 3
+_CORE_SLIGHT = 3
 _NO_BODY = "no mesh on most of the bones: the collision body has average proportions"
 
 
@@ -51,8 +52,8 @@ def load_humanoid_bytes(data: bytes, name: str) -> Humanoid:
     return _humanoid(parse_gltf(data, name), None, None, LoadSettings())[0]
 
 
-def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple[Humanoid, BodyPoints]:
-    """The humanoid and the points of its own surface to judge its capsules by."""
+def load_with_surface(path: Path, settings: LoadSettings | None = None) -> tuple[Humanoid, Surface]:
+    """The humanoid and its own surface to judge its capsules by."""
     chosen = settings or LoadSettings()
     override = _override(path, chosen)
     if path.name.lower().endswith(SUFFIXES):
@@ -73,32 +74,31 @@ def _override(path: Path, settings: LoadSettings) -> Field | None:
 
 def _humanoid(
     gltf: Gltf, source: Path | None, override: Field | None, settings: LoadSettings, hanim: "HanimAsset | None" = None
-) -> tuple[Humanoid, BodyPoints]:
+) -> tuple[Humanoid, Surface]:
     tree = read_nodes(gltf)
     vrm = read_vrm(gltf, len(tree))
     bones = file_bones(gltf, tree, vrm, override, hanim.bones if hanim else None)
     figure = figure_of(gltf.name, bones.tree, bones.nodes, vrm.facing if vrm else None)
-    surface = surface_points(bones.gltf, bones.tree)
     carriers = list(bones.nodes.values())
     loose = frozenset[int]() if settings.include_hair else loose_nodes(bones.tree, carriers, vrm)
-    points, left_out = body_points(bones.tree, carriers, loose, surface, figure.matrices)
-    rig = rig_of(figure, points)
+    body = body_mesh(triangle_mesh(bones.gltf, bones.tree), bones.tree, carriers, loose, figure.matrices)
+    rig = rig_of(figure, vertex_points(body))
     skeleton = skeleton_of(figure, rig)
-    points = BodyPoints(rig.to_model(points.positions), points.joints)
+    surface = surface_of(body.moved(rig.to_model), skeleton)
     as_it_is = not bones.told and not settings.include_hair
-    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, points)
+    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, surface.samples)
     capsules, capsule_notes = _capsules(skeleton, fit)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
     meta = replace(
         told,
-        notes=told.notes + bones.notes + unit + left_out + capsule_notes,
+        notes=told.notes + bones.notes + unit + left_out_note(bones.tree, body) + capsule_notes,
         bones=bones.sources,
         has_body=_NO_BODY not in capsule_notes,
     )
     read_with = replace(settings, bones=bones.told)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, pack_glb(bones.gltf))
-    return sized(humanoid, points, settings.height)
+    return sized(humanoid, surface, settings.height)
 
 
 def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:
@@ -119,6 +119,6 @@ def _permissions(vrm: Vrm) -> Permissions:
 
 def _capsules(skeleton: Skeleton, fit: Fit) -> tuple[Capsules, tuple[str, ...]]:
     """The collision body, and notes on what of it has average proportions."""
-    if len(_CORE & set(fit.bare)) > _CORE_BARE:
+    if len(_CORE & set(fit.slight)) > _CORE_SLIGHT:
         return proportional_capsules(skeleton), (_NO_BODY,)
     return fit.capsules, (f"without mesh, of average proportions: {', '.join(fit.bare)}",) if fit.bare else ()

@@ -5,18 +5,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.body_parts import BodyPoints, part_of_points
+from elbowroom.body.body_parts import part_of_points
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_capsules
+from elbowroom.body.surface import Surface
 
 LARGEST_HEAD = 0.45  # metres from chin to crown: of a person 3.4 m tall
 _ASKED = 1e-3  # relative difference of heights that is none
 _LOOSE = 0.005  # share of the head's points at either end that are not measured
 
 
-def crown_of(humanoid: Humanoid, points: BodyPoints) -> float:
+def crown_of(humanoid: Humanoid, surface: Surface) -> float:
     """Height in metres of the head's highest point above the ground; of its capsule where it has no mesh."""
-    heights = _head(humanoid, points)
+    heights = _head(humanoid, surface)
     if len(heights):
         return float(heights.max())
     capsules = humanoid.capsules
@@ -26,42 +27,42 @@ def crown_of(humanoid: Humanoid, points: BodyPoints) -> float:
     return float(np.max(rest + ends + capsules.radii[head]))
 
 
-def head_height(humanoid: Humanoid, points: BodyPoints) -> float:
+def head_height(humanoid: Humanoid, surface: Surface) -> float:
     """Metres from the lowest to the highest point of the head; 0 without a mesh on it."""
-    heights = _head(humanoid, points)
+    heights = _head(humanoid, surface)
     return float(np.ptp(np.quantile(heights, [_LOOSE, 1.0 - _LOOSE]))) if len(heights) else 0.0
 
 
-def _head(humanoid: Humanoid, points: BodyPoints) -> NDArray[np.float64]:
+def _head(humanoid: Humanoid, surface: Surface) -> NDArray[np.float64]:
     """Heights (P,) of the points of the head above the ground."""
     average = proportional_capsules(humanoid.skeleton)
-    head = part_of_points(humanoid.skeleton, average, points) == average.names.index("head")
-    heights: NDArray[np.float64] = points.positions[head, 1]
+    head = part_of_points(humanoid.skeleton, average, surface.vertices) == average.names.index("head")
+    heights: NDArray[np.float64] = surface.vertices.positions[head, 1]
     return heights
 
 
-def sized(humanoid: Humanoid, points: BodyPoints, height: float | None) -> tuple[Humanoid, BodyPoints]:
+def sized(humanoid: Humanoid, surface: Surface, height: float | None) -> tuple[Humanoid, Surface]:
     """The avatar and its surface as tall as was asked for, or, where nothing was, no larger than its head allows.
 
     Without a mesh that is its body the head says nothing.
     """
-    crown = crown_of(humanoid, points)
+    crown = crown_of(humanoid, surface)
     if height is not None:
-        return _scaled(humanoid, points, height / crown, f"scaled to a height of {height:g} m")
-    head = head_height(humanoid, points) if humanoid.meta.has_body else 0.0
+        return _scaled(humanoid, surface, height / crown, f"scaled to a height of {height:g} m")
+    head = head_height(humanoid, surface) if humanoid.meta.has_body else 0.0
     if head <= LARGEST_HEAD:
-        return humanoid, points
+        return humanoid, surface
     factor = LARGEST_HEAD / head
     note = (
         f"its head is {head:.2f} m high, so the file is taken to have a unit of its own: scaled by {factor:.2f} to "
         f"{factor * crown:.2f} m (--height {crown:.2f} keeps its size)"
     )
-    return _scaled(humanoid, points, factor, note)
+    return _scaled(humanoid, surface, factor, note)
 
 
-def _scaled(humanoid: Humanoid, points: BodyPoints, factor: float, note: str) -> tuple[Humanoid, BodyPoints]:
+def _scaled(humanoid: Humanoid, surface: Surface, factor: float, note: str) -> tuple[Humanoid, Surface]:
     if abs(factor - 1.0) < _ASKED or humanoid.rig is None:
-        return humanoid, points
+        return humanoid, surface
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
     scaled = replace(
         humanoid,
@@ -75,4 +76,4 @@ def _scaled(humanoid: Humanoid, points: BodyPoints, factor: float, note: str) ->
         rig=replace(humanoid.rig, scale=factor * humanoid.rig.scale),
         meta=replace(humanoid.meta, notes=(*humanoid.meta.notes, note)),
     )
-    return scaled, BodyPoints(factor * points.positions, points.joints)
+    return scaled, surface.scaled(factor)

@@ -1,12 +1,12 @@
 """The capsules of the stock avatar, fitted beforehand: the fit takes longer than all the rest of loading it.
 
-They lie beside its file, with the digest of the bytes and the settings of the fit that they belong to, and serve for
-these alone. `tools/make_stock_avatar` writes both files.
+They lie beside its file, with the digest of the bytes that they belong to, and serve for these alone. Every course and
+recording hangs on them, so they stay as long as the avatar does; a test sees to it that they hold its surface.
+`tools/make_stock_avatar` writes both files.
 """
 
 import hashlib
 import json
-from dataclasses import asdict
 from functools import cache
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import DofGroup
-from elbowroom.body.fitting import Fit, FitSettings
+from elbowroom.body.fitting import Fit
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.body.stock import stock_fit_path
 
@@ -22,7 +22,7 @@ from elbowroom.body.stock import stock_fit_path
 def stock_fit(avatar: bytes | None, skeleton: Skeleton) -> Fit | None:
     """The fit of an avatar, given the bytes of its file and its skeleton, if this is the stock avatar."""
     stored = _stored()
-    if avatar is None or len(avatar) != stored.get("avatar_bytes") or stored["fit"] != asdict(FitSettings()):
+    if avatar is None or len(avatar) != stored.get("avatar_bytes"):
         return None
     return fit_of(stored, skeleton) if hashlib.sha256(avatar).hexdigest() == stored["avatar_sha256"] else None
 
@@ -34,12 +34,11 @@ def _stored() -> dict[str, Any]:
 
 
 def fit_document(avatar: bytes, skeleton: Skeleton, fit: Fit) -> dict[str, Any]:
-    """What is stored of a fit with the settings that loading has; JSON keeps every bit of its numbers."""
+    """What is stored of a fit; JSON keeps every bit of its numbers."""
     capsules = fit.capsules
     return {
         "avatar_bytes": len(avatar),
         "avatar_sha256": hashlib.sha256(avatar).hexdigest(),
-        "fit": asdict(FitSettings()),
         "capsules": [
             {
                 "name": name,
@@ -66,4 +65,4 @@ def fit_of(document: dict[str, Any], skeleton: Skeleton) -> Fit:
         radii=np.array([row["radius"] for row in rows]),
         groups=tuple(DofGroup[row["group"]] for row in rows),
     )
-    return Fit(capsules, tuple(document["bare"]))
+    return Fit(capsules, tuple(document["bare"]), ())

@@ -55,7 +55,9 @@ def inspect(
     if pose_sheet is not None and found:
         _draw(pose_sheet, [humanoid for _, humanoid in found], capsules)
     if json:
-        print_json({"avatars": [asdict(facts) for facts, _ in found], "refused": refused})
+        print_json(
+            {"avatars": [asdict(facts) | {"warnings": facts.warnings} for facts, _ in found], "refused": refused}
+        )
     elif pose_sheet is None:
         for facts, _ in found:
             _print(facts)
@@ -90,7 +92,7 @@ def _draw(path: Path, humanoids: "list[Humanoid]", capsules: bool) -> None:
 def _print(facts: "AvatarFacts") -> None:
     print_row(facts.name, _about(facts))
     print_row("Bones", {bone: f"{source['name']}  ({source['how']})" for bone, source in facts.bones.items()})
-    parts = facts.coverage_of_parts
+    parts = facts.coverage.parts if facts.coverage else {}
     rows = {
         name: f"{100 * radius:.1f} cm" + (f", covers {parts[name]:.1%}" if name in parts else "")
         for name, radius in facts.capsules.items()
@@ -102,6 +104,16 @@ def _print(facts: "AvatarFacts") -> None:
         print_row("Clips", rows | more)
     for note in facts.notes:
         print(f"note: {note}")
+    for warning in facts.warnings:
+        print(f"warning: {warning}")
+
+
+def _covered(facts: "AvatarFacts") -> str:
+    found = facts.coverage
+    if found is None:
+        return "of average proportions"
+    farthest = f"; farthest out {100.0 * found.worst:.1f} cm, at the {found.worst_part}" if found.worst > 0.0 else ""
+    return f"{found.share:.1%} of the surface within 1 cm{farthest}"
 
 
 def _about(facts: "AvatarFacts") -> dict[str, str]:
@@ -122,6 +134,6 @@ def _about(facts: "AvatarFacts") -> dict[str, str]:
         "rest pose": facts.rest_pose,
         "bones": f"{len(facts.bones)}, found by {', '.join(hows)}",
         "missing, all optional": ", ".join(facts.missing) or "none",
-        "capsules": f"{len(facts.capsules)}, {facts.coverage:.1%} of the surface within 1 cm",
+        "capsules": f"{len(facts.capsules)}, {_covered(facts)}",
         "mesh": f"{facts.triangles} triangles, {facts.vertices} vertices of the body",
     }

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
-from elbowroom.formats.meshes import Skin, read_skin
 from elbowroom.formats.nodes import NodeTree
 from elbowroom.formats.primitives import Primitive, morphs_of
+from elbowroom.formats.skins import Skin, read_skin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

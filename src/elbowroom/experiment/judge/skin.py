@@ -1,4 +1,4 @@
-"""An avatar's own surface, posed by its joints: linear blend skinning of every triangle of its file.
+"""An avatar's own surface, posed by its joints: linear blend skinning of every triangle of its body.
 
 A vertex that hangs on several joints is the weighted mean of the places to which each of them would carry it. With b
 its place in T-pose by one joint alone, r that joint's place in T-pose, and p, R the posed joint, this place is
@@ -10,21 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.body_mesh import body_mesh, loose_nodes
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.rig import Rig
-from elbowroom.body.surface import loose_nodes
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.formats.gltf import parse_gltf
-from elbowroom.formats.nodes import NodeTree, read_nodes
-from elbowroom.formats.triangles import TriangleMesh, triangle_mesh
+from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.triangles import triangle_mesh
 from elbowroom.formats.vrm import read_vrm
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
-
-_FEWEST_SKINNED = 50  # vertices; with fewer, the body is made of rigid pieces
-_FARTHEST = 100.0  # metres from the hips: beyond, numbers have overflowed and nothing is drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,47 +47,22 @@ class Skin:
 def skin_of(humanoid: Humanoid) -> tuple[Skin | None, str]:
     """The skin of an avatar, or None and the reason why there is none to judge.
 
-    Raises `InputError` where the mesh is damaged.
+    It has the triangles that its capsules were fitted to. Raises `InputError` where the mesh is damaged.
     """
-    if humanoid.glb is None or humanoid.rig is None:
+    rig = humanoid.rig
+    if humanoid.glb is None or rig is None:
         return None, "the avatar has no file"
+    if not humanoid.meta.has_body:
+        return None, "the file has no mesh on most of the bones: it was planned with average proportions"
     gltf = parse_gltf(humanoid.glb, humanoid.name)
     tree = read_nodes(gltf)
-    mesh = triangle_mesh(gltf, tree)
+    bones = rig.nodes.tolist()
     vrm = read_vrm(gltf, len(tree))
-    skin = _skin(mesh, tree, humanoid, humanoid.rig, loose_nodes(tree, humanoid.rig.nodes.tolist(), vrm))
-    return (skin, "") if len(skin.triangles) else (None, "the file has no mesh on the body")
-
-
-def _skin(mesh: TriangleMesh, tree: NodeTree, humanoid: Humanoid, rig: Rig, springs: frozenset[int]) -> Skin:
-    joint_of, foreign = _riders(tree, rig, springs)
-    joints = joint_of[mesh.nodes]
-    offsets = _in_t_pose(mesh, tree, rig) - humanoid.skeleton.positions[joints]
-    body = ~foreign[mesh.nodes[:, 0]] & (np.abs(offsets).max(axis=(1, 2), initial=0.0) < _FARTHEST)
-    if np.count_nonzero(body & mesh.skinned) >= _FEWEST_SKINNED:
-        body &= mesh.skinned
-    kept = body[mesh.triangles].all(axis=1)
-    return Skin(mesh.triangles[kept], joints, mesh.weights, offsets, int(np.count_nonzero(~kept)))
-
-
-def _riders(tree: NodeTree, rig: Rig, springs: frozenset[int]) -> tuple[Ints, Flags]:
-    """For every node the joint that carries it, and whether it moves otherwise: by a spring, or not with the body."""
-    own = {int(node): joint for joint, node in enumerate(rig.nodes)}
-    joints, foreign = np.zeros(len(tree), np.int64), np.ones(len(tree), bool)
-    for node in map(int, tree.order):
-        above = int(tree.parents[node])
-        if node in own:
-            joints[node], foreign[node] = own[node], False
-        elif above >= 0:
-            joints[node], foreign[node] = joints[above], foreign[above] or node in springs
-    return joints, foreign
-
-
-def _in_t_pose(mesh: TriangleMesh, tree: NodeTree, rig: Rig) -> Floats:
-    """Where each node of each vertex alone would have it in T-pose, (V, K, 3), in the model's root frame."""
+    loose = frozenset[int]() if humanoid.settings.include_hair else loose_nodes(tree, bones, vrm)
     rotations = tree.rotations.copy()
     rotations[rig.nodes] = rig.local_rotations
-    carried = tree.world_matrices(rotations)[mesh.nodes]
-    with np.errstate(all="ignore"):
-        places = np.einsum("vkij,vkj->vki", carried[..., :3, :3], mesh.offsets) + carried[..., :3, 3]
-        return np.nan_to_num(rig.to_model(places), nan=np.inf)
+    body = body_mesh(triangle_mesh(gltf, tree), tree, bones, loose, tree.world_matrices(rotations))
+    if not len(body.triangles):
+        return None, "the file has no mesh on the body"
+    offsets = rig.to_model(body.places) - humanoid.skeleton.positions[body.joints]
+    return Skin(body.triangles, body.joints, body.weights, offsets, len(body.left_out)), ""
