@@ -30,9 +30,10 @@ $(VENV)/made:
 	@touch $@
 
 $(VENV)/installed: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
-	@echo "==> Installing Elbowroom and building its page (about a minute the first time)"
+	@echo "==> Installing Elbowroom and building its page, then compiling its kernels (two minutes the first time)"
 	@$(BIN)/python -m pip install --editable .
 	@$(BIN)/python -m compileall -q src
+	@$(BIN)/elbowroom compile
 	@touch $@
 
 $(VENV)/developer: $(VENV)/installed

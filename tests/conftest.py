@@ -1,6 +1,7 @@
 import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -8,3 +9,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 # On a busy machine an example may take seconds: how long things take is measured by benchmarks, not by tests.
 settings.register_profile("calm", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("calm")
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _kernels_are_compiled_where_they_are_needed() -> None:
+    """Commands that run within the tests' own process start no compilers: a test uses few of the kernels."""
+    from elbowroom.server import kernel_cache
+
+    kernel_cache.is_warm = lambda: True

@@ -7,10 +7,11 @@ import pytest
 
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.course import LARGEST_SEED, CourseMaker, make_course
+from elbowroom.experiment.gauntlet.course import CourseMaker, make_course
 from elbowroom.experiment.gauntlet.draw import Draw
 from elbowroom.experiment.gauntlet.levels import BEND_TWIST, LEVELS
 from elbowroom.experiment.gauntlet.line import CourseLine, Turn, steady_walk
+from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.placing import Placed
 from elbowroom.world.scene import Scene
 from gauntlet_courses import SAMPLE, course, stock

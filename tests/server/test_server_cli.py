@@ -50,7 +50,7 @@ def busy(library, url, open_page):
     ThreadPoolExecutor(1).submit(lambda: [sum(range(10**7)) for _ in range(10**6)])
     print(library.avatars.folder, flush=True)
 
-play.warm_up_with_progress = lambda library, console: None
+play.compile_first = lambda: None
 play._ready = busy
 play.serve_until_interrupted(lambda: Library.open("empty"), "127.0.0.1", 0, open_page=False)
 """

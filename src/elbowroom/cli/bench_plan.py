@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ def plan(
     from elbowroom.experiment.machine import machine_kind
 
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
+    compile_first(quiet=quiet)
     if plots is not None:
         _make_folder(plots)
     with progress_bar("Planning", amount(settings), quiet) as bar:

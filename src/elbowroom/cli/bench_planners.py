@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def planners(
     chosen = PlannersSettings(trials=trials, limit=limit)
     if scene is not None or level is not None:
         chosen = PlannersSettings(tuple(scene or ()), tuple(level or ()), trials, limit)
+    compile_first(quiet=quiet)
     with progress_bar("Crossing", amount(chosen), quiet) as bar:
         report = run(chosen, bar.move)
     if json:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import Bar, print_json, print_row, progress_bar
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def steer(
     from elbowroom.experiment.machine import machine_kind
 
     settings = SteerSettings(tuple(scene or (_LIVE if sessions else ())), seconds, rounds)
+    compile_first(quiet=quiet)
     with progress_bar("Steering", len(settings.scenes) if sessions else amount(settings), quiet) as bar:
         if sessions:
             live = dict(_live(settings, sessions, bar))

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
@@ -55,6 +57,8 @@ def gauntlet(
     Crossed: through in time; straight: and never stuck; stuck: at least once; stopped: not through, but never touching.
     Exit code 0: all crossed and nothing touched, 1: not.
     """
+    check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones])
+    compile_first(quiet=quiet)
     from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialSettings

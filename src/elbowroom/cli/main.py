@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom import __version__
-from elbowroom.cli import bench, clips, doctor, gauntlet, inspect, play, replay, table1, verify, walk
+from elbowroom.cli import bench, clips, doctor, first_run, gauntlet, inspect, play, replay, table1, verify, walk
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -90,5 +90,6 @@ app.command("table1", epilog=table1.EXAMPLES)(table1.table1)
 app.command("gauntlet", epilog=gauntlet.EXAMPLES)(gauntlet.gauntlet)
 app.command("verify", epilog=verify.EXAMPLES)(verify.verify)
 app.command("inspect", epilog=inspect.EXAMPLES)(inspect.inspect)
+app.command("compile", epilog=first_run.EXAMPLES)(first_run.compile_)
 app.command("doctor", epilog=doctor.EXAMPLES)(doctor.doctor)
 app.add_typer(bench.bench, name="bench")

@@ -12,6 +12,7 @@ import typer
 
 from elbowroom.cli import clip_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -66,6 +67,7 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
     from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.heap import share_one_heap
     from elbowroom.server.serving import listen, serve, url_of
+    from elbowroom.server.warmup import first_steps
 
     share_one_heap()
     console = Console(stderr=True, highlight=False)
@@ -77,32 +79,12 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
         listen(host, port) as opened,
     ):
         library = stack.enter_context(contextlib.closing(make()))
-        warm_up_with_progress(library, console)
+        compile_first()
+        first_steps(library)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)
         serve(library, opened, host, lambda: _ready(library, url_of(opened), open_page))
     console.print("Stopped.")
-
-
-def warm_up_with_progress(library: "Library", console: "Console") -> None:
-    """Compile what is not compiled yet, and show what; quick and silent when everything is."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from elbowroom.server.compiling import compile_apart
-    from elbowroom.server.kernel_cache import session_kernels
-    from elbowroom.server.warmup import first_steps
-
-    columns = (TextColumn("Compiling kernels (once)"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, TextColumn("{task.description}"), console=console, transient=True) as progress:
-        task = progress.add_task("", total=len(session_kernels()), visible=False)
-
-        def report(kernel: str, number: int) -> None:
-            progress.update(task, completed=number, description=kernel, visible=True)
-            if number == 0 and not console.is_terminal:
-                console.print("Compiling kernels: about a minute, once.")
-
-        compile_apart(report)
-        first_steps(library, report)
 
 
 def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None:

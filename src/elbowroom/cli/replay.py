@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def replay(
     from elbowroom.control.replay import replay as run_again
 
     recorded = Recording(recording)
+    compile_first(quiet=quiet)
     with progress_bar("Replaying", None, quiet) as bar:
         humanoid = recorded.header.avatar.load(avatar)
         result = run_again(recorded, humanoid, lambda done: bar.move(done, f"{done} frames"))

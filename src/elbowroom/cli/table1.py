@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import json_text, print_json, progress_bar
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.errors import InputError
@@ -43,6 +45,10 @@ def table1(
     where an interrupted one was, and more seeds add to what is there. Exit code 0: done, 1: a shown pose touched an
     obstacle (a crossing that fails is a result like any other).
     """
+    check_arguments(
+        scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
+    )
+    compile_first(quiet=quiet)
     from elbowroom.experiment.parallel import check_jobs, usable_cores
     from elbowroom.experiment.report.crossings import successful_crossings
     from elbowroom.experiment.report.page import report_html
@@ -52,7 +58,7 @@ def table1(
     settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     processes = usable_cores() if jobs is None else jobs
     check_jobs(processes)
-    with progress_bar("Opening the avatar (the first run compiles kernels)", None, quiet):
+    with progress_bar("Opening the avatar", None, quiet):
         about = _about(settings, processes)
     try:
         with time_left_bar("Trials", quiet) as move:

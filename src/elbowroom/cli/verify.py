@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ def verify(
     from elbowroom.world.scene import Scene
 
     settings, recorded = JudgeSettings(rate=rate, mesh=mesh), Recording(recording)
+    compile_first(quiet=quiet)
     motion = ShownMotion.of(recorded)
     scene = Scene.from_dict(recorded.header.scene, str(recording))
     with progress_bar("Judging", float(motion.times[-1]), quiet) as bar:

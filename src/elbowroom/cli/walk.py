@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli import clip_options
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -47,6 +49,8 @@ def walk(
 
     A scripted user walks forward, and when stuck backs up and tries again. Exit code 0: through in time, 1: not.
     """
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
+    compile_first(quiet=quiet)
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
     from elbowroom.experiment.gauntlet.scenes import load_scene
@@ -54,7 +58,7 @@ def walk(
     place = load_scene(scene)
     settings = CrossingSettings(planner, queue, seed, limit)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
-    with progress_bar("Compiling kernels (the first run takes longest)", None, quiet):
+    with progress_bar("Opening the avatar", None, quiet):
         humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)

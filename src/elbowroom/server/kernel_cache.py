@@ -12,6 +12,9 @@ from llvmlite.binding import get_host_cpu_name
 from elbowroom.jit import kernels_made
 from elbowroom.kernel_cache import cache_folder
 
+_PACKAGE = Path(__file__).parents[1]
+_ROOMS = ("geometry", "body", "clips", "world", "planning", "control")  # whose kernels a live session may use
+
 
 def kernels() -> list[Any]:
     """The kernels of our modules imported so far; each is kept on disk once it is compiled."""
@@ -20,8 +23,7 @@ def kernels() -> list[Any]:
 
 def session_kernels() -> list[Any]:
     """Those of `kernels` that a live session may use: not what decodes compressed files or judges experiments."""
-    aside = ("elbowroom.formats.", "elbowroom.experiment.")
-    return [kernel for kernel in kernels() if not kernel.__module__.startswith(aside)]
+    return [kernel for kernel in kernels() if kernel.__module__.split(".")[1] in _ROOMS]
 
 
 def kept_kernels() -> list[Any]:
@@ -60,12 +62,11 @@ def mark_warm() -> None:
 
 
 def _stamp_file() -> Path:
-    return Path(max(cache_folders(), default=os.devnull)) / "elbowroom-sessions.warm"
+    return (cache_folder(_PACKAGE) or Path(os.devnull)) / "elbowroom-sessions.warm"
 
 
 def _stamp() -> str:
-    """What compiled kernels depend on: the sources as they lie there, the compiler, the processor."""
-    package = Path(__file__).parents[1]
-    files = sorted(package.rglob("*.py"))
-    seen = [f"{file.relative_to(package)} {file.stat().st_mtime_ns} {file.stat().st_size}" for file in files]
+    """What compiled kernels depend on: the sources of the rooms that hold any, the compiler, the processor."""
+    files = sorted(file for room in _ROOMS for file in (_PACKAGE / room).rglob("*.py"))
+    seen = [f"{file.relative_to(_PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files]
     return hashlib.sha256("\n".join([numba.__version__, get_host_cpu_name(), *seen]).encode()).hexdigest()

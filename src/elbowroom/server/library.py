@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.scenes import NAMED, PREFIX, load_scene, parse_name, random_names
+from elbowroom.experiment.gauntlet.names import NAMED, PREFIX, parse_name
+from elbowroom.experiment.gauntlet.scenes import load_scene, random_names
 from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore

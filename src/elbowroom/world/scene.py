@@ -3,8 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +12,10 @@ from elbowroom.world.boxes import Boxes
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.stock_scenes import check_scene_name, stock_folder, stock_names
 
 MAX_FILE_BYTES = 16 * 2**20
 _SCENES_ARE = "a scene is a JSON file (docs/scenes.md), places in other formats are not read"
-
-
-class UnknownSceneError(InputError):
-    """There is no scene of this name."""
 
 
 @dataclass(frozen=True)
@@ -61,20 +56,17 @@ class Scene:
         (`elbowroom/world/data/scene.schema.json`), or its start stands in an obstacle.
         """
         stock = None if isinstance(name_or_path, Path) else name_or_path.lower()
-        if stock in cls.stock_names():
+        if stock in stock_names():
             source = f"{stock}.json"
-            return cls.from_dict(parse_json((_stock() / source).read_text("utf-8"), source), source)
+            return cls.from_dict(parse_json((stock_folder() / source).read_text("utf-8"), source), source)
+        check_scene_name(name_or_path)
         path = Path(name_or_path)
-        if not path.suffix and not path.is_file():
-            names = ", ".join(cls.stock_names())
-            raise UnknownSceneError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor a .json file")
         return cls.from_dict(_read(path), str(path))
 
     @staticmethod
     def stock_names() -> tuple[str, ...]:
         """The names of the scenes that come with the package: the paper's four first."""
-        found = sorted(entry.name.removesuffix(".json") for entry in _stock().iterdir() if entry.name.endswith(".json"))
-        return tuple(sorted(found, key=len))
+        return stock_names()
 
     @classmethod
     def from_dict(cls, document: Any, source: str = "scene") -> "Scene":
@@ -124,7 +116,3 @@ def _read(path: Path) -> Any:
     if kind := kind or foreign_document(document):
         raise InputError(f"{path}: is {kind}; {_SCENES_ARE}")
     return document
-
-
-def _stock() -> Traversable:
-    return files("elbowroom.world") / "data" / "scenes"

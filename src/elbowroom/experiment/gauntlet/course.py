@@ -17,14 +17,13 @@ from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.levels import TWIST, Level, level_of
 from elbowroom.experiment.gauntlet.line import CourseLine, Turn
 from elbowroom.experiment.gauntlet.motion import DRAWN, Passage, draw_motion
+from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.placing import Placed, fill_passage, surroundings
 from elbowroom.experiment.gauntlet.self_clearance import SelfClearance
 from elbowroom.experiment.gauntlet.speeds import HumanSpeeds
 from elbowroom.experiment.gauntlet.sweep import SweptBody
 from elbowroom.world.scene import Scene
 from elbowroom.world.scene_format import FORMAT, VERSION
-
-LARGEST_SEED = 2**32 - 1
 
 _ATTEMPTS = 200
 _SPEED = (0.8, 1.1)  # m/s

@@ -12,8 +12,8 @@ from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.recording import this_machine
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.course import LARGEST_SEED
 from elbowroom.experiment.gauntlet.levels import level_of
+from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
 from elbowroom.experiment.machine import machine_kind, program_digest
