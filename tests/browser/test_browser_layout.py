@@ -8,7 +8,7 @@ from live_page import LivePage
 
 Open = Callable[..., LivePage]
 
-PANELS = ("#brand", "#bar", "#hud", "#status", "#menu")
+PANELS = ("#brand", "#bar", "#hud", "#status", "#menu", "#inset")
 SIZES = [(1280, 720), (1000, 600), (900, 600), (640, 480), (621, 700), (390, 844), (844, 390), (320, 568)]
 PHONES = [pytest.param((390, 844), id="portrait"), pytest.param((844, 390), id="landscape")]
 SMALLEST = """
@@ -34,11 +34,12 @@ def overlap(a: dict[str, float], b: dict[str, float]) -> bool:
 def test_no_panel_lies_on_another(open_page: Open) -> None:
     live = open_page("scene=doorway", viewport=SIZES[0])  # a long title
     live.page.wait_for_selector("#status:not(:empty)")
+    live.page.keyboard.press("i")
     for width, height in SIZES:
         live.page.set_viewport_size({"width": width, "height": height})
         live.page.wait_for_timeout(400)  # the menu slides
         found = boxes(live)
-        assert {"#brand", "#bar", "#hud", "#status"} <= set(found)
+        assert {"#brand", "#bar", "#hud", "#status", "#inset"} <= set(found)
         for one, box in found.items():
             assert (box["x"] >= 0, box["x"] + box["width"] <= width) == (True, True), (one, width)
             assert box["y"] + box["height"] <= height

@@ -1,11 +1,13 @@
 /** The page: brings session, picture, controls and panels together, a frame at a time. */
 
 import { uploadFile } from "./avatar/upload";
+import { nextView, viewNamed, type ViewName } from "./camera/views";
 import { FrameStats } from "./frame_stats";
 import type { AvatarMessage, Catalog, ClipMessage, Crossed, Loading, Notice, Plan, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
 import { Controls } from "./input/controls";
 import type { Action } from "./input/keyboard";
 import { PointerInput } from "./input/pointer";
+import type { SteeringMode } from "./input/steering";
 import type { ConnectionState } from "./net/connection";
 import { sessionUrl } from "./net/endpoints";
 import type { ShownPose } from "./net/pose_timeline";
@@ -23,6 +25,8 @@ import { Menu, type MenuListener } from "./ui/menu";
 import { Notices } from "./ui/notices";
 import { StatusLine } from "./ui/status_line";
 import { Veil } from "./ui/veil";
+
+type Deed = Exclude<Action, `view:${string}`>;
 
 const LONGEST_FRAME = 0.1;
 const SLOW_MOTION = 0.25;
@@ -67,7 +71,8 @@ export class App implements SessionListener, MenuListener {
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
     keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
-    this.showHud();
+    this.showPanels();
+    this.menu.showView(this.picture.camera.viewName);
     this.setBare(!wishes.showUi);
     this.session = new Session(sessionUrl(), this, wishes);
     this.subscribe();
@@ -157,7 +162,7 @@ export class App implements SessionListener, MenuListener {
   prefer(change: Partial<Preferences>): void {
     Object.assign(this.preferences, change);
     for (const name of ["steering", "quality", "theme"] as const) this.menu.showPreference(name, this.preferences[name]);
-    this.showHud();
+    this.showPanels();
     if (change.theme) this.applyTheme();
     if (change.quality) this.picture.setQuality(change.quality);
     storePreferences(this.preferences);
@@ -200,11 +205,12 @@ export class App implements SessionListener, MenuListener {
   }
 
   action(action: Action): void {
-    this.actions[action]();
+    if (action.startsWith("view:")) this.showView(viewNamed(action.slice("view:".length)));
+    else this.actions[action as Deed]();
   }
 
   // Each action by its name; the keyboard, the gamepad and the bar share them.
-  private readonly actions: Readonly<Record<Action, () => void>> = {
+  private readonly actions: Readonly<Record<Deed, () => void>> = {
     reset: () => {
       this.statusLine.restart();
       this.session.send({ type: "reset" });
@@ -219,6 +225,9 @@ export class App implements SessionListener, MenuListener {
     overlays: () => this.toggleAllOverlays(),
     hideUi: () => this.setBare(!document.body.classList.contains("bare")),
     menu: () => this.menu.setOpen(!this.menu.isOpen),
+    nextView: () => this.showView(nextView(this.picture.camera.viewName)),
+    inset: () => this.prefer({ inset: !this.preferences.inset }),
+    share: () => undefined,
     help: () => this.help.toggle(),
     escape: () => {
       this.setBare(false);
@@ -232,7 +241,7 @@ export class App implements SessionListener, MenuListener {
       action: (action) => this.action(action),
       look: (yaw, pitch) => this.picture.camera.turn(yaw, pitch),
       cameraHeading: () => this.picture.camera.heading,
-      steering: () => this.preferences.steering,
+      steering: () => this.steering,
     };
   }
 
@@ -242,9 +251,20 @@ export class App implements SessionListener, MenuListener {
     this.menu.setOpen(this.menu.isOpen);
   }
 
-  private showHud(): void {
-    this.menu.showHud(this.preferences.hud);
+  private showPanels(): void {
+    this.menu.showPanels(this.preferences);
     byId("hud", HTMLElement).hidden = !this.preferences.hud;
+    byId("inset", HTMLElement).hidden = !this.preferences.inset;
+  }
+
+  private showView(name: ViewName): void {
+    this.picture.camera.show(name);
+    this.menu.showView(name);
+  }
+
+  /** From behind as the user prefers it; all other cameras show the avatar walk the way it faces. */
+  private get steering(): SteeringMode {
+    return this.picture.camera.viewName === "behind" ? this.preferences.steering : "tank";
   }
 
   private toggleAllOverlays(): void {
@@ -295,7 +315,8 @@ export class App implements SessionListener, MenuListener {
     if (intent.forward !== 0 || intent.right !== 0 || intent.strafe !== 0) this.statusLine.moved();
     this.statusLine.update(this.pose, status, settings, now);
     this.picture.draw(this.pose, {
-      status, intent, steering: this.preferences.steering, shown: this.preferences.overlays,
+      status, intent, steering: this.steering, shown: this.preferences.overlays,
+      inset: this.preferences.inset && !document.body.classList.contains("bare"),
       markTouching: settings?.assist === false,
     }, dt);
     this.framesDrawn++;

@@ -2,6 +2,7 @@
 
 import { Vector3 } from "three";
 import { AvatarView } from "./avatar/avatar_view";
+import { InsetCamera } from "./camera/inset";
 import type { Vec3 } from "./camera/spring_arm";
 import { ThirdPersonCamera, type Followed } from "./camera/third_person";
 import type { AvatarMessage, Plan, SceneMessage, Status } from "./generated/messages";
@@ -12,6 +13,7 @@ import type { Theme } from "./stage/palette";
 import { cheaper, fixedQuality, QualityGovernor, startingQuality, type Quality, type QualityName } from "./stage/quality";
 import { Stage } from "./stage/stage";
 import { World } from "./stage/world";
+import { byId } from "./ui/dom";
 
 const EYE_BELOW_HEAD = 0.06;
 const DEFAULT_EYE = 1.45;
@@ -23,6 +25,8 @@ export interface Scenery extends Omit<Moment, "pose" | "bodyIsAvatar"> {
   readonly status: Status | null;
   readonly intent: Intent;
   readonly steering: SteeringMode;
+  /** Whether the side view is shown in a corner. */
+  readonly inset: boolean;
 }
 
 export class Picture {
@@ -31,6 +35,8 @@ export class Picture {
   readonly avatar = new AvatarView();
   readonly camera: ThirdPersonCamera;
   readonly overlays: OverlayDrawing;
+  private readonly inset = new InsetCamera();
+  private readonly insetFrame = byId("inset", HTMLElement);
   private readonly governor = new QualityGovernor();
   private automatic: boolean;
   private message: AvatarMessage | null = null;
@@ -98,11 +104,13 @@ export class Picture {
     if (pose) this.place(pose, scenery, dt);
     this.world.gate.update(dt);
     const { camera } = this.stage;
+    this.stage.setLift(this.camera.lift);
     camera.position.set(...this.camera.position);
     camera.lookAt(...this.camera.target);
     camera.updateMatrixWorld();
     this.overlays.seenBy(camera);
     this.stage.render();
+    if (pose && scenery.inset) this.drawInset(this.followed(pose, scenery), dt);
     this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
   }
 
@@ -143,11 +151,20 @@ export class Picture {
     this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.drawCapsules ?? false });
   }
 
+  /** The side view, where the page leaves a frame for it. */
+  private drawInset(followed: Followed, dt: number): void {
+    const frame = this.insetFrame.getBoundingClientRect();
+    if (frame.width < 1) return;
+    this.inset.update(followed, frame.width / frame.height, dt);
+    this.overlays.seenBy(this.inset.camera);
+    this.stage.renderInto(this.inset.camera, frame);
+  }
+
   private followed(pose: ShownPose, { intent, steering }: Scenery): Followed {
     const eye = this.message ? this.message.height - EYE_BELOW_HEAD : DEFAULT_EYE;
     const moving = intent.forward !== 0 || intent.right !== 0 || intent.strafe !== 0;
     return {
-      x: pose.x, z: pose.z, heading: pose.heading, eye: pose.y + eye,
+      x: pose.x, z: pose.z, heading: pose.heading, eye: pose.y + eye, ground: pose.y,
       sideways: steering === "camera" && intent.strafe === 0 ? intent.right : 0,
       trail: steering === "tank" && moving,
     };

@@ -14,6 +14,8 @@ export interface Preferences {
   overlays: Set<OverlayName>;
   /** Whether the measurements are shown. */
   hud: boolean;
+  /** Whether the side view is shown in a corner. */
+  inset: boolean;
 }
 
 /** Wishes for the session from the address line, sent once at the start; null where the line says nothing. */
@@ -43,6 +45,7 @@ export function readPreferences(query: URLSearchParams): Preferences {
     steering: pick("steering", STEERINGS, "camera"),
     overlays: typeof overlays === "string" ? parseOverlays(overlays) : new Set(),
     hud: stored["hud"] !== false,
+    inset: stored["inset"] === true,
   };
 }
 

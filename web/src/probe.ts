@@ -37,6 +37,7 @@ export interface AppState {
   readonly paused: boolean;
   readonly clearance: number;
   readonly camera: readonly number[];
+  readonly view: string;
   readonly cameraHeading: number;
   readonly heldKeys: number;
   readonly overlays: readonly string[];
@@ -92,6 +93,7 @@ function snapshot(app: App): AppState {
     paused: flag(POSE_FLAGS.paused),
     clearance: pose?.clearance ?? Infinity,
     camera: [...picture.camera.position],
+    view: picture.camera.viewName,
     cameraHeading: picture.camera.heading,
     heldKeys: controls.heldKeys,
     overlays: [...app.preferences.overlays],

@@ -20,6 +20,8 @@ export const PAD_BUTTONS: readonly PadButton[] = [
   { number: 4, name: "LB", deed: "stepLeft" },
   { number: 5, name: "RB", deed: "stepRight" },
   { number: 11, name: "R3", deed: "recenter" },
+  { number: 1, name: "B", deed: "nextView" },
+  { number: 6, name: "LT", deed: "inset" },
   { number: 2, name: "X", deed: "assist" },
   { number: 3, name: "Y", deed: "cameraMode" },
   { number: 8, name: "Back", deed: "reset" },

@@ -1,16 +1,18 @@
 /** The keyboard, by `event.code`, so that the keys lie in the same place on every layout. */
 
+import { VIEW_NAMES, type ViewName } from "../camera/views";
 import type { Intent } from "./steering";
 
 /** Something that one key press does once. */
 export type Action =
   | "reset" | "pause" | "step" | "slow" | "cameraMode" | "overlays" | "hideUi" | "assist" | "help" | "recenter"
-  | "pointerLock" | "escape" | "menu";
+  | "pointerLock" | "escape" | "menu" | "nextView" | "inset" | "share" | `view:${ViewName}`;
 
 /** What each key does, by `event.code`. */
 export const KEY_ACTIONS: Readonly<Record<string, Action>> = {
   KeyR: "reset", KeyP: "pause", Space: "pause", Period: "step", KeyM: "slow", KeyV: "cameraMode", KeyO: "overlays",
   KeyH: "hideUi", KeyT: "assist", F1: "help", KeyC: "recenter", KeyL: "pointerLock", Escape: "escape", KeyN: "menu",
+  KeyB: "nextView", KeyI: "inset", ...Object.fromEntries(VIEW_NAMES.map((name, i) => [`Digit${i + 1}`, `view:${name}` as const])),
 };
 
 /** Keys that steer while they are held. */

@@ -15,9 +15,8 @@ const SUN_DISTANCE = 24;
 const SHADOW_EXTENT = 7.5;
 const SHADOW_PIXELS = 2048;
 const FIELD_OF_VIEW = 50;
-/** The picture is shifted up by this share of its height, so that the feet stand clear of what lies at its lower edge. */
-const LIFT = 0.08;
-const LIFT_UPRIGHT = 0.02;
+/** An upright picture has room enough below the feet: it is shifted up by this share of what is asked for. */
+const LIFT_UPRIGHT = 0.25;
 
 export class Stage {
   readonly scene = new Scene();
@@ -31,6 +30,7 @@ export class Stage {
   private readonly fill = new AmbientLight(0xffffff, 0.12);
   private room: Texture | null = null;
   private coveredRight = 0;
+  private lift = 0;
 
   /** @param host the element that holds the canvas */
   constructor(private readonly host: HTMLElement, quality: Quality) {
@@ -95,6 +95,28 @@ export class Stage {
     this.renderer.render(this.scene, this.camera);
   }
 
+  /** Draws once more, by another camera, into a part of the picture: CSS pixels from its upper left corner. */
+  renderInto(camera: PerspectiveCamera, { left, top, width, height }: Omit<DOMRect, "toJSON">): void {
+    const { renderer } = this;
+    const bottom = this.host.clientHeight - top - height;
+    renderer.setScissorTest(true);
+    renderer.setScissor(left, bottom, width, height);
+    renderer.setViewport(left, bottom, width, height);
+    renderer.shadowMap.autoUpdate = false;
+    renderer.render(this.scene, camera);
+    renderer.shadowMap.autoUpdate = true;
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, this.host.clientWidth, this.host.clientHeight);
+  }
+
+  /** Shifts the picture up by a share of its height. */
+  setLift(share: number): void {
+    if (share === this.lift) return;
+    this.lift = share;
+    this.frame();
+    this.camera.updateProjectionMatrix();
+  }
+
   private createRenderer(quality: Quality): WebGLRenderer {
     const renderer = new WebGLRenderer({ antialias: quality.antialias, powerPreference: "high-performance" });
     renderer.toneMapping = NeutralToneMapping;
@@ -136,12 +158,18 @@ export class Stage {
   private resize(): void {
     const width = Math.max(1, this.host.clientWidth);
     const height = Math.max(1, this.host.clientHeight);
-    const lift = (width < height ? LIFT_UPRIGHT : LIFT) * height;
-    this.camera.setViewOffset(width, height, this.coveredRight / 2, lift, width, height);
+    this.frame();
     this.camera.aspect = width / height;
     this.camera.fov = width < height ? FIELD_OF_VIEW + 14 : FIELD_OF_VIEW;
     this.camera.updateProjectionMatrix();
     this.renderer.setSize(width, height, false);
+  }
+
+  private frame(): void {
+    const width = Math.max(1, this.host.clientWidth);
+    const height = Math.max(1, this.host.clientHeight);
+    const lift = this.lift * (width < height ? LIFT_UPRIGHT : 1) * height;
+    this.camera.setViewOffset(width, height, this.coveredRight / 2, lift, width, height);
   }
 }
 

@@ -1,5 +1,6 @@
 /** What the help says: one table for each device, the one at hand first. */
 
+import { VIEW_NAMES, VIEWS } from "../camera/views";
 import { PAD_BUTTONS, type PadDeed } from "../input/gamepad";
 
 export type Row = readonly [keys: readonly string[], meaning: string];
@@ -26,7 +27,10 @@ const KEYBOARD: readonly Section[] = [
   ] },
   { title: "Look", rows: [
     [["drag"], "look around; the wheel or a pinch zooms"],
-    [["C"], "bring the camera behind the avatar"],
+    [VIEW_NAMES.map((_, i) => String(i + 1)), `camera: ${VIEW_NAMES.map((name) => VIEWS[name].title.toLowerCase()).join(", ")}`],
+    [["B"], "next camera; in all but the first, W walks the way the avatar faces"],
+    [["I"], "side view in the corner"],
+    [["C"], "bring the camera back to its place"],
     [["L"], "lock the pointer to the view, Esc frees it"],
     [["V"], "steer relative to the camera or to the body"],
   ] },
@@ -48,7 +52,9 @@ const PAD_MEANINGS: Readonly<Partial<Record<PadDeed, string>>> = {
   run: "run, while it is held",
   stepLeft: "step to the left",
   stepRight: "step to the right",
-  recenter: "press the right stick: camera behind the avatar",
+  nextView: "next camera",
+  inset: "side view in the corner",
+  recenter: "press the right stick: camera back to its place",
   assist: "assist on and off",
   cameraMode: "steer relative to the camera or to the body",
   reset: "back to the start",

@@ -1,5 +1,6 @@
 /** The menu and the playback bar: shows the settings in force and reports what the user chooses. */
 
+import { VIEW_NAMES, VIEWS, type ViewName } from "../camera/views";
 import type { Catalog, Configure, Settings } from "../generated/messages";
 import type { Action } from "../input/keyboard";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
@@ -31,6 +32,7 @@ export class Menu {
   private readonly speed = byId("speed", HTMLInputElement);
   private readonly file = byId("file", HTMLInputElement);
   private readonly hud = byId("hud-shown", HTMLInputElement);
+  private readonly inset = byId("inset-shown", HTMLInputElement);
   private readonly narrow = window.matchMedia(NARROW);
   private readonly checks = new Map<OverlayName, HTMLInputElement>();
 
@@ -39,6 +41,7 @@ export class Menu {
     this.listenToLists();
     this.listenToSliders();
     this.listenToFile();
+    this.addViews();
     this.listenToButtons();
     this.addOverlays();
     this.bindPreferences(preferences);
@@ -101,8 +104,16 @@ export class Menu {
     for (const [name, box] of this.checks) box.checked = shown.has(name);
   }
 
-  showHud(shown: boolean): void {
-    this.hud.checked = shown;
+  /** Which of the panels over the picture are shown. */
+  showPanels({ hud, inset }: Preferences): void {
+    this.hud.checked = hud;
+    this.inset.checked = inset;
+  }
+
+  showView(shown: ViewName): void {
+    for (const name of VIEW_NAMES) {
+      byId("views", HTMLElement).querySelector(`[data-action="view:${name}"]`)?.setAttribute("aria-pressed", String(name === shown));
+    }
   }
 
   showPreference(name: "steering" | "quality" | "theme", value: string): void {
@@ -135,6 +146,15 @@ export class Menu {
     });
   }
 
+  private addViews(): void {
+    const host = byId("views", HTMLElement);
+    VIEW_NAMES.forEach((name, i) => {
+      const button = make("button", { class: "plain", type: "button", title: `${VIEWS[name].title} (${i + 1})` }, VIEWS[name].title);
+      button.dataset["action"] = `view:${name}`;
+      host.append(button);
+    });
+  }
+
   private listenToButtons(): void {
     for (const button of document.querySelectorAll<HTMLButtonElement>("button[data-action]")) {
       button.addEventListener("click", () => this.listener.action(button.dataset["action"] as Action));
@@ -160,7 +180,8 @@ export class Menu {
       select.addEventListener("change", () => this.listener.prefer({ [name]: select.value }));
     }
     this.hud.addEventListener("change", () => this.listener.prefer({ hud: this.hud.checked }));
-    this.showHud(preferences.hud);
+    this.inset.addEventListener("change", () => this.listener.prefer({ inset: this.inset.checked }));
+    this.showPanels(preferences);
     this.showOverlays(preferences.overlays);
   }
 }
