@@ -6,11 +6,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numba
 import pytest
 from typer.testing import CliRunner
 
 from elbowroom.cli import walk
 from elbowroom.cli.main import app
+from elbowroom.control import recording
+from elbowroom.control import replay as replays
 from elbowroom.experiment.crossing import CrossingResult
 
 RUNNER = CliRunner()
@@ -88,6 +91,38 @@ def test_replay_tells_it_as_json(run: tuple[Path, Path, dict[str, object]]) -> N
     assert told["identical"] is True
     assert told["frames"] == run[2]["frames"]
     assert told["first_difference"] is None
+
+
+@pytest.mark.parametrize(("cut", "told"), [(3, "in its last bytes"), (16, "without its end mark"), (400, "cut off")])
+def test_replay_of_a_cut_recording_says_what_is_missing_and_ends_with_1(
+    run: tuple[Path, Path, dict[str, object]], tmp_path: Path, cut: int, told: str
+) -> None:
+    torn = tmp_path / "torn.elbow"
+    torn.write_bytes(run[1].read_bytes()[:-cut])
+    result = RUNNER.invoke(app, ["replay", str(torn)])
+    assert result.exit_code == 1
+    assert result.stdout.startswith("identical as far as it goes: ")
+    assert told in result.stdout
+    assert "step " in result.stdout
+    assert json.loads(RUNNER.invoke(app, ["replay", str(torn), "--json"]).stdout)["identical"] is False
+
+
+def test_replay_names_what_it_was_recorded_with(
+    run: tuple[Path, Path, dict[str, object]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As if here were another processor, on which the last bits come out otherwise."""
+    there = recording.this_machine()
+    monkeypatch.setattr(recording, "this_machine", lambda: there | {"processor": "generic"})
+    monkeypatch.setattr(replays, "_same", lambda step, frame: False)
+    result = RUNNER.invoke(app, ["replay", str(run[1])])
+    assert result.exit_code == 1
+    assert f"processor {there['processor']} (here generic)" in result.stdout
+    assert "bit for bit holds for the same ones alone" in result.stdout
+
+
+def test_the_processor_of_a_recording_is_the_one_that_kernels_are_compiled_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba.config, "CPU_NAME", "generic")
+    assert recording.this_machine()["processor"] == "generic"
 
 
 def test_replay_with_another_avatar_is_refused(run: tuple[Path, Path, dict[str, object]], tmp_path: Path) -> None:

@@ -84,14 +84,15 @@ def test_a_replay_finds_the_first_frame_that_differs(run: tuple[Path, object], t
     data = zlib.compress(steps.tobytes())
     header = recording.header.to_json()
     head = MAGIC + struct.pack("<I", len(header)) + header + struct.pack("<I", zlib.crc32(header))
-    forged.write_bytes(head + struct.pack("<4sIII", b"CHNK", len(steps), len(data), zlib.crc32(data)) + data)
+    chunk = struct.pack("<4sIII", b"CHNK", len(steps), len(data), zlib.crc32(data)) + data
+    forged.write_bytes(head + chunk + struct.pack("<4sIII", b"DONE", len(steps), 0, zlib.crc32(data)))
     result = replay(Recording(forged), HUMANOID)
     assert result.difference is not None
     assert result.difference.frame == 100
     assert result.difference.angle == pytest.approx(1e-9, rel=1e-3)
 
 
-@pytest.mark.parametrize("cut", [1, 7, 500])
+@pytest.mark.parametrize("cut", [17, 23, 500])
 def test_a_torn_file_is_read_to_its_last_whole_chunk(run: tuple[Path, object], tmp_path: Path, cut: int) -> None:
     torn = tmp_path / "torn.elbow"
     torn.write_bytes(run[0].read_bytes()[:-cut])
@@ -103,12 +104,51 @@ def test_a_torn_file_is_read_to_its_last_whole_chunk(run: tuple[Path, object], t
 
 def test_a_flipped_bit_ends_the_reading(run: tuple[Path, object], tmp_path: Path) -> None:
     data = bytearray(run[0].read_bytes())
-    data[-20] ^= 4
+    data[-36] ^= 4
     damaged = tmp_path / "damaged.elbow"
     damaged.write_bytes(data)
     recording = Recording(damaged)
     assert len(recording.steps()) == 2 * STEPS_PER_CHUNK
     assert recording.note is not None
+
+
+@pytest.mark.parametrize(("cut", "steps", "told"), [(1, 150, "last bytes"), (16, 150, "without its end mark")])
+def test_a_file_that_is_cut_between_two_chunks_is_told(
+    run: tuple[Path, object], tmp_path: Path, cut: int, steps: int, told: str
+) -> None:
+    torn = tmp_path / "torn.elbow"
+    torn.write_bytes(run[0].read_bytes()[:-cut])
+    recording = Recording(torn)
+    assert len(recording.steps()) == steps
+    assert told in str(recording.note)
+    assert f"step {steps}" in str(recording.note)
+
+
+def test_a_file_that_lacks_a_chunk_or_has_one_of_another_run_is_told(run: tuple[Path, object], tmp_path: Path) -> None:
+    """Each chunk by itself is sound."""
+    whole = run[0].read_bytes()
+    starts = [at for at in range(len(whole)) if whole[at : at + 4] == b"CHNK"]
+    assert len(starts) == 3
+    other = tmp_path / "other.elbow"
+    other.write_bytes(whole[: starts[1]] + whole[starts[2] :])
+    assert len(Recording(other).steps()) == STEPS - STEPS_PER_CHUNK
+    for changed, told in (
+        (whole[: starts[1]] + whole[starts[2] :], "it holds 90 of 150 steps"),
+        (whole[: starts[1]] + whole[starts[0] : starts[1]] + whole[starts[2] :], "not those that were recorded"),
+        (whole + b"x", "goes on after its end"),
+    ):
+        other.write_bytes(changed)
+        recording = Recording(other)
+        recording.steps()
+        assert told in str(recording.note)
+
+
+def test_a_file_of_format_2_has_no_end(run: tuple[Path, object], tmp_path: Path) -> None:
+    old = tmp_path / "old.elbow"
+    old.write_bytes(run[0].read_bytes().replace(MAGIC, MAGIC.replace(b"3", b"2"), 1)[:-16])
+    recording = Recording(old)
+    assert len(recording.steps()) == STEPS
+    assert recording.note is None
 
 
 def test_steps_are_on_disk_before_the_recorder_is_closed(tmp_path: Path) -> None:

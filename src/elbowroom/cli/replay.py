@@ -23,7 +23,11 @@ def replay(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Run the recorded commands again and compare every frame, bit for bit. Exit code 0: identical, 1: not."""
+    """Run the recorded commands again and compare every frame, bit for bit. Exit code 0: identical and whole, 1: not.
+
+    Bit for bit holds for one processor that kernels are compiled for, and one version of what compiles them: where they
+    are others, the last bits may differ, and this says so.
+    """
     from elbowroom.control.recording import Recording
     from elbowroom.control.replay import replay as run_again
 
@@ -33,31 +37,47 @@ def replay(
         humanoid = recorded.header.avatar.load(avatar)
         result = run_again(recorded, humanoid, lambda done: bar.move(done, f"{done} frames"))
     _report(recorded, result, json)
-    raise typer.Exit(0 if result.identical else DIFFERENT)
+    raise typer.Exit(0 if result.identical and recorded.note is None else DIFFERENT)
 
 
 def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:
-    from elbowroom.control.recording import this_machine
-
-    elsewhere = {key: value for key, value in recorded.header.machine.items() if this_machine().get(key) != value}
+    elsewhere = _elsewhere(recorded)
     if json:
         found = result.difference
         report = {
             "recording": str(recorded.path),
-            "identical": result.identical,
+            "identical": result.identical and recorded.note is None,
             "frames": result.frames,
             "seconds": result.seconds,
             "first_difference": None if found is None else vars(found),
             "note": recorded.note,
-            "recorded_elsewhere": elsewhere,
+            "recorded_elsewhere": {key: before for key, (before, _) in elsewhere.items()},
+            "here": {key: now for key, (_, now) in elsewhere.items()},
         }
         print_json(report)
         return
-    if result.difference is None:
-        print(f"identical: {result.frames} frames, {result.seconds:.1f} s")
-    else:
+    if result.difference is not None:
         print(f"different from {result.difference}")
-        if elsewhere:
-            print("recorded with " + ", ".join(f"{key} {value}" for key, value in elsewhere.items()))
+        print(_why(elsewhere))
+    else:
+        so_far = "identical" if recorded.note is None else "identical as far as it goes"
+        print(f"{so_far}: {result.frames} frames, {result.seconds:.1f} s")
     if recorded.note is not None:
-        print(f"note: {recorded.note}")
+        print(f"not whole: {recorded.note}")
+
+
+def _elsewhere(recorded: "Recording") -> dict[str, tuple[str, str]]:
+    """By what name the machine and the program of a recording differ from these: theirs and ours."""
+    from elbowroom import __version__
+    from elbowroom.control.recording import this_machine
+
+    theirs = recorded.header.machine | {"elbowroom": recorded.header.version}
+    ours = this_machine() | {"elbowroom": __version__}
+    return {key: (value, ours.get(key, "none")) for key, value in theirs.items() if ours.get(key) != value}
+
+
+def _why(elsewhere: dict[str, tuple[str, str]]) -> str:
+    if not elsewhere:
+        return "recorded by the same program on the same kind of processor: what it was recorded with has changed"
+    others = ", ".join(f"{name} {before} (here {now})" for name, (before, now) in elsewhere.items())
+    return f"recorded with {others}: bit for bit holds for the same ones alone, with others the last bits may differ"

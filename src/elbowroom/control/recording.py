@@ -1,12 +1,14 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 2`, a header and chunks. Header: its length (uint32), UTF-8 JSON of a
-`RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that data
-(uint32 each), the data: `STEP` records. All numbers are little-endian. A file is only ever appended to, so one that
-was cut off is good up to its last whole chunk. Files of the format 1, from before there was a lowering of the pelvis,
-are read as if nobody had lowered it.
+A `.elbow` file is the line `ELBOWROOM RECORDING 3`, a header, chunks and an end. Header: its length (uint32), UTF-8
+JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
+data (uint32 each), the data: `STEP` records. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All
+numbers are little-endian. A file is only ever appended to, so one that was cut off is good up to its last whole chunk.
+Files of the format 2 have no end; those of the format 1, from before there was a lowering of the pelvis, are read as if
+nobody had lowered it.
 """
 
+import hashlib
 import json
 import platform
 import struct
@@ -31,12 +33,13 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 
-MAGIC = b"ELBOWROOM RECORDING 2\n"
+MAGIC = b"ELBOWROOM RECORDING 3\n"
+_MAGIC_2 = b"ELBOWROOM RECORDING 2\n"
 _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
-_CHUNK_MARK = b"CHNK"
+_CHUNK_MARK, _END_MARK = b"CHNK", b"DONE"
 _CHUNK_HEAD = struct.Struct("<4sIII")
 _COUNT = struct.Struct("<I")
 
@@ -107,11 +110,14 @@ class RecordingHeader:
 
 
 def this_machine() -> dict[str, str]:
-    """Processor and compiler, by which two machines may differ in the last bit."""
+    """The processor that kernels are compiled for and what compiles them: by these, runs may differ in the last bit."""
     from llvmlite.binding import get_host_cpu_name
 
+    config: Any = numba.config  # as jit has left it: what kernels are compiled for
+    features = hashlib.sha256(str(config.CPU_FEATURES).encode()).hexdigest()[:8]
     return {
-        "processor": str(get_host_cpu_name()),
+        "processor": str(config.CPU_NAME or get_host_cpu_name()),
+        "processor features": features,
         "system": platform.system(),
         "numba": numba.__version__,
         "numpy": np.__version__,
@@ -127,6 +133,7 @@ class Recorder:
     def __init__(self, path: str | Path, controller: Controller) -> None:
         self.path = Path(path)  # of the recording
         self._pending: list[tuple[Any, ...]] = []
+        self._written, self._crc = 0, 0  # steps in all chunks, and of their data
         header = RecordingHeader.of(controller).to_json()
         try:
             if self.path.exists() and not is_recording(self.path):
@@ -156,12 +163,14 @@ class Recorder:
         data = zlib.compress(steps.tobytes(), 6)
         self._file.write(_CHUNK_HEAD.pack(_CHUNK_MARK, len(steps), len(data), zlib.crc32(data)) + data)
         self._file.flush()
+        self._written, self._crc = self._written + len(steps), zlib.crc32(data, self._crc)
         self._pending.clear()
 
     def close(self) -> None:
-        """Write what is pending and close the file."""
+        """Write what is pending and the end, and close the file."""
         if not self._file.closed:
             self.flush()
+            self._file.write(_CHUNK_HEAD.pack(_END_MARK, self._written, 0, self._crc))
             self._file.close()
 
     def __enter__(self) -> "Recorder":
@@ -174,7 +183,7 @@ class Recorder:
 def is_recording(path: Path) -> bool:
     """Whether the file begins as a recording does; an empty file may become one."""
     with path.open("rb") as file:
-        return file.read(len(MAGIC)) in (MAGIC, _MAGIC_1, b"")
+        return file.read(len(MAGIC)) in (MAGIC, _MAGIC_2, _MAGIC_1, b"")
 
 
 class Recording:
@@ -195,7 +204,8 @@ class Recording:
 
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
         magic = file.read(len(MAGIC))
-        self._stored = {MAGIC: STEP, _MAGIC_1: _STEP_1}.get(magic)
+        self._stored = {MAGIC: STEP, _MAGIC_2: STEP, _MAGIC_1: _STEP_1}.get(magic)
+        self._has_end = magic == MAGIC
         if self._stored is None:
             raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
         size = file.read(_COUNT.size)
@@ -211,17 +221,25 @@ class Recording:
             raise InputError(f"{self.path}: the header does not describe a run ({error})") from None
 
     def chunks(self) -> Iterator[Steps]:
-        """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what follows it."""
+        """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
         self.note = None
         stored = self._stored or STEP
+        count, crc = 0, 0
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
             while head := file.read(_CHUNK_HEAD.size):
-                steps = _read_chunk(head, file, stored)
-                if steps is None:
-                    self.note = "the file was cut off or is damaged: read up to its last whole chunk"
+                if self._has_end and head[:4] == _END_MARK:
+                    self.note = _end_note(head, file, count, crc)
                     return
+                found = _read_chunk(head, file, stored)
+                if found is None:
+                    self.note = f"the file was cut off or is damaged: what follows step {count} is missing"
+                    return
+                steps, data = found
+                count, crc = count + len(steps), zlib.crc32(data, crc)
                 yield steps if stored is STEP else _with_lowering(steps)
+        if self._has_end:
+            self.note = f"the file ends without its end mark: what follows step {count} is missing"
 
     def steps(self) -> Steps:
         """All steps in one array."""
@@ -236,7 +254,20 @@ def _with_lowering(old: Steps) -> Steps:
     return steps
 
 
-def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> Steps | None:
+def _end_note(head: bytes, file: BinaryIO, count: int, crc: int) -> str | None:
+    """What is wrong, if anything, at the end of a file of which so many steps with this checksum were read."""
+    if len(head) < _CHUNK_HEAD.size:
+        return f"the file was cut off in its last bytes: whether anything is missing after step {count} is not known"
+    _, steps, _, told = _CHUNK_HEAD.unpack(head)
+    if steps != count:
+        return f"the file was changed: it holds {count} of {steps} steps"
+    if told != crc:
+        return f"the file was changed: its {count} steps are not those that were recorded"
+    return "the file goes on after its end" if file.read(1) else None
+
+
+def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> tuple[Steps, bytes] | None:
+    """The steps of a chunk and its data; None where it is not whole."""
     if len(head) < _CHUNK_HEAD.size:
         return None
     mark, count, length, crc = _CHUNK_HEAD.unpack(head)
@@ -251,7 +282,7 @@ def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> Steps
         raw = inflater.decompress(data, expected + 1)
     except zlib.error:
         return None
-    return np.frombuffer(raw, stored) if len(raw) == expected and inflater.eof else None
+    return (np.frombuffer(raw, stored), data) if len(raw) == expected and inflater.eof else None
 
 
 def command_of(step: Any) -> Command:
