@@ -71,7 +71,7 @@ def kernels_made() -> list[Any]:
 
 
 def _compiled(function: Function, **options: Any) -> Function:
-    kept = cache_folder(Path(function.__code__.co_filename).parent) is not None
+    kept = cache_folder(Path(function.__code__.co_filename)) is not None
     with cached_by_sources():
         dispatcher = numba.njit(cache=kept, **_OPTIONS, **options)(function)
     _kernels.append(dispatcher)

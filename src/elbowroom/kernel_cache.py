@@ -31,7 +31,7 @@ class SourcesLocator:
     @classmethod
     def from_function(cls, kernel: Any, file: str) -> "SourcesLocator | None":
         """The locator of a function that is defined in `file`; None where nothing can be kept."""
-        folder = cache_folder(Path(file).parent)
+        folder = cache_folder(Path(file))
         return None if folder is None else cls(kernel, file, folder)
 
     def ensure_cache_path(self) -> None:
@@ -63,17 +63,23 @@ def cached_by_sources() -> Iterator[bool]:
         config.CACHE_LOCATOR_CLASSES = before
 
 
-@lru_cache(maxsize=256)
-def cache_folder(beside: Path) -> Path | None:
-    """Where kernels of the sources in a folder are kept; None if no place can be written to.
+def cache_folder(file: Path) -> Path | None:
+    """Where the kernels of a source file are kept; None if no place can be written to.
 
-    In `NUMBA_CACHE_DIR` if that is set, else in `__pycache__` beside the sources, else in the user's own cache.
+    In `NUMBA_CACHE_DIR`, if that is set, by the digest of the sources: whoever has the same ones finds them there. Else
+    in `__pycache__` beside the file, else in the user's own cache.
     """
     config: Any = numba.config
-    apart = f"{beside.name}_{hashlib.sha256(str(beside.resolve()).encode()).hexdigest()[:16]}"
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "elbowroom" / "kernels" / apart
-    places = [Path(config.CACHE_DIR) / apart] if config.CACHE_DIR else [beside / "__pycache__", user]
-    return next((place for place in places if _is_writable(place)), None)
+    if config.CACHE_DIR:
+        return _first_writable((Path(config.CACHE_DIR) / f"{file.stem}_{digest_of(file)[:32]}",))
+    beside = f"{file.parent.name}_{hashlib.sha256(str(file.parent.resolve()).encode()).hexdigest()[:32]}"
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    return _first_writable((file.parent / "__pycache__", user / "elbowroom" / "kernels" / beside))
+
+
+@lru_cache(maxsize=1024)
+def _first_writable(folders: tuple[Path, ...]) -> Path | None:
+    return next((folder for folder in folders if _is_writable(folder)), None)
 
 
 def _is_writable(folder: Path) -> bool:

@@ -37,7 +37,7 @@ def cache_folders() -> list[str]:
 
 
 def _folder(kernel: Any) -> Path | None:
-    return cache_folder(Path(kernel.py_func.__code__.co_filename).parent)
+    return cache_folder(Path(kernel.py_func.__code__.co_filename))
 
 
 def _is_kept(kernel: Any) -> bool:
@@ -62,7 +62,7 @@ def mark_warm() -> None:
 
 
 def _stamp_file() -> Path:
-    return (cache_folder(_PACKAGE) or Path(os.devnull)) / "elbowroom-sessions.warm"
+    return (cache_folder(_PACKAGE / "jit.py") or Path(os.devnull)) / "elbowroom-sessions.warm"
 
 
 def _stamp() -> str:
