@@ -103,7 +103,7 @@ def test_groups_compose_to_the_whole_body(humanoid: Humanoid, model: BodyModel) 
     trunk = moved(kinematics.trunk_capsules(model, q[:, 3:6]), pelvis, heading)
     np.testing.assert_allclose(trunk, whole[of(DofGroup.WAIST)], atol=1e-5)
     for group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
-        arm = moved(kinematics.arm_capsules(model, group, q[:, group.value]), chest_place, chest_turn)
+        arm = moved(kinematics.arm_capsules(model, group, q[:, group.at]), chest_place, chest_turn)
         np.testing.assert_allclose(arm, whole[of(group)], atol=1e-5)
 
 

@@ -15,7 +15,7 @@ SIDES = {DofGroup.LEFT_ARM: "left", DofGroup.RIGHT_ARM: "right"}
 def random_posture(rng: np.random.Generator) -> np.ndarray:
     q = np.zeros(DOF)
     for group in LOCAL_GROUPS:
-        q[group.value] = clamp(group, rng.uniform(*limits(group).T))
+        q[group.at] = clamp(group, rng.uniform(*limits(group).T))
     return q
 
 
@@ -29,13 +29,13 @@ def test_posing_and_back_gives_the_same_configuration() -> None:
         turns = local_rotations(model, q, np.zeros(7))
         for joint in range(1, len(turns)):
             turns[joint] = quaternion.multiply(turns[skeleton.parents[joint]], turns[joint])
-        np.testing.assert_allclose(waist_angles(turns[chest]), q[DofGroup.WAIST.value][:2], atol=1e-9)
+        np.testing.assert_allclose(waist_angles(turns[chest]), q[DofGroup.WAIST.at][:2], atol=1e-9)
         back = quaternion.conjugate(turns[chest])
         for group, side in SIDES.items():
             upper, lower = (
                 quaternion.multiply(back, turns[skeleton.index(side + b)]) for b in ("UpperArm", "LowerArm")
             )
-            np.testing.assert_allclose(arm_angles(upper, lower, side), q[group.value], atol=1e-9)
+            np.testing.assert_allclose(arm_angles(upper, lower, side), q[group.at], atol=1e-9)
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

@@ -68,7 +68,7 @@ def test_joints_keep_their_speeds_and_accelerations(scene: str, seed: int | None
     assert min(frame.clearance for frame in frames) >= 0.0
     q = configurations(frames)
     for group in LOCAL_GROUPS:
-        way = q[:, group.value]
+        way = q[:, group.at]
         speeds = np.linalg.norm(np.diff(way, axis=0), axis=1) / DT
         asked = np.linalg.norm(np.diff(way, 2, axis=0), axis=1) / DT**2
         assert speeds.max() <= ROUNDING * LIMITS.speed_of(group)
@@ -90,7 +90,7 @@ def test_no_velocity_jumps_between_plans() -> None:
     rate = 480
     q = configurations(walk("d", None, rate))
     for group in LOCAL_GROUPS:
-        change = np.linalg.norm(np.diff(q[:, group.value], 2, axis=0), axis=1) * rate
+        change = np.linalg.norm(np.diff(q[:, group.at], 2, axis=0), axis=1) * rate
         assert change.max() <= ROUNDING * LIMITS.acceleration_of(group) / rate
     assert np.linalg.norm(np.diff(q[:, :2], 2, axis=0), axis=1).max() * rate <= 1.01 * ROOT.braking / rate
 

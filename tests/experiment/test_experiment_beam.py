@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body import dof
-from elbowroom.body.dof import LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.dof import LOWERING, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.stock_clips import stock_clips
 from elbowroom.control.frame import Frame
@@ -37,9 +37,9 @@ def test_the_beam_is_passed_straight_with_bent_knees_and_touches_nothing(seed: i
 
 def test_a_body_that_cannot_crouch_stops_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     assert any(clip.configurations[:, 2].any() for clip in stock_clips(DofGroup.WAIST))
-    stiff = dof._LIMITS.copy()
-    stiff[columns_of(DofGroup.WAIST).start + LOWERING - DofGroup.WAIST.value.start] = 0.0
-    monkeypatch.setattr(dof, "_LIMITS", stiff)
+    stiff = limits(DofGroup.WAIST)
+    stiff[LOWERING - DofGroup.WAIST.at.start] = 0.0
+    monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, stiff)
     assert not limits(DofGroup.WAIST)[2].any()
     result, frames = cross(0, 7.0)
     assert not result.passed

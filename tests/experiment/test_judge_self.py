@@ -44,7 +44,7 @@ def test_the_natural_walk_does_not_touch_itself() -> None:
 
 def test_a_forearm_laid_across_the_chest_is_found_and_named() -> None:
     q, roots = walking(1.0)
-    q[20:40, DofGroup.LEFT_ARM.value] = np.deg2rad([20.0, -30.0, 70.0, 120.0])
+    q[20:40, DofGroup.LEFT_ARM.at] = np.deg2rad([20.0, -30.0, 70.0, 120.0])
     verdict = judged(q, roots)
     assert verdict.touching >= 20 * 4 - 4
     assert {contact.part for contact in verdict.contacts} <= {"leftForearm", "leftHand", "leftUpperArm"}
@@ -58,7 +58,7 @@ def test_judge_and_planner_agree_pose_by_pose() -> None:
     roots[:, 4] = 0.0
     poser, model = Poser(BODY), body_model(BODY)
     posed = poser.world(*poser.local(q, roots), roots[:, :3])
-    first = DofGroup.WAIST.value.start
+    first = DofGroup.WAIST.at.start
     opinions = self_clearances(model, self_pairs(model), roots, q[:, first:DOF]).min(axis=0)
     agreed = 0
     for n in range(count):

@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 
 HUMANOID = proportional_humanoid(1.72)
 MODEL = body_model(HUMANOID)
-COLUMN = LOWERING - DofGroup.WAIST.value.start
+COLUMN = LOWERING - DofGroup.WAIST.at.start
 
 
 def walk(horizon: int = 16, speed: float = 0.9) -> RootPath:

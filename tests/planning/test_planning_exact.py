@@ -87,9 +87,7 @@ def test_what_is_found_is_free_as_shown_and_within_the_speed_limits(humanoid: Hu
         found += 1
         assert np.array_equal(plan.configurations[0], hanging())
         assert shown_clearance(humanoid, scene, path, plan.configurations) > 0.0
-        for group, speed in zip(
-            LOCAL_GROUPS, (settings.waist_speed, settings.arm_speed, settings.arm_speed), strict=True
-        ):
+        for group, speed in zip(LOCAL_GROUPS, (settings.speed_of(group) for group in LOCAL_GROUPS), strict=True):
             steps = np.linalg.norm(np.diff(plan.configurations[:, columns_of(group)], axis=0), axis=1)
             assert np.all(steps <= speed * path.interval + 1e-6)
     assert found >= 8

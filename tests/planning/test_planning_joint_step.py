@@ -26,7 +26,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Rows = tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
-SETTINGS = ExactSettings(waist_samples=2, arm_samples=3)  # few postures: the whole product can be looked at
+SETTINGS = ExactSettings(samples_share=0.3)  # few postures: the whole product can be looked at
 AWAY = ((1.4, 1.0, 1.4), (0.1, 0.1, 0.1))
 WALL = (((0.0, 1.6, 1.4), (3.0, 0.55, 0.1)), AWAY)  # legs pass, nobody else does
 PILLARS = (
@@ -166,7 +166,7 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     start = natural_walk()(path)[0]
     plans = []
     for _ in range(2):
-        body = UpperBodyPlanner(humanoid, scene, ExactSettings(waist_samples=1, refinements=4))
+        body = UpperBodyPlanner(humanoid, scene, ExactSettings(samples_share=0.1, refinements=4))
         coarse = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
         plans.append(body.plan(path, Start(start, np.zeros_like(start))))
         body.reset()

@@ -87,7 +87,7 @@ def test_what_is_found_is_free_at_every_key_time_and_bounded_in_speed(humanoid: 
         margins = LocalPlanner(humanoid, scene, settings).margins(path)
         assert np.all(free[1:] >= margins[1:] - 1e-5)
         for group in LOCAL_GROUPS:
-            part = plan.configurations[:, group.value.start - 3 : group.value.stop - 3]
+            part = plan.configurations[:, group.at.start - 3 : group.at.stop - 3]
             assert np.all(np.linalg.norm(np.diff(part, axis=0), axis=1) < settings.of(group).radius)
     assert PlanStatus.FOUND in statuses
     assert len(statuses) > 1

@@ -42,8 +42,8 @@ def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, gro
     radii = model.capsules_of(group).radii
     for depth in range(5):
         postures = np.zeros((graph.size + 1, DOF))
-        postures[:, DofGroup.WAIST.value] = waist[depth]
-        postures[:, group.value] = [*graph.vertices, start]
+        postures[:, DofGroup.WAIST.at] = waist[depth]
+        postures[:, group.at] = [*graph.vertices, start]
         capsules = posture_capsules(model, postures, np.tile(roots[depth], (graph.size + 1, 1)))[chosen]
         expected = clearance(capsules, radii, boxes.table)
         np.testing.assert_allclose(roadmap.clearance(depth), expected[:-1], atol=2e-6)

@@ -67,8 +67,8 @@ def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
     q[:, DOF - uppers.shape[1] :] = uppers
     q[:, :3] = roots[:, :3]
     world, radii = posture_capsules(model, q, roots).astype(np.float64), humanoid.capsules.radii
-    first = DofGroup.WAIST.value.start
-    waists, *arms = (uppers[:, group.value.start - first : group.value.stop - first] for group in LOCAL_GROUPS)
+    first = DofGroup.WAIST.at.start
+    waists, *arms = (uppers[:, group.at.start - first : group.at.stop - first] for group in LOCAL_GROUPS)
     bodies = np.ascontiguousarray(body_from_chest(model, pairs, waists, roots).transpose(2, 0, 1))
     segments = [arm_capsules(model, group, arm) for group, arm in zip(LOCAL_GROUPS[1:], arms, strict=True)]
     every = np.ones(len(pairs.rest), np.bool_)
@@ -131,7 +131,7 @@ def test_arms_through_body_and_through_each_other_are_found() -> None:
     model = body_model(humanoid)
     pairs = self_pairs(model)
     uppers = np.zeros((3, sum(group.size for group in LOCAL_GROUPS)))
-    start = DofGroup.LEFT_ARM.value.start - DofGroup.WAIST.value.start
+    start = DofGroup.LEFT_ARM.at.start - DofGroup.WAIST.at.start
     arm = DofGroup.LEFT_ARM.size
     hanging = natural_walk()(RootPath(0.0, 1.0, np.zeros((2, 7))))[0]
     uppers[:] = hanging

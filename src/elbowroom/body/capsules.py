@@ -13,8 +13,7 @@ class Capsules:
     """Capsules fixed to joints of a skeleton.
 
     `starts` and `ends` are offsets from the joint in the axes of the T-posed body (the joint's normalised frame).
-    A capsule belongs to the lowest DOF group that moves it: thighs, shins, feet and pelvis to ROOT; torso, neck and
-    head to WAIST; upper arm, forearm and hand to their arm.
+    A capsule belongs to the lowest group that moves its joint (`dof.group_of_bone`).
     """
 
     names: tuple[str, ...]  # (C,) "pelvis", "torso", "leftForearm", ...

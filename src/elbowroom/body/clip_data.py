@@ -12,10 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOWERING, DofGroup, clamp
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp
 from elbowroom.errors import InputError
 
-_PARTS = {"waist": (DofGroup.WAIST,), "arm": (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)}
+_PARTS = {
+    part: tuple(group for group in LOCAL_GROUPS if group.value.clips == part)
+    for part in dict.fromkeys(group.value.clips for group in LOCAL_GROUPS)
+}
 _MAX_CLIPS, _MAX_KEYS = 200, 2000
 
 
@@ -78,5 +81,5 @@ def _keys(rows: list[object], group: DofGroup, place: str) -> NDArray[np.float64
 
 def _units(group: DofGroup) -> NDArray[np.float64]:
     """What a file's values (d,) are multiplied by: degrees become radians, the lowering stays."""
-    columns = np.arange(group.value.start, group.value.stop)
+    columns = np.arange(group.at.start, group.at.stop)
     return np.where(columns == LOWERING, 1.0, np.deg2rad(1.0))

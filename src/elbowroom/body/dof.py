@@ -1,6 +1,7 @@
-"""The 14 planning degrees of freedom in four groups: those of the paper, section 3.1, and the lowering of the pelvis.
+"""The table of groups: which degrees of freedom a body has, what they move, how far and how fast.
 
-A configuration `q` has shape (14,), metres and radians:
+The groups are a tree: each hangs on its parent's last joint. The paper's (section 3.1) are here with their own
+components, and with the lowering of the pelvis. A configuration `q` has shape (14,), metres and radians:
 
     index  group      component
     0-2    ROOT       x, z on the ground; heading about +Y, 0 faces +Z, positive turns left (towards +X)
@@ -18,51 +19,183 @@ components of a swing (exponential map, Grassia 1998), followed by the rotation 
 no gimbal lock within the limits, and Euclidean distance between configurations is meaningful.
 """
 
+from collections.abc import Mapping
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-DOF = 14
-LOWERING = 5  # the place of the lowering in `q`
+Floats = NDArray[np.float64]
 
 
-class DofGroup(Enum):
-    """One of the paper's groups J; its value is the slice of `q` that it owns."""
+class Turning(Enum):
+    """How the components of a group turn its joints."""
 
-    __hash__ = object.__hash__  # there is one of each: found in half the time that its name would be
-
-    ROOT = slice(0, 3)
-    WAIST = slice(3, 6)
-    LEFT_ARM = slice(6, 10)
-    RIGHT_ARM = slice(10, 14)
-
-    @property
-    def size(self) -> int:
-        """The number of degrees of freedom in the group."""
-        return int(self.value.stop - self.value.start)
+    ROOT = "root"  # they place the hips
+    COLUMN = "column"  # bend and twist, spread over a row of joints; a third component lowers the first of them
+    ARM = "arm"  # a swing and a rotation of the first joint, a bend of the second
 
 
-# J*: the groups of the local motion, in the order of decoupled planning (a later group hangs on the earlier).
-LOCAL_GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
-_LOCAL = DofGroup.WAIST.value.start
-LOCAL = DOF - DofGroup.ROOT.size  # components of the local groups, side by side: an upper body (11,)
+class Component(NamedTuple):
+    """One degree of freedom: its name in texts and its range of motion, radians or what its group says."""
+
+    name: str
+    low: float
+    high: float
+
+
+class GroupSpec(NamedTuple):
+    """One row of the table."""
+
+    label: str  # in texts, files and messages
+    parent: str | None  # the group whose last joint it hangs on
+    turning: Turning
+    bones: tuple[str, ...]  # the joints that it turns, as far as a body has them, the nearest to the parent first
+    components: tuple[Component, ...]
+    clips: str  # the part that its clips are written for; "" where it has none
+    samples: int = 0  # postures that the planner takes from each clip
+    # What is shown, over all components together. People move their joints nearly with minimum jerk (T. Flash &
+    # N. Hogan, J. Neuroscience 5, 1985), where a way D in the time T peaks at 1.9 D/T and 5.8 D/T^2.
+    speed: float = np.inf  # rad/s
+    acceleration: float = np.inf  # rad/s^2
+    clear_of: tuple[str, ...] = ()  # groups whose parts it must not run into; they are searched before it
+    turned_back: tuple[str, ...] = ()  # joints at the end of a column that undo part of what it turns
+
+
+def _degrees(**ranges: tuple[float, float]) -> tuple[Component, ...]:
+    return tuple(Component(name, *np.deg2rad(ends).tolist()) for name, ends in ranges.items())
+
 
 # Ranges of motion: American Academy of Orthopaedic Surgeons, "Joint Motion: Method of Measuring and Recording" (1965):
 # thoracolumbar flexion 80, extension 25, rotation 45; shoulder flexion 180, extension 60, abduction 180,
 # internal rotation 70, external 90; elbow flexion 150 degrees. Adduction across the body (the swing's lateral part)
 # is limited to 45 degrees, after Boone & Azen, J. Bone Joint Surg. 61-A (1979).
-_WAIST_DEG = [(-25.0, 80.0), (-45.0, 45.0)]
-# Lowered by 0.7 half legs the knees of a walk are bent by 75 to 118 degrees (range of motion 135, in the same book) and
-# the shins of a stand lean by some 35, about what ankles give with the heels down. Walking, few would go deeper.
-_LOWERING = (0.0, 0.7)
-_ARM_DEG = [(-60.0, 175.0), (-45.0, 175.0), (-90.0, 70.0), (0.0, 150.0)]
+_FREE = (-np.inf, np.inf)
+_ARM = _degrees(
+    flexion=(-60.0, 175.0), abduction=(-45.0, 175.0), rotation=(-90.0, 70.0), elbow=(0.0, 150.0)
+)  # a serve turns the upper arm at 10.8 rad/s (M. Reid, B. Elliott & J. Alderson, Br. J. Sports Med. 41, 2007)
 # Flexion and abduction together swing the arm by at most this angle from hanging (the swing vector's length).
 MAX_ELEVATION = float(np.deg2rad(175.0))
-_LIMITS = np.concatenate([np.deg2rad(_WAIST_DEG), [_LOWERING], np.deg2rad(2 * _ARM_DEG)])
 
 
-_COLUMNS = {group: slice(group.value.start - _LOCAL, group.value.stop - _LOCAL) for group in LOCAL_GROUPS}
+def _arm(side: str, clear_of: tuple[str, ...]) -> GroupSpec:
+    return GroupSpec(
+        label=f"{side}Arm",
+        parent="WAIST",
+        turning=Turning.ARM,
+        bones=(f"{side}UpperArm", f"{side}LowerArm", f"{side}Hand"),
+        components=_ARM,
+        clips="arm",
+        samples=10,
+        speed=6.3,  # a reach of a radian in 0.3 s
+        acceleration=150.0,  # a radian in 0.2 s, as in a reach as fast as can be
+        clear_of=clear_of,
+    )
+
+
+class DofGroup(Enum):
+    """The groups J of the paper; the value of each is its row of the table."""
+
+    __hash__ = object.__hash__  # there is one of each: found in half the time that its name would be
+
+    ROOT = GroupSpec(
+        label="root",
+        parent=None,
+        turning=Turning.ROOT,
+        bones=("hips",),
+        components=(Component("x", *_FREE), Component("z", *_FREE), Component("heading", *_FREE)),
+        clips="",
+    )
+    WAIST = GroupSpec(
+        label="waist",
+        parent="ROOT",
+        turning=Turning.COLUMN,
+        bones=("spine", "chest", "upperChest"),
+        # Lowered by 0.7 half legs the knees of a walk are bent by 75 to 118 degrees (range of motion 135, in the same
+        # book) and the shins of a stand lean by some 35, about what ankles give with the heels down.
+        components=(*_degrees(bend=(-25.0, 80.0), twist=(-45.0, 45.0)), Component("lowering", 0.0, 0.7)),
+        clips="waist",
+        samples=6,
+        speed=3.4,  # a bend, turn or crouch by half a radian in 0.28 s
+        acceleration=60.0,  # half a radian in 0.22 s
+        turned_back=("neck", "head"),
+    )
+    LEFT_ARM = _arm("left", ("ROOT", "WAIST"))
+    RIGHT_ARM = _arm("right", ("ROOT", "WAIST", "LEFT_ARM"))
+
+    def __repr__(self) -> str:
+        return f"DofGroup.{self.name}"
+
+    @property
+    def size(self) -> int:
+        """The number of degrees of freedom in the group."""
+        return len(self.value.components)
+
+    @property
+    def at(self) -> slice:
+        """The place of its components in a configuration `q`."""
+        return _PLACES[self]
+
+    @property
+    def label(self) -> str:
+        """Its name in texts, files and messages."""
+        return self.value.label
+
+    @property
+    def parent(self) -> "DofGroup | None":
+        """The group that it hangs on."""
+        return None if self.value.parent is None else DofGroup[self.value.parent]
+
+    @property
+    def clear_of(self) -> tuple["DofGroup", ...]:
+        """The groups whose parts it must not run into."""
+        return tuple(DofGroup[name] for name in self.value.clear_of)
+
+    @property
+    def is_arm(self) -> bool:
+        """Whether it turns a shoulder and an elbow."""
+        return self.value.turning is Turning.ARM
+
+
+def _places() -> dict[DofGroup, slice]:
+    ends = np.cumsum([group.size for group in DofGroup]).tolist()
+    return {group: slice(end - group.size, end) for group, end in zip(DofGroup, ends, strict=True)}
+
+
+_PLACES = _places()
+# J*, the groups of the local motion, in the order of `q`.
+LOCAL_GROUPS = tuple(group for group in DofGroup if group.parent is not None)
+DOF = sum(group.size for group in DofGroup)
+LOCAL = DOF - DofGroup.ROOT.size  # components of the local groups, side by side: an upper body (11,)
+
+
+def _search_order() -> tuple[DofGroup, ...]:
+    """Every local group after its parent, and after those that it must keep clear of."""
+    order: list[DofGroup] = []
+    while len(order) < len(LOCAL_GROUPS):
+        order.append(
+            next(
+                group
+                for group in LOCAL_GROUPS
+                if group not in order
+                and all(other in order or other is DofGroup.ROOT for other in (group.parent, *group.clear_of))
+            )
+        )
+    return tuple(order)
+
+
+SEARCH_ORDER = _search_order()  # of decoupled planning; the first carries the others
+CHILDREN = SEARCH_ORDER[1:]  # the groups that the waist carries
+ARMS = tuple(group for group in CHILDREN if group.is_arm)
+LOWERING = DofGroup.WAIST.at.start + 2  # the place of the lowering in `q`
+_FIRST = DofGroup.ROOT.size  # of the local components in `q`
+_COLUMNS = {group: slice(group.at.start - _FIRST, group.at.stop - _FIRST) for group in LOCAL_GROUPS}
+
+
+def group_of_bone(bone: str) -> DofGroup:
+    """The lowest group that moves a bone; hips, legs and what no group turns belong to the root."""
+    return next((g for g in LOCAL_GROUPS if bone in (*g.value.bones, *g.value.turned_back)), DofGroup.ROOT)
 
 
 def columns_of(group: DofGroup) -> slice:
@@ -70,19 +203,24 @@ def columns_of(group: DofGroup) -> slice:
     return _COLUMNS[group]
 
 
-def limits(group: DofGroup) -> NDArray[np.float64]:
+def side_by_side(parts: Mapping[DofGroup, Floats]) -> Floats:
+    """Upper bodies (N, 11) of the configurations (N, size) of every local group."""
+    return np.concatenate([parts[group] for group in LOCAL_GROUPS], axis=1)
+
+
+_LIMITS = {group: np.array([(part.low, part.high) for part in group.value.components]) for group in DofGroup}
+
+
+def limits(group: DofGroup) -> Floats:
     """Lower and upper limits of a group's components, shape (size, 2); the root is unbounded."""
-    if group is DofGroup.ROOT:
-        return np.tile([-np.inf, np.inf], (3, 1))
-    rows: NDArray[np.float64] = _LIMITS[columns_of(group)]
-    return rows.copy()
+    return _LIMITS[group].copy()
 
 
-def clamp(group: DofGroup, q: ArrayLike) -> NDArray[np.float64]:
+def clamp(group: DofGroup, q: ArrayLike) -> Floats:
     """The group's configurations (..., size) brought within the limits; an arm's elevation too."""
-    low, high = limits(group).T
-    inside: NDArray[np.float64] = np.clip(np.asarray(q, np.float64), low, high)
-    if group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
+    low, high = _LIMITS[group].T
+    inside: Floats = np.clip(np.asarray(q, np.float64), low, high)
+    if group.is_arm:
         elevation = np.linalg.norm(inside[..., :2], axis=-1, keepdims=True)
         inside[..., :2] *= np.minimum(1.0, MAX_ELEVATION / np.maximum(elevation, MAX_ELEVATION))
     return inside
@@ -91,5 +229,5 @@ def clamp(group: DofGroup, q: ArrayLike) -> NDArray[np.float64]:
 def within_limits(q: ArrayLike, tolerance: float = 1e-9) -> bool:
     """Whether every one of the configurations (..., 14) respects the limits of all groups, within `tolerance` rad."""
     posture = np.asarray(q, np.float64)
-    groups = ((group, posture[..., group.value]) for group in LOCAL_GROUPS)
+    groups = ((group, posture[..., group.at]) for group in LOCAL_GROUPS)
     return all(bool(np.all(np.abs(clamp(group, part) - part) <= tolerance)) for group, part in groups)

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body import posing
-from elbowroom.body.bones import SPINE
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import DOF, LOWERING, DofGroup
+from elbowroom.body.dof import ARMS, DOF, LOWERING, DofGroup
 from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
@@ -29,7 +28,6 @@ Segments = NDArray[np.float32]
 _SPINE_WEIGHTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
 _GAZE = 0.65  # the part of the waist's rotation that neck and head undo
 _SIDES = ("left", "right")
-_ARM_BONES = ("UpperArm", "LowerArm", "Hand")
 _LEG_BONES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 
 
@@ -58,28 +56,24 @@ class BodyModel(NamedTuple):
     leg_rest: Floats  # (2, 9) see `legs.leg_rest`
     gait: GaitShape
     body: CapsuleSet  # every capsule, in the humanoid's order
-    roots: CapsuleSet  # of the group ROOT
-    trunk: CapsuleSet  # of the group WAIST
-    left_arm: CapsuleSet
-    right_arm: CapsuleSet
+    groups: dict[DofGroup, CapsuleSet]  # those of each group, its chain begins at the joint that it hangs on
+
+    @property
+    def roots(self) -> CapsuleSet:
+        """The capsules of pelvis and legs."""
+        return self.groups[DofGroup.ROOT]
 
     def capsules_of(self, group: DofGroup) -> CapsuleSet:
         """The capsules of a group."""
-        return {
-            DofGroup.ROOT: self.roots,
-            DofGroup.WAIST: self.trunk,
-            DofGroup.LEFT_ARM: self.left_arm,
-            DofGroup.RIGHT_ARM: self.right_arm,
-        }[group]
+        return self.groups[group]
 
 
 def body_model(humanoid: Humanoid) -> BodyModel:
     """Measure a humanoid. The model belongs to this object: keep it beside the humanoid."""
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
-    spine = [bone for bone in SPINE if skeleton.has(bone)]
-    gaze = [bone for bone in ("neck", "head") if skeleton.has(bone)]
+    spine = _bones(skeleton, DofGroup.WAIST)
+    gaze = [bone for bone in DofGroup.WAIST.value.turned_back if skeleton.has(bone)]
     weights = np.array([_SPINE_WEIGHTS[bone] for bone in spine])
-    chest = skeleton.index(spine[-1])
     parents = np.ascontiguousarray(skeleton.parents, np.int64)
     rest = np.ascontiguousarray(skeleton.positions, np.float64)
     every = np.arange(len(capsules.names))
@@ -91,20 +85,30 @@ def body_model(humanoid: Humanoid) -> BodyModel:
         spine_weights=weights / weights.sum(),
         gaze=_joints(skeleton, gaze),
         gaze_weights=np.full(len(gaze), -_GAZE / len(gaze)),
-        arms=np.array([_joints(skeleton, [side + bone for bone in _ARM_BONES]) for side in _SIDES]),
+        arms=np.array([_joints(skeleton, list(arm.value.bones)) for arm in ARMS]),
         legs=np.array([_joints(skeleton, [side + bone for bone in _LEG_BONES]) for side in _SIDES]),
         leg_rest=leg_rest(skeleton),
         gait=gait_shape(skeleton),
         body=_capsule_set(skeleton, capsules, every, 0),
-        roots=_capsule_set(skeleton, capsules, capsules.of(DofGroup.ROOT), 0),
-        trunk=_capsule_set(skeleton, capsules, capsules.of(DofGroup.WAIST), 0, [chest]),
-        left_arm=_capsule_set(skeleton, capsules, capsules.of(DofGroup.LEFT_ARM), chest),
-        right_arm=_capsule_set(skeleton, capsules, capsules.of(DofGroup.RIGHT_ARM), chest),
+        groups={group: _group_capsules(skeleton, capsules, group) for group in DofGroup},
     )
 
 
 def _joints(skeleton: Skeleton, bones: list[str]) -> Indices:
     return np.array([skeleton.index(bone) if skeleton.has(bone) else -1 for bone in bones], np.int64)
+
+
+def _bones(skeleton: Skeleton, group: DofGroup) -> list[str]:
+    """The joints that a group turns, as far as the skeleton has them."""
+    return [bone for bone in group.value.bones if skeleton.has(bone)]
+
+
+def _group_capsules(skeleton: Skeleton, capsules: Capsules, group: DofGroup) -> CapsuleSet:
+    """The capsules of a group, and its chain down to the joint that its children hang on."""
+    start = 0 if group.parent is None else skeleton.index(_bones(skeleton, group.parent)[-1])
+    end = skeleton.index(_bones(skeleton, group)[-1])
+    carries = any(other.parent is group for other in DofGroup)
+    return _capsule_set(skeleton, capsules, capsules.of(group), start, [end] if carries else None)
 
 
 def _capsule_set(
@@ -183,7 +187,7 @@ def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0)
 
 
 def _trunk(model: BodyModel, waist: ArrayLike) -> tuple[Segments, Floats, Floats]:
-    m, c = model, model.trunk
+    m, c = model, model.capsules_of(DofGroup.WAIST)
     return posing.pose_trunk(
         m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights,
         c.joints, c.ends, m.gait.half_leg, _rows(waist, DofGroup.WAIST.size),
@@ -203,9 +207,9 @@ def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
 
 def arm_capsules(model: BodyModel, group: DofGroup, arm: ArrayLike) -> Segments:
     """An arm's capsules (3, 6, N) in the chest frame for arm configurations (N, 4)."""
-    if group not in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
+    if not group.is_arm:
         raise ValueError(f"{group.name} is not an arm")
-    m, c, side = model, model.capsules_of(group), 0 if group is DofGroup.LEFT_ARM else 1
+    m, c, side = model, model.capsules_of(group), ARMS.index(group)
     return posing.pose_arm(
         m.base, m.parents, m.offsets, c.order, int(m.spine[-1]), m.arms[side], 1.0 - 2.0 * side,
         c.joints, c.ends, _rows(arm, group.size),

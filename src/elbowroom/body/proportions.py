@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.bones import PARENTS, SPINE
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import group_of_bone
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
 from elbowroom.body.skeleton import Skeleton
 
@@ -96,12 +96,12 @@ def proportional_capsules(skeleton: Skeleton) -> Capsules:
         starts=np.array([part[2] for part in parts]) - rest,
         ends=np.array([part[3] for part in parts]) - rest,
         radii=np.array([part[4] for part in parts]) * size,
-        groups=tuple(part[5] for part in parts),
+        groups=tuple(group_of_bone(part[1]) for part in parts),
     )
 
 
-# Name, carrying bone, start and end in the T-posed body, radius / stature, group.
-_Part = tuple[str, str, Floats, Floats, float, DofGroup]
+# Name, carrying bone, start and end in the T-posed body, radius / stature.
+_Part = tuple[str, str, Floats, Floats, float]
 
 
 def _lateral(centre: Floats, half: float) -> tuple[Floats, Floats]:
@@ -112,16 +112,16 @@ def _lateral(centre: Floats, half: float) -> tuple[Floats, Floats]:
 def _leg_parts(skeleton: Skeleton, size: float) -> list[_Part]:
     at = _positions(skeleton)
     hips = 0.5 * (at["leftUpperLeg"] + at["rightUpperLeg"])
-    parts: list[_Part] = [("pelvis", "hips", *_lateral(hips, _PELVIS[1] * size), _PELVIS[0], DofGroup.ROOT)]
+    parts: list[_Part] = [("pelvis", "hips", *_lateral(hips, _PELVIS[1] * size), _PELVIS[0])]
     for name, bone, end, radius in (("Thigh", "UpperLeg", "LowerLeg", _THIGH), ("Shin", "LowerLeg", "Foot", _SHIN)):
         for side in ("left", "right"):
-            parts.append((side + name, side + bone, at[side + bone], at[side + end], radius, DofGroup.ROOT))
+            parts.append((side + name, side + bone, at[side + bone], at[side + end], radius))
     for side in ("left", "right"):
         ankle = at[f"{side}Foot"]
         sole = np.array([ankle[0], _FOOT * size, ankle[2]])
         heel = sole - np.array([0.0, 0.0, (_HEEL - _FOOT) * size])
         toe = sole + np.array([0.0, 0.0, (_TOE - _FOOT) * size])
-        parts.append((f"{side}Foot", f"{side}Foot", heel, toe, _FOOT, DofGroup.ROOT))
+        parts.append((f"{side}Foot", f"{side}Foot", heel, toe, _FOOT))
     return parts
 
 
@@ -139,28 +139,28 @@ def _trunk_parts(skeleton: Skeleton, size: float) -> list[_Part]:
         ("chest", top, 0.87, _CHEST),
     ):
         centre = low + height * (high - low)
-        parts.append((name, bone, *_lateral(centre, min(half * size, 0.7 * reach)), radius, DofGroup.WAIST))
+        parts.append((name, bone, *_lateral(centre, min(half * size, 0.7 * reach)), radius))
     # The shoulder joints go where the trunk takes them, so what they touch is for the waist to avoid.
-    parts.append(("shoulders", top, at["leftUpperArm"], at["rightUpperArm"], _UPPER_ARM, DofGroup.WAIST))
+    parts.append(("shoulders", top, at["leftUpperArm"], at["rightUpperArm"], _UPPER_ARM))
     neck = "neck" if skeleton.has("neck") else top
     root = at["neck"] if skeleton.has("neck") else 0.5 * (high + at["head"])
     crown = at["head"] + size * np.array([0.0, 1.0 - _HEAD_HEIGHT - _HEAD, 0.012])
     chin = at["head"] + size * np.array([0.0, 0.030, 0.012])
-    parts.append(("neck", neck, root, at["head"], _NECK, DofGroup.WAIST))
-    parts.append(("head", "head", chin, crown, _HEAD, DofGroup.WAIST))
+    parts.append(("neck", neck, root, at["head"], _NECK))
+    parts.append(("head", "head", chin, crown, _HEAD))
     return parts
 
 
 def _arm_parts(skeleton: Skeleton, size: float) -> list[_Part]:
     at = _positions(skeleton)
     parts: list[_Part] = []
-    for side, group in (("left", DofGroup.LEFT_ARM), ("right", DofGroup.RIGHT_ARM)):
+    for side in ("left", "right"):
         shoulder, elbow, wrist = (at[f"{side}{bone}"] for bone in ("UpperArm", "LowerArm", "Hand"))
         along = (wrist - elbow) / max(float(np.linalg.norm(wrist - elbow)), 1e-9)
         tips = wrist + (_HAND_LENGTH - _HAND) * size * along
-        parts.append((f"{side}UpperArm", f"{side}UpperArm", shoulder, elbow, _UPPER_ARM, group))
-        parts.append((f"{side}Forearm", f"{side}LowerArm", elbow, wrist, _FOREARM, group))
-        parts.append((f"{side}Hand", f"{side}Hand", wrist, tips, _HAND, group))
+        parts.append((f"{side}UpperArm", f"{side}UpperArm", shoulder, elbow, _UPPER_ARM))
+        parts.append((f"{side}Forearm", f"{side}LowerArm", elbow, wrist, _FOREARM))
+        parts.append((f"{side}Hand", f"{side}Hand", wrist, tips, _HAND))
     return parts
 
 

@@ -8,13 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.clip_data import ClipData, parse_clips
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 
-_ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
-_FILES = ("waist.json", "arm.json")
+_FILES = tuple(f"{part}.json" for part in dict.fromkeys(group.value.clips for group in LOCAL_GROUPS))
 _SWING = "arm_swing"
 HANGING = np.deg2rad([-2.0, 6.0, 3.0, 10.0])  # the relaxed arm of a body that stands
 
@@ -53,7 +52,7 @@ def arm_swing(group: DofGroup) -> MotionClip:
 
     The angles are those of a walk at 1.2 m/s. Raises ValueError if the group is not an arm.
     """
-    if group not in _ARMS:
+    if not group.is_arm:
         raise ValueError(f"{group.name} is not an arm")
     clip = next(clip for clip in stock_clips(group) if clip.name == _SWING)
     if group is DofGroup.LEFT_ARM:
@@ -68,7 +67,7 @@ def arm_swing_goal(group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Flo
     The swing grows from the hanging arm at rest. Below some 0.8 m/s the arms swing twice a stride, above once, opposite
     to their leg; in between the two are mixed. Backward (negative speed) the swing follows the legs.
     """
-    if group not in _ARMS:
+    if not group.is_arm:
         raise ValueError(f"{group.name} is not an arm")
     phase, speed = np.asarray(phases, np.float64), np.asarray(speeds, np.float64)
     if phase.shape != speed.shape:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import group_of_bone
 from elbowroom.body.fitting import Fit
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.body.stock import stock_fit_path
@@ -43,7 +43,6 @@ def fit_document(avatar: bytes, skeleton: Skeleton, fit: Fit) -> dict[str, Any]:
             {
                 "name": name,
                 "joint": skeleton.names[capsules.joints[i]],
-                "group": capsules.groups[i].name,
                 "start": capsules.starts[i].tolist(),
                 "end": capsules.ends[i].tolist(),
                 "radius": float(capsules.radii[i]),
@@ -63,6 +62,6 @@ def fit_of(document: dict[str, Any], skeleton: Skeleton) -> Fit:
         starts=np.array([row["start"] for row in rows]),
         ends=np.array([row["end"] for row in rows]),
         radii=np.array([row["radius"] for row in rows]),
-        groups=tuple(DofGroup[row["group"]] for row in rows),
+        groups=tuple(group_of_bone(row["joint"]) for row in rows),
     )
     return Fit(capsules, tuple(document["bare"]), ())

@@ -161,14 +161,10 @@ def _print_smoothness(verdict: "Verdict") -> None:
 
 def _limits() -> str:
     """What our own planner keeps to."""
-    from elbowroom.body.dof import DofGroup
-    from elbowroom.planning.exact.settings import ExactSettings
+    from elbowroom.body.dof import LOCAL_GROUPS
 
-    settings = ExactSettings()
-    names = {"waist": DofGroup.WAIST, "arms": DofGroup.LEFT_ARM}
     return ", ".join(
-        f"{name} {settings.speed_of(group):g} rad/s {settings.acceleration_of(group):g} rad/s²"
-        for name, group in names.items()
+        f"{group.label} {group.value.speed:g} rad/s {group.value.acceleration:g} rad/s²" for group in LOCAL_GROUPS
     )
 
 

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 _SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
 _MOST_CLIPS, _MOST_KEYS = 1_000, 10_000  # that are read from a recording
-_LOWERS = LOWERING - DofGroup.WAIST.value.start
+_LOWERS = LOWERING - DofGroup.WAIST.at.start
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class MotionSet:
         """What a local group would like to do at gait phases (n,) and forward speeds (n,): (n, size)."""
         if self.swing is not None:
             return self.swing.goal(group, phases, speeds)
-        if group is DofGroup.WAIST:
+        if not group.is_arm:
             return np.zeros((len(np.atleast_1d(phases)), group.size))
         return arm_swing_goal(group, phases, speeds)
 
@@ -42,7 +42,7 @@ class MotionSet:
         own = tuple(clip for clip in self.dodges if clip.group is group)
         if self.swing is not None:
             own = (self.swing.clips[group], *own)
-        elif group is DofGroup.WAIST:
+        elif not group.is_arm:
             return stock_clips(group) + own
         return (
             stock_clips(group) + tuple(MotionClip("swing", group, phases, swing, loop=True) for swing in swings) + own

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import ARMS, DofGroup, clamp, side_by_side
 from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
@@ -14,8 +14,6 @@ from elbowroom.clips.root_track import RootTrack, root_track, seen_from_root
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
-
-_SIDES = {DofGroup.LEFT_ARM: "left", DofGroup.RIGHT_ARM: "right"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +40,8 @@ def planning_motion(motion: BodyMotion) -> PlanningMotion:
     planned = chest_rotation(waist)
     groups, errors = {DofGroup.WAIST: waist}, []
     back = quaternion.conjugate(planned)
-    for group, side in _SIDES.items():
+    for group in ARMS:
+        side = group.label.removesuffix("Arm")
         upper = quaternion.multiply(back, turns[:, motion.index(f"{side}UpperArm")])
         lower = quaternion.multiply(back, turns[:, motion.index(f"{side}LowerArm")])
         groups[group] = clamp(group, arm_angles(upper, lower, side))
@@ -63,7 +62,7 @@ def _waist(motion: BodyMotion, chest: Floats, states: Floats) -> Floats:
 
 def upper_body(motion: PlanningMotion) -> Floats:
     """The local groups side by side: waist, left arm, right arm."""
-    return np.concatenate([motion.groups[group] for group in LOCAL_GROUPS], axis=1)
+    return side_by_side(motion.groups)
 
 
 def _angle(a: Floats, b: Floats) -> Floats:

@@ -50,7 +50,7 @@ class Swing:
 
 def resting(group: DofGroup) -> Floats:
     """The group of a body that stands relaxed: (size,)."""
-    if group is DofGroup.WAIST:
+    if not group.is_arm:
         return np.zeros(group.size)
     posture: Floats = arm_swing_goal(group, np.zeros(1), np.zeros(1))[0]
     return posture

@@ -1,4 +1,4 @@
-"""What others are told about an avatar's way: boxes round its legs, its trunk and its arms, and its body for a moment.
+"""What others are told about an avatar's way: boxes round the parts of its body, and its body for a moment.
 
 As far as key frames are known the boxes go with them, and then straight on for a while. Steps aside are not taken to go
 on: who walks ahead and makes way to the side will soon be beside.
@@ -23,12 +23,6 @@ _BEYOND = 2.0  # seconds after the last key frame
 _SPARE = 0.02  # metres: between key frames limbs may reach a little farther
 _THIN = 0.02  # metres: no box becomes thinner
 _MOMENTS = np.arange(10) / 60  # seconds from now: a key interval
-_PARTS = {
-    "legs": DofGroup.ROOT,
-    "trunk": DofGroup.WAIST,
-    "left arm": DofGroup.LEFT_ARM,
-    "right arm": DofGroup.RIGHT_ARM,
-}
 
 
 def neighbour(
@@ -62,7 +56,7 @@ def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: 
     times, places, yaws = _way(keys, onward)
     sine, cosine = np.sin(yaws), np.cos(yaws)
     tracks = []
-    for name, group in _PARTS.items():
+    for group in DofGroup:
         part = humanoid.capsules.of(group)
         low = (own[part] - radii[part, None]).min(axis=(0, 1, 3)) - _SPARE
         high = (own[part] + radii[part, None]).max(axis=(0, 1, 3)) + _SPARE
@@ -70,7 +64,7 @@ def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: 
         x = places[:, 0] + left * cosine + ahead * sine
         z = places[:, 1] - left * sine + ahead * cosine
         centers = np.stack([x, np.full(len(times), middle), z], axis=1)
-        tracks.append(Track(f"{humanoid.name}: {name}", high - low, times, centers, yaws, Repeat.ONCE))
+        tracks.append(Track(f"{humanoid.name}: {group.label}", high - low, times, centers, yaws, Repeat.ONCE))
     return MovingBoxes(tuple(tracks))
 
 

@@ -10,7 +10,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body import dof
+from elbowroom.body.dof import ARMS, LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.stock_clips import HANGING, arm_swing, swing_into
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.jit import exact_kernel
@@ -21,7 +22,7 @@ Floats = NDArray[np.float64]
 _ABDUCTION = 1  # component of an arm
 _LIFT = 0.25  # radians for each m/s to the side
 _SLIGHT = 0.05  # m/s: below, it sets in gently
-_LEFT_ARM, _RIGHT_ARM = (columns_of(arm).start for arm in LOCAL_GROUPS[1:])
+_LEFT_ARM, _RIGHT_ARM = (columns_of(arm).start for arm in ARMS)
 
 
 class GoalFunction(Protocol):
@@ -49,7 +50,7 @@ def periodic_goal(group: DofGroup, motions: MotionSet = STOCK) -> GoalFunction:
 
     def goals(path: RootPath) -> Floats:
         found = np.array(motions.goal(group, path.states[:, 6], path.states[:, 3]), np.float64)
-        if group is not DofGroup.WAIST:
+        if group.is_arm:
             found[:, _ABDUCTION] += _LIFT * (np.hypot(path.states[:, 4], _SLIGHT) - _SLIGHT)
         return found
 
@@ -60,7 +61,7 @@ def side_by_side(goals: Mapping[DofGroup, GoalFunction]) -> GoalFunction:
     """The goals of all local groups, as one function of configurations (n+1, 11): waist, left arm, right arm."""
 
     def together(path: RootPath) -> Floats:
-        return np.concatenate([goals[group](path) for group in LOCAL_GROUPS], axis=1)
+        return dof.side_by_side({group: goals[group](path) for group in LOCAL_GROUPS})
 
     return together
 

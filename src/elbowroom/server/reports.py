@@ -5,7 +5,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import AvatarMeta
 from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
@@ -13,7 +12,7 @@ from elbowroom.planning.result import BlockadeKind
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.clip_store import StoredClip
 from elbowroom.server.pose import placement
-from elbowroom.server.schema.bounds import GroupName, Reason
+from elbowroom.server.schema.bounds import Reason
 from elbowroom.server.schema.picture import (
     AvatarCapsule,
     AvatarMessage,
@@ -33,12 +32,6 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _MOST_FACTS = 20
-_GROUPS: dict[DofGroup, GroupName] = {
-    DofGroup.ROOT: "root",
-    DofGroup.WAIST: "waist",
-    DofGroup.LEFT_ARM: "leftArm",
-    DofGroup.RIGHT_ARM: "rightArm",
-}
 _REASONS: dict[BlockadeKind, Reason] = {
     BlockadeKind.NO_POSTURE: "noPosture",
     BlockadeKind.OUT_OF_REACH: "outOfReach",
@@ -92,7 +85,7 @@ def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
         bones=[Bone(name, node) for name, node in zip(skeleton.names, nodes, strict=True)],
         placement=placement(rig),
         capsules=[
-            AvatarCapsule(name, radius, _GROUPS[group])
+            AvatarCapsule(name, radius, group.label)
             for name, radius, group in zip(capsules.names, capsules.radii.tolist(), capsules.groups, strict=True)
         ],
         height=skeleton.height,
@@ -127,8 +120,7 @@ def group_reports(plan: PlanReport | None) -> list[GroupReport]:
     """What each group's search in the last plan cost."""
     evidence = () if plan is None else plan.local.evidence
     return [
-        GroupReport(_GROUPS[e.group], e.status.value, e.checks, e.nodes, e.enhanced, e.nanoseconds / 1e6)
-        for e in evidence
+        GroupReport(e.group.label, e.status.value, e.checks, e.nodes, e.enhanced, e.nanoseconds / 1e6) for e in evidence
     ]
 
 

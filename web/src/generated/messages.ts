@@ -238,7 +238,8 @@ export interface Bone {
 export interface AvatarCapsule {
   name: string;
   radius: number;
-  group: "root" | "waist" | "leftArm" | "rightArm";
+  /** at most 32 long */
+  group: string;
 }
 
 /** How the file's scene stands in the root's frame (metres, facing +Z): scale, then turn about +Y, then move. */
@@ -275,7 +276,8 @@ export interface AvatarMessage {
 
 /** How the last plan of one group ended and what it cost. */
 export interface GroupReport {
-  group: "root" | "waist" | "leftArm" | "rightArm";
+  /** at most 32 long */
+  group: string;
   /** "found", "exhausted", "out of budget" */
   status: string;
   checks: number;

@@ -1,6 +1,6 @@
 /** The small table of numbers in the corner. */
 
-import type { GroupReport, Status } from "../generated/messages";
+import type { Status } from "../generated/messages";
 import { byId, make } from "./dom";
 
 /** What the page itself measures. */
@@ -27,10 +27,6 @@ const ROWS = [
 ] as const;
 
 type RowName = (typeof ROWS)[number][0];
-
-const GROUP_TITLES: Readonly<Record<GroupReport["group"], string>> = {
-  root: "root", waist: "waist", leftArm: "left arm", rightArm: "right arm",
-};
 
 export class Hud {
   private readonly cells = new Map<RowName, HTMLElement>();
@@ -91,7 +87,7 @@ export class Hud {
     ];
     for (const group of status.groups) {
       const cost = `${group.checks.toLocaleString("en")} checks · ${group.ms.toFixed(1)} ms`;
-      rows.push([GROUP_TITLES[group.group], `${words(group.status)} · ${cost}`, tone(group.status)]);
+      rows.push([title(group.group), `${words(group.status)} · ${cost}`, tone(group.status)]);
     }
     this.planList.replaceChildren(
       ...rows.flatMap(([title, text, tone]) => [make("dt", {}, title), make("dd", { class: tone }, text)]),
@@ -124,4 +120,9 @@ function tone(status: string): string {
 
 function words(status: string): string {
   return status ? status.toLowerCase().replaceAll("_", " ") : "–";
+}
+
+/** A group's label in words: "leftArm" is "left arm". */
+function title(group: string): string {
+  return group.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`);
 }

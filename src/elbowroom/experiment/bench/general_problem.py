@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, limits
+from elbowroom.body.dof import LOCAL_GROUPS, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
@@ -82,8 +82,7 @@ def crossing_problem(humanoid: Humanoid, scene: Scene) -> CrossingProblem:
     settings = ExactSettings()
     speeds = []
     for group in LOCAL_GROUPS:
-        at = slice(group.value.start - DofGroup.ROOT.size, group.value.stop - DofGroup.ROOT.size)
-        speeds.append((at, settings.mean_speed_of(group)))
+        speeds.append((columns_of(group), settings.mean_speed_of(group)))
     low, high = np.concatenate([limits(group) for group in LOCAL_GROUPS]).T
     end = path.interval * path.horizon
     return CrossingProblem(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of
+from elbowroom.body.dof import ARMS, LOCAL, LOWERING, DofGroup, clamp, columns_of
 from elbowroom.control.canned import standing_posture
 from elbowroom.experiment.gauntlet import levels
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw, Range
@@ -17,9 +17,10 @@ Floats = NDArray[np.float64]
 
 ArmRanges = tuple[Range, Range, Range, Range]
 
-WAIST, LEFT, RIGHT = (columns_of(group) for group in LOCAL_GROUPS)  # columns of an upper body (11,)
+_MOVED = DofGroup.WAIST, *ARMS
+WAIST, LEFT, RIGHT = (columns_of(group) for group in _MOVED)  # columns of an upper body (11,)
 _BEND, _TWIST, _ABDUCTIONS = WAIST.start, WAIST.start + 1, [LEFT.start + 1, RIGHT.start + 1]
-DRAWN = np.delete(np.arange(LOCAL), LOWERING - DofGroup.WAIST.value.start)  # a certificate's pelvis is never lowered
+DRAWN = np.delete(np.arange(LOCAL), LOWERING - DofGroup.WAIST.at.start)  # a certificate's pelvis is never lowered
 
 _BENT, _LEANING = (0.75, 1.25), (0.60, 0.95)  # forward bend alone, and with a twist
 _TWISTED = (0.50, 0.78)
@@ -158,7 +159,7 @@ def _drifted(draw: Draw, held: Floats, hanging: Floats, check: SelfClearance, re
 def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
     """As far towards the wanted posture as limits and reach allow, group by group; whole milliradians."""
     posture = wanted.copy()
-    for columns, group, most in zip((WAIST, LEFT, RIGHT), LOCAL_GROUPS, reach, strict=True):
+    for columns, group, most in zip((WAIST, LEFT, RIGHT), _MOVED, reach, strict=True):
         posture[columns] = clamp(group, posture[columns])
         move = posture[columns] - before[columns]
         posture[columns] = before[columns] + move * min(1.0, 0.99 * most / max(float(np.linalg.norm(move)), 1e-9))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.dof import DOF, DofGroup
+from elbowroom.body.dof import ARMS, DOF
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
@@ -22,7 +22,6 @@ from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 
-_ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 _SPEEDS = (0.0, 0.5, 1.1, 1.6, 2.2)  # m/s of the natural walk
 _PHASES = 24
 _BALLS = 4  # along an axis
@@ -77,8 +76,8 @@ def _pairs(humanoid: Humanoid) -> NDArray[np.int64]:
     """The capsules (P, 2) that are not held together by a joint."""
     capsules, names = humanoid.capsules, humanoid.skeleton.names
     bones = [names[joint] for joint in capsules.joints]
-    left, right = ([i for i, group in enumerate(capsules.groups) if group is arm] for arm in _ARMS)
-    rest = [i for i, group in enumerate(capsules.groups) if group not in _ARMS]
+    left, right = ([i for i, group in enumerate(capsules.groups) if group is arm] for arm in ARMS)
+    rest = [i for i, group in enumerate(capsules.groups) if not group.is_arm]
     rooted = [i for i in rest if bones[i] in (*SPINE, "hips")]
     pairs = [
         (one, other)

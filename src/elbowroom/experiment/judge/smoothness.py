@@ -29,16 +29,14 @@ class Smoothness:
 
 
 def smoothness(motion: ShownMotion) -> dict[str, Smoothness]:
-    """Figures for `waist`, `leftArm`, `rightArm` and `heading` in radians, and for `root` in metres.
+    """Figures for every local group and `heading` in radians, and for `root` in metres.
 
     The waist's lowering counts in its own unit, see `body.dof`.
 
     Nothing is taken over a jump. Frames at one and the same time count once.
     """
     tracks = {
-        "waist": motion.q[:, LOCAL_GROUPS[0].value],
-        "leftArm": motion.q[:, LOCAL_GROUPS[1].value],
-        "rightArm": motion.q[:, LOCAL_GROUPS[2].value],
+        **{group.label: motion.q[:, group.at] for group in LOCAL_GROUPS},
         "heading": motion.roots[:, 2:3],
         "root": motion.roots[:, :2],
     }

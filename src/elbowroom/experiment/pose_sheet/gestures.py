@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, DofGroup, clamp
+from elbowroom.body.dof import ARMS, DOF, DofGroup, clamp
 from elbowroom.body.root import RootState
 
 
@@ -27,9 +27,9 @@ class Gesture:
         waist = np.append(
             np.deg2rad([self.bend, self.twist]), self.lowering * clamp(DofGroup.WAIST, [0.0, 0.0, 9.0])[2]
         )
-        q[DofGroup.WAIST.value] = clamp(DofGroup.WAIST, waist)
-        for group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
-            q[group.value] = clamp(group, np.deg2rad(self.arms))
+        q[DofGroup.WAIST.at] = clamp(DofGroup.WAIST, waist)
+        for group in ARMS:
+            q[group.at] = clamp(group, np.deg2rad(self.arms))
         return q
 
 

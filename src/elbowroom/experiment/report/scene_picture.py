@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from elbowroom.body.dof import DofGroup
 from elbowroom.experiment.report.crossings import DrawnCrossing
 from elbowroom.experiment.report.svg import points, tag, title
 from elbowroom.world.scene import Scene
@@ -15,12 +14,6 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _MARGIN = 0.3  # metres around what is drawn
-_CLASSES = {
-    DofGroup.ROOT: "legs",
-    DofGroup.WAIST: "trunk",
-    DofGroup.LEFT_ARM: "left-arm",
-    DofGroup.RIGHT_ARM: "right-arm",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +110,7 @@ def _figure(crossing: DrawnCrossing, posture: Floats, view: _View) -> str:
             x2=float(ends[i, 0]) + 1e-4,
             y2=float(ends[i, 1]),
             stroke_width=2.0 * float(crossing.radii[i]),
-            class_=_CLASSES[crossing.groups[i]],
+            class_=crossing.groups[i].label,
         )
         for i in order
     ]

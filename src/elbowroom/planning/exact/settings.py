@@ -13,15 +13,7 @@ class ExactSettings:
 
     look_ahead: float = 2.4  # seconds, whatever the size of the queue
     interval: float = 0.15  # seconds between key frames, for which posture sets are made in advance
-    waist_samples: int = 6  # postures taken from each clip
-    arm_samples: int = 10
-    # What is shown, over all components of a group together. People move their joints nearly with minimum jerk
-    # (T. Flash & N. Hogan, J. Neuroscience 5, 1985), where a way D in the time T peaks at 1.9 D/T and 5.8 D/T^2.
-    waist_speed: float = 3.4  # rad/s: a bend, turn or crouch by half a radian in 0.28 s
-    # A serve turns the upper arm at 10.8 rad/s (M. Reid, B. Elliott & J. Alderson, Br. J. Sports Med. 41, 2007).
-    arm_speed: float = 6.3  # rad/s: a reach of a radian in 0.3 s
-    waist_acceleration: float = 60.0  # rad/s^2: half a radian in 0.22 s
-    arm_acceleration: float = 150.0  # rad/s^2: a radian in 0.2 s, as in a reach as fast as can be
+    samples_share: float = 1.0  # of the postures that the table of groups takes from each clip
     margin: float = 0.008  # clearance of a posture around its key time
     motion_margin: float = 0.005  # clearance of the motion that is shown
     soon: float = 0.6  # seconds ahead until which less is asked for: what was free from afar stays free when it is near
@@ -39,14 +31,21 @@ class ExactSettings:
     keeping: float = 0.02  # squared radians that another way must be better than the one being followed
     paces: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
 
-    def speed_of(self, group: DofGroup) -> float:
+    def samples_of(self, group: DofGroup) -> int:
+        """The number of postures that are taken from each clip of a local group."""
+        return max(1, round(self.samples_share * group.value.samples))
+
+    @staticmethod
+    def speed_of(group: DofGroup) -> float:
         """The greatest speed of a local group's shown motion, rad/s."""
-        return self.waist_speed if group is DofGroup.WAIST else self.arm_speed
+        return group.value.speed
 
-    def acceleration_of(self, group: DofGroup) -> float:
+    @staticmethod
+    def acceleration_of(group: DofGroup) -> float:
         """The greatest acceleration of a local group's shown motion, rad/s^2."""
-        return self.waist_acceleration if group is DofGroup.WAIST else self.arm_acceleration
+        return group.value.acceleration
 
-    def mean_speed_of(self, group: DofGroup) -> float:
-        """The greatest speed of a local group from key frame to key frame, rad/s: what a step of its own may have."""
-        return self.speed_of(group) / _LONE
+    @staticmethod
+    def mean_speed_of(group: DofGroup) -> float:
+        """The greatest speed of a local group from key frame to key frame, rad/s: of an edge."""
+        return group.value.speed / _LONE

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup
 from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
@@ -45,9 +45,10 @@ class SelfPairs(NamedTuple):
 
 def self_pairs(model: BodyModel, goals: GoalFunction | None = None) -> SelfPairs:
     """Measure the natural walk of a body, or what `goals` make of it."""
-    rest = np.concatenate([model.roots.indices, model.trunk.indices])
-    joints = np.concatenate([model.roots.joints, model.trunk.joints])
-    arms = model.left_arm.indices, model.right_arm.indices
+    rest = np.concatenate([model.roots.indices, model.capsules_of(DofGroup.WAIST).indices])
+    joints = np.concatenate([model.roots.joints, model.capsules_of(DofGroup.WAIST).joints])
+    left, right = (model.capsules_of(arm).indices for arm in ARMS)
+    arms = left, right
     natural = _natural_walk(model, goals or natural_walk())
     head = np.isin(joints, model.gaze)
 

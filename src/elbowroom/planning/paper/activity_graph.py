@@ -69,7 +69,7 @@ class ActivityGraph:
             np.zeros(1, np.int32),
             np.zeros(1, np.int32),
             limits(group) if bounds is None else np.array(bounds, np.float64),
-            np.inf if group is DofGroup.WAIST else MAX_ELEVATION,
+            MAX_ELEVATION if group.is_arm else np.inf,
             float(radius),
             int(capacity),
         )

@@ -148,7 +148,7 @@ class LocalPlanner:
 
         clips, bounds = upright(self._motions.clips(group)), limits(group)
         if group is DofGroup.WAIST:
-            bounds[LOWERING - group.value.start] = 0.0
+            bounds[LOWERING - group.at.start] = 0.0
         graph = ActivityGraph.from_clips(
             clips, chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept, bounds
         )
@@ -166,7 +166,7 @@ def upright(clips: tuple[MotionClip, ...]) -> tuple[MotionClip, ...]:
     """Those of a group's clips that do not lower the pelvis: the paper's avatar cannot."""
     if clips[0].group is not DofGroup.WAIST:
         return clips
-    column = LOWERING - DofGroup.WAIST.value.start
+    column = LOWERING - DofGroup.WAIST.at.start
     return tuple(clip for clip in clips if not clip.configurations[:, column].any())
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, DofGroup
+from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
@@ -31,8 +31,11 @@ class TurnedBody:
 
     def __init__(self, humanoid: Humanoid) -> None:
         self._model, capsules = body_model(humanoid), humanoid.capsules
-        legs, trunk = capsules.of(DofGroup.ROOT), capsules.of(DofGroup.WAIST)
-        arms = np.concatenate([capsules.of(DofGroup.LEFT_ARM), capsules.of(DofGroup.RIGHT_ARM)])
+        legs = capsules.of(DofGroup.ROOT)
+        trunk, arms = (
+            np.concatenate([capsules.of(group) for group in LOCAL_GROUPS if group.is_arm is is_arm])
+            for is_arm in (False, True)
+        )
         self._legs, self._rest = legs, np.concatenate([trunk, arms])
         counts = [_PHASES * len(legs), len(trunk), len(arms)]
         self.groups: Indices = np.concatenate([[0], np.cumsum(counts)])  # where legs, trunk, arms begin; the end

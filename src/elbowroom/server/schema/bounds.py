@@ -34,6 +34,6 @@ Sequence = Annotated[int, Range(0, 2**32 - 1)]
 Name = Annotated[str, Length(128)]
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
-GroupName = Literal["root", "waist", "leftArm", "rightArm"]
+GroupName = Annotated[str, Length(32)]  # the label of a group of degrees of freedom
 PhaseName = Literal["plan", "play", "reset"]
 Reason = Literal["noPosture", "outOfReach", "motion"]

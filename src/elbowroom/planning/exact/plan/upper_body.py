@@ -253,7 +253,7 @@ def _reach(group: DofGroup, limb: Limb) -> float:
 
 def _points(limb: Limb, clips: tuple[MotionClip, ...], settings: ExactSettings) -> Floats:
     """The postures of a group: those of its clips that keep clear of the trunk."""
-    samples = settings.waist_samples if clips[0].group is DofGroup.WAIST else settings.arm_samples
+    samples = settings.samples_of(clips[0].group)
 
     def accept(configurations: Floats) -> NDArray[np.bool_]:
         return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)

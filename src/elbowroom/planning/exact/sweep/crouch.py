@@ -17,7 +17,7 @@ from elbowroom.planning.root.path import RootPath
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_COLUMN = LOWERING - DofGroup.WAIST.value.start
+_COLUMN = LOWERING - DofGroup.WAIST.at.start
 _MARGIN = (
     0.02  # metres of clearance of crouching legs; less where the start has less, so that who stands close by can go
 )

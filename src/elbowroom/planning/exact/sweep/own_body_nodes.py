@@ -22,7 +22,7 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the way to the next keeps it too
-_LOCAL = int(DofGroup.WAIST.value.start)
+_LOCAL = int(DofGroup.WAIST.at.start)
 
 
 class OwnBodyNodes(NamedTuple):
