@@ -281,6 +281,17 @@ def test_uploads_fill_no_more_than_their_share_of_the_disk(monkeypatch: pytest.M
     store.close()
 
 
+def test_an_avatar_of_the_command_line_goes_by_its_files_name(tmp_path: Path) -> None:
+    store = avatar_store.AvatarStore()
+    for name, expected in [("Alice B.vrm", "alice-b"), ("alice_b.vrm", "alice-b-2"), ("stock.vrm", "stock-2")]:
+        (tmp_path / name).write_bytes(stock_avatar_path().read_bytes())
+        assert store.add_file(tmp_path / name).id == expected
+    assert [choice.id for choice in store.choices()] == ["stock", "alice-b", "alice-b-2", "stock-2"]
+    (tmp_path / "0123456789abcdef.vrm").write_bytes(stock_avatar_path().read_bytes())
+    assert store.add_file(tmp_path / "0123456789abcdef.vrm").id == "avatar-0123456789abcdef"
+    store.close()
+
+
 def test_only_the_last_few_uploads_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(avatar_store, "MAX_UPLOADS", 2)
     store, data = avatar_store.AvatarStore(), stock_avatar_path().read_bytes()

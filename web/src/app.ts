@@ -1,5 +1,6 @@
 /** The page: brings session, picture, controls and panels together, a frame at a time. */
 
+import { AddressLine, isPrivate } from "./address";
 import { uploadFile } from "./avatar/upload";
 import { nextView, viewNamed, type ViewName } from "./camera/views";
 import { FrameStats } from "./frame_stats";
@@ -12,7 +13,7 @@ import type { ConnectionState } from "./net/connection";
 import { sessionUrl } from "./net/endpoints";
 import type { ShownPose } from "./net/pose_timeline";
 import { Session, type SessionListener } from "./net/session";
-import { OVERLAYS, type OverlayName } from "./overlays/overlay_names";
+import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import { Picture } from "./picture";
 import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
 import { showAvatarAbout } from "./ui/avatar_about";
@@ -23,6 +24,7 @@ import { Help } from "./ui/help";
 import { Hud } from "./ui/hud";
 import { Menu, type MenuListener } from "./ui/menu";
 import { Notices } from "./ui/notices";
+import { shareAddress } from "./ui/share";
 import { StatusLine } from "./ui/status_line";
 import { Veil } from "./ui/veil";
 
@@ -45,6 +47,7 @@ export class App implements SessionListener, MenuListener {
   private bodyIsAvatar = false;
   /** Kept to send it again when the server has lost it. */
   private lastFile: File | null = null;
+  private readonly address: AddressLine;
   private readonly menu: Menu;
   private readonly pointer: PointerInput;
   private readonly hud = new Hud();
@@ -72,8 +75,10 @@ export class App implements SessionListener, MenuListener {
     keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
     this.showPanels();
-    this.menu.showView(this.picture.camera.viewName);
+    this.picture.camera.show(wishes.camera);
+    this.menu.showView(wishes.camera);
     this.setBare(!wishes.showUi);
+    this.address = new AddressLine((query) => this.goTo(query));
     this.session = new Session(sessionUrl(), this, wishes);
     this.subscribe();
     requestAnimationFrame(() => this.frame());
@@ -93,6 +98,7 @@ export class App implements SessionListener, MenuListener {
   settings(settings: Settings): void {
     this.menu.showSettings(settings);
     this.subscribe();
+    this.showAddress();
   }
 
   scene(scene: SceneMessage): void {
@@ -156,7 +162,29 @@ export class App implements SessionListener, MenuListener {
   // What the user does.
 
   configure(change: Parameters<Session["configure"]>[0]): void {
+    this.address.choose();
     this.session.configure(change);
+  }
+
+  /** Goes to the place that an address names: the back button leads there. */
+  private goTo(query: URLSearchParams): void {
+    const { scene, avatar, planner, queueSize, walkSpeed, camera, assist } = readWishes(query);
+    this.session.configure({ scene, avatar, planner, queueSize, walkSpeed, assist: assist ?? true });
+    this.preferences.overlays = parseOverlays(query.get("overlays"));
+    this.picture.camera.show(camera);
+    this.menu.showView(camera);
+    this.overlaysChanged();
+  }
+
+  private showAddress(): void {
+    const { settings } = this.session;
+    const { overlays } = this.preferences;
+    if (settings) this.address.show({ settings, camera: this.picture.camera.viewName, overlays });
+  }
+
+  private share(): void {
+    const own = isPrivate(this.session.settings?.avatar ?? "");
+    void shareAddress(document.title, own).then((said) => said && this.notices.show("info", said));
   }
 
   prefer(change: Partial<Preferences>): void {
@@ -191,12 +219,12 @@ export class App implements SessionListener, MenuListener {
     this.menu.clips.add(clips);
     if (avatar) {
       this.menu.addAvatar(avatar.id, avatar.title);
-      this.session.configure({ avatar: avatar.id });
+      this.configure({ avatar: avatar.id });
       const [count, them] = clips.length === 1 ? ["one motion clip", "it"] : [`${clips.length} motion clips`, "them"];
       if (clips.length > 0) this.notices.show("info", `${avatar.title} brings ${count}: choose ${them} in the menu.`);
     } else if (clips[0]) {
       this.lastFile = null;
-      this.session.configure({ clip: clips[0].id });
+      this.configure({ clip: clips[0].id });
     }
   }
 
@@ -227,7 +255,7 @@ export class App implements SessionListener, MenuListener {
     menu: () => this.menu.setOpen(!this.menu.isOpen),
     nextView: () => this.showView(nextView(this.picture.camera.viewName)),
     inset: () => this.prefer({ inset: !this.preferences.inset }),
-    share: () => undefined,
+    share: () => this.share(),
     help: () => this.help.toggle(),
     escape: () => {
       this.setBare(false);
@@ -260,6 +288,7 @@ export class App implements SessionListener, MenuListener {
   private showView(name: ViewName): void {
     this.picture.camera.show(name);
     this.menu.showView(name);
+    this.showAddress();
   }
 
   /** From behind as the user prefers it; all other cameras show the avatar walk the way it faces. */
@@ -280,6 +309,7 @@ export class App implements SessionListener, MenuListener {
     this.menu.showOverlays(this.preferences.overlays);
     storePreferences(this.preferences);
     this.subscribe();
+    this.showAddress();
   }
 
   /** Asks only for the data that is drawn. */

@@ -1,5 +1,6 @@
 /** What the address line and earlier visits ask for. */
 
+import { viewNamed, type ViewName } from "./camera/views";
 import type { SteeringMode } from "./input/steering";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import type { QualityName } from "./stage/quality";
@@ -18,13 +19,15 @@ export interface Preferences {
   inset: boolean;
 }
 
-/** Wishes for the session from the address line, sent once at the start; null where the line says nothing. */
+/** Wishes from the address line, for the start and for the way back to it; null where the line says nothing. */
 export interface SessionWishes {
   readonly scene: string | null;
   readonly avatar: string | null;
   readonly planner: string | null;
   readonly queueSize: number | null;
   readonly assist: boolean | null;
+  readonly walkSpeed: number | null;
+  readonly camera: ViewName;
   readonly showUi: boolean;
 }
 
@@ -61,12 +64,15 @@ export function storePreferences(preferences: Preferences): void {
 
 export function readWishes(query: URLSearchParams): SessionWishes {
   const queue = Number(query.get("queue") ?? NaN);
+  const speed = Number(query.get("speed") ?? NaN);
   const assist = query.get("assist");
   return {
     scene: query.get("scene"),
     avatar: query.get("avatar"),
     planner: query.get("planner"),
     queueSize: Number.isInteger(queue) ? queue : null,
+    walkSpeed: Number.isFinite(speed) ? speed : null,
+    camera: viewNamed(query.get("camera")),
     assist: assist === null ? null : assist !== "0" && assist !== "off",
     showUi: query.get("ui") !== "0",
   };

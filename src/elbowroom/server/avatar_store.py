@@ -1,11 +1,13 @@
 """The avatars that a server knows: the stock one, one named on the command line, and a few dropped on the page."""
 
+import re
 import secrets
 import tempfile
 import threading
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import count
 from pathlib import Path
 
 from elbowroom.body.humanoid import Humanoid
@@ -22,6 +24,7 @@ MAX_EACH = 4  # of one machine that is not this one
 MAX_UPLOADED = 256 * 2**20  # bytes of all of them on disk
 
 _NOBODY = Sender()
+_LONGEST_NAME = 60  # characters
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +95,8 @@ class AvatarStore:
         return {avatar.glb for avatar in self._uploads.items() if avatar.glb is not None}
 
     def add_file(self, path: Path, read: LoadSettings | None = None) -> StoredAvatar:
-        """Keep the avatar of a file for good; raises `InputError` if it holds no humanoid."""
-        return self._keep(secrets.token_hex(8), Humanoid.load(path, read))
+        """Keep the avatar of a file for good, by the file's name; raises `InputError` if it holds no humanoid."""
+        return self._keep(self._free_name(path.stem), Humanoid.load(path, read))
 
     def add_upload(self, humanoid: Humanoid, file: Path | None, sender: Sender = _NOBODY) -> StoredAvatar:
         """Keep an avatar that was sent, its GLB in a file of `folder`, which goes with it.
@@ -109,6 +112,14 @@ class AvatarStore:
             _remove(avatar)
             raise
         return avatar
+
+    def _free_name(self, stem: str) -> str:
+        """A name for addresses: letters, digits and dashes, no number like those of what was sent."""
+        name = re.sub(r"[^a-z0-9]+", "-", stem.lower()).strip("-")[:_LONGEST_NAME] or "avatar"
+        if re.fullmatch(r"[0-9a-f]{16}", name):
+            name = f"avatar-{name}"
+        taken = {STOCK} | {avatar.id for avatar in self._lasting()}
+        return next(free for number in count(1) if (free := name if number == 1 else f"{name}-{number}") not in taken)
 
     def _lasting(self) -> list[StoredAvatar]:
         with self._lock:

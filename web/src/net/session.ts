@@ -46,8 +46,8 @@ export class Session {
   private choices: Omit<Configure, "type">;
 
   constructor(url: string, private readonly listener: SessionListener, wishes: SessionWishes) {
-    const { scene, avatar, planner, queueSize, assist } = wishes;
-    this.choices = { scene, avatar, planner, queueSize, assist };
+    const { scene, avatar, planner, queueSize, assist, walkSpeed } = wishes;
+    this.choices = { scene, avatar, planner, queueSize, assist, walkSpeed };
     this.connection = new Connection(url, {
       pose: (frame) => this.receivePose(frame),
       message: (message) => this.receive(message),

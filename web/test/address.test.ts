@@ -1,0 +1,40 @@
+import { describe, expect, it } from "vitest";
+import { isPrivate, isStep, queryOf } from "../src/address";
+import type { Settings } from "../src/generated/messages";
+import { readWishes } from "../src/preferences";
+
+const settings = {
+  scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1000000001, assist: true,
+} as Settings;
+const place = { settings, camera: "side" as const, overlays: new Set(["path", "ghosts"] as const) };
+
+describe("the address line", () => {
+  it("says scene, avatar, camera, planner, speed and overlays, and leaves the rest alone", () => {
+    expect(queryOf(place, "?theme=dark&scene=a")).toBe(
+      "?theme=dark&scene=gauntlet:3:17&avatar=alice&camera=side&planner=exact&queue=5&speed=1.1&overlays=path,ghosts",
+    );
+    expect(queryOf({ ...place, overlays: new Set() }, "")).toContain("overlays=none");
+    expect(queryOf({ ...place, settings: { ...settings, assist: false } }, "")).toContain("assist=0");
+    expect(queryOf(place, "?assist=0")).not.toContain("assist");
+  });
+
+  it("is read as it was written", () => {
+    const wishes = readWishes(new URLSearchParams(queryOf(place, "")));
+    expect(wishes).toMatchObject({
+      scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1, assist: null, camera: "side",
+    });
+  });
+
+  it("does not name an avatar that only this page has", () => {
+    const own = { ...settings, avatar: "0123456789abcdef" };
+    expect(isPrivate(own.avatar)).toBe(true);
+    expect(queryOf({ ...place, settings: own }, "?avatar=alice")).not.toContain("avatar");
+  });
+
+  it("goes a step further when scene, avatar or planner change, not with camera or speed", () => {
+    expect(isStep("?scene=a&planner=exact", "?scene=b&planner=exact")).toBe(true);
+    expect(isStep("?scene=a&planner=exact", "?scene=a&planner=figure6")).toBe(true);
+    expect(isStep("?scene=a&camera=side", "?scene=a&camera=front&speed=0.5")).toBe(false);
+    expect(isStep("", "?scene=a")).toBe(false);
+  });
+});
