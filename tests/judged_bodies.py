@@ -3,6 +3,7 @@
 import json
 import struct
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, limits
 from elbowroom.body.root import RootState
 from elbowroom.control.recording import ASSIST, MAGIC, STEP
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Gate, Scene
 
 Floats = NDArray[np.float64]
@@ -28,22 +29,31 @@ def random_postures(rng: np.random.Generator, count: int) -> tuple[Floats, Float
     return np.concatenate([roots[:, :3], rng.uniform(low, high, (count, LOCAL))], axis=1), roots
 
 
-def scene_with(boxes: Boxes) -> Scene:
+def scene_with(boxes: Obstacles) -> Scene:
     names = tuple(f"box {i}" for i in range(len(boxes)))
-    return Scene("made", "Made", "", (0.0, 0.0), (20.0, 20.0), RootState(), Gate((0.0, 5.0)), boxes, names)
+    return Scene(
+        "made",
+        "Made",
+        "",
+        (0.0, 0.0),
+        (20.0, 20.0),
+        RootState(),
+        Gate((0.0, 5.0)),
+        replace(boxes, standing_names=names),
+    )
 
 
-def upright(*rows: tuple[tuple[float, float, float], tuple[float, float, float]]) -> Boxes:
+def upright(*rows: tuple[tuple[float, float, float], tuple[float, float, float]]) -> Obstacles:
     """Boxes along the axes: centre and size of each."""
     turns = np.tile([0.0, 0.0, 0.0, 1.0], (len(rows), 1))
-    return Boxes(np.array([c for c, _ in rows]), turns, 0.5 * np.array([s for _, s in rows]))
+    return Obstacles.boxes(np.array([c for c, _ in rows]), turns, 0.5 * np.array([s for _, s in rows]))
 
 
-def random_boxes(rng: np.random.Generator, count: int) -> Boxes:
+def random_boxes(rng: np.random.Generator, count: int) -> Obstacles:
     turns = rng.normal(size=(count, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     centers = rng.uniform([-1.2, 0.0, -1.2], [1.2, 1.8, 1.2], (count, 3))
-    return Boxes(centers, turns, rng.uniform(0.02, 0.25, (count, 3)))
+    return Obstacles.boxes(centers, turns, rng.uniform(0.02, 0.25, (count, 3)))
 
 
 def gliding(posture: Floats, frames: int, speed: float, z: float = 0.0) -> tuple[Floats, Floats]:

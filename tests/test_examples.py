@@ -57,4 +57,4 @@ def test_the_scene_is_kept_in_a_file(
 
     run("own_scene", monkeypatch, str(tmp_path / "attic.json"))
     assert "elbowroom play --scene" in capsys.readouterr().out
-    assert er.Scene.load(tmp_path / "attic.json").moving.names == ("trolley",)
+    assert er.Scene.load(tmp_path / "attic.json").obstacles.moving.names == ("trolley",)

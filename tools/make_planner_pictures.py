@@ -21,7 +21,7 @@ from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -112,8 +112,8 @@ def random_scene(seed: int) -> Scene:
     centers = np.stack(
         [side * rng.uniform(0.3, 0.6, count), rng.uniform(0.8, 1.6, count), rng.uniform(0.8, 1.6, count)]
     )
-    boxes = Boxes(centers.T, np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)), rng.uniform(0.04, 0.16, (count, 3)))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(count)))
+    boxes = Obstacles.boxes(centers.T, np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)), rng.uniform(0.04, 0.16, (count, 3)))
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArray[np.int64]]:

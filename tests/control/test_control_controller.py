@@ -41,7 +41,7 @@ def walk(controller: Controller, commands: list[Command], dt: float = DT) -> lis
 def judged_clearance(frame: Frame, scene: Scene) -> float:
     """The least distance from capsules to boxes by coal, metres; negative where they overlap."""
     segments = posture_capsules(MODEL, frame.q[None], frame.root[None])[:, :, 0].astype(float)
-    boxes = scene.boxes
+    boxes = scene.obstacles
     shapes = [coal.Box(*(2.0 * half)) for half in boxes.half_sizes]
     places = [
         coal.Transform3s(matrix, center)
@@ -167,7 +167,7 @@ def test_settings_out_of_range_are_plain_errors() -> None:
 
 def test_a_start_in_an_obstacle_is_a_plain_error() -> None:
     scene = Scene.load("a")
-    inside = scene.start._replace(x=float(scene.boxes.centers[0, 0]), z=float(scene.boxes.centers[0, 2]))
+    inside = scene.start._replace(x=float(scene.obstacles.centers[0, 0]), z=float(scene.obstacles.centers[0, 2]))
     with pytest.raises(InputError, match="start"):
         Controller(HUMANOID, scene, start=inside)
 

@@ -11,6 +11,7 @@ from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.prediction import slimmer
 from elbowroom.planning.command import Command
+from elbowroom.world.obstacles.rows import corners_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -48,15 +49,15 @@ def test_a_prediction_holds_the_avatar_now_and_moves_as_it_walks() -> None:
     for _ in range(60):
         frame = controller.step(FORWARD, DT)
     told = controller.prediction().boxes
-    boxes = told.at(frame.time)
+    boxes, (centers, _) = told.at(frame.time), told.poses(frame.time)
     ends = capsules(controller, frame.q).reshape(-1, 2, 3)
     low = (ends - AVATAR.capsules.radii[:, None, None]).min(axis=(0, 1))
     high = (ends + AVATAR.capsules.radii[:, None, None]).max(axis=(0, 1))
-    corners = boxes.corners.reshape(-1, 3)
+    corners = corners_of(boxes).reshape(-1, 3)
     assert np.all(corners.min(axis=0) <= low)
     assert np.all(corners.max(axis=0) >= high)
-    later = told.at(frame.time + 1.0).centers
-    np.testing.assert_allclose(later[:, 2] - boxes.centers[:, 2], 1.1, atol=0.05)
+    later, _ = told.poses(frame.time + 1.0)
+    np.testing.assert_allclose(later[0, :, 2] - centers[0, :, 2], 1.1, atol=0.05)
 
 
 def meeting(seconds: float, left: tuple[float, float] = (0.0, 0.0), late: float = 0.0) -> tuple[float, float, int]:

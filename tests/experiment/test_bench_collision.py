@@ -15,7 +15,7 @@ from elbowroom.experiment.bench.collision import CollisionSettings
 from elbowroom.experiment.bench.rivals import rivals
 from elbowroom.experiment.bench.vector_code import clearance_loop_code, vector_bits
 from elbowroom.geometry import quaternion
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
 
 
 def test_placements_are_the_capsules() -> None:
@@ -29,7 +29,7 @@ def test_placements_are_the_capsules() -> None:
 
 def test_every_rival_gives_our_answer_wherever_it_is_not_close() -> None:
     inputs = capsule_inputs(400, 6, 11)
-    clear = clearance(inputs.segments, inputs.radii, inputs.boxes.table)
+    clear = clearance(inputs.segments, inputs.radii, inputs.boxes.standing)
     assert 0.02 < np.mean(clear < 0.0) < 0.9
     found, _ = rivals(inputs)
     assert any(rival.name.startswith("coal") for rival in found)

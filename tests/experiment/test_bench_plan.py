@@ -36,9 +36,9 @@ def test_equal_walks_do_equal_work() -> None:
 
 def test_lane_has_its_posts_beside_the_way() -> None:
     scene = lane(10)
-    assert len(scene.boxes) == len(scene.box_names) == 10
-    assert np.abs(scene.boxes.centers[:, 0]).min() > 0.3
-    assert len(lane(0).boxes) == 0
+    assert len(scene.obstacles) == len(scene.obstacles.standing_names) == 10
+    assert np.abs(scene.obstacles.centers[:, 0]).min() > 0.3
+    assert len(lane(0).obstacles) == 0
 
 
 def test_plots_are_svg_documents() -> None:

@@ -12,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.bench.steer import SteerSettings, amount, run, steered_walk
 from elbowroom.experiment.bench.steer_scenes import KEY_FLIPS, corridor, mouse_look, slalom, steered_scenes, wanted_way
 from elbowroom.planning.command import Command
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import Scene
 from elbowroom.world.walkable import Stance, stance_segments
 
@@ -22,7 +22,7 @@ def test_there_are_at_least_six_scenes_and_all_can_be_sent_to_a_server() -> None
     assert len({steered.name for steered in scenes}) == len(scenes) >= 6
     for steered in scenes:
         again = Scene.from_dict(steered.scene.to_dict())
-        assert len(again.boxes) == len(steered.scene.boxes)
+        assert len(again.obstacles) == len(steered.scene.obstacles)
         assert len(steered.route) > 1
 
 
@@ -30,7 +30,7 @@ def test_a_corridor_is_as_broad_as_it_says() -> None:
     steered = corridor("bends", 1.0)
     middles = 0.5 * (steered.route[1:] + steered.route[:-1])
     stance = Stance(0.1, 0.5, 1.0)
-    gaps = clearance(stance_segments(stance, *middles.T), np.array([0.1], np.float32), steered.scene.boxes.table32)
+    gaps = clearance(stance_segments(stance, *middles.T), np.array([0.1], np.float32), steered.scene.obstacles.standing)
     assert gaps == pytest.approx(np.full(len(middles), 0.4), abs=1e-5)
 
 

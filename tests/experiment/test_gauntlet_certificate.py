@@ -15,7 +15,7 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.clearance import clearance, pairwise_clearance
+from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance
 from gauntlet_courses import SAMPLE, course, stock
 
 JUDGED = [(level, seed) for level, seed in SAMPLE if seed < 2]
@@ -61,7 +61,7 @@ def gaps_of(made: Course, states: np.ndarray, uppers: np.ndarray) -> np.ndarray:
     humanoid = stock()[0]
     q = np.concatenate([states[:, :3], uppers], axis=1)
     segments = posture_capsules(body_model(humanoid), q, states)
-    return np.asarray(pairwise_clearance(segments, humanoid.capsules.radii, made.scene.boxes.table))
+    return np.asarray(pairwise_clearance(segments, humanoid.capsules.radii, made.scene.obstacles.standing))
 
 
 @pytest.mark.parametrize(("level", "seed"), SAMPLE)
@@ -70,7 +70,7 @@ def test_legs_have_room_in_any_phase(level: int, seed: int) -> None:
     way = np.arange(0.0, made.line.length, 0.02)
     for phase in np.linspace(0.0, 1.0, 5, endpoint=False):
         states = walk_along(made.line, way, WALK_SPEED, phase + 0.7 * way)
-        gaps = clearance(leg_capsules(model, states), model.roots.radii, made.scene.boxes.table)
+        gaps = clearance(leg_capsules(model, states), model.roots.radii, made.scene.obstacles.standing)
         assert gaps.min() >= 0.02
 
 

@@ -72,13 +72,13 @@ def test_a_course_is_as_its_level_says(level: int, seed: int) -> None:
     assert settings.surely is None or any(passage.asks == settings.surely for passage in made.passages)
     assert settings.turn > 0.0 or made.line.straight
     assert all(len(group) >= settings.obstacles[0] for group in made.groups)
-    assert sorted(index for group in made.groups for index in group) == list(range(len(made.scene.boxes)))
+    assert sorted(index for group in made.groups for index in group) == list(range(len(made.scene.obstacles)))
 
 
 def test_long_passages_have_an_obstacle_of_3_metres() -> None:
     for level, seed in SAMPLE:
         made = course(level, seed)
-        longest = 2.0 * made.scene.boxes.half_sizes[:, 2]
+        longest = 2.0 * made.scene.obstacles.half_sizes[:, 2]
         for passage, group in zip(made.passages, made.groups, strict=True):
             if passage.long:
                 assert longest[list(group)].max() >= 3.0
@@ -111,7 +111,7 @@ def test_a_course_is_a_scene_file(level: int, seed: int) -> None:
 
 def test_numbers_of_a_scene_are_whole_millimetres() -> None:
     for level, seed in SAMPLE:
-        boxes = course(level, seed).scene.boxes
+        boxes = course(level, seed).scene.obstacles
         for values in (boxes.centers, 2.0 * boxes.half_sizes):
             assert np.allclose(1e3 * values, np.round(1e3 * values), atol=1e-9)
 
@@ -128,7 +128,7 @@ def test_an_obstacle_is_the_same_in_the_generator_and_in_the_scene() -> None:
         turn, size = tuple(rng.uniform(-3.0, 3.0, 3).tolist()), tuple(rng.uniform(0.1, 1.0, 3).tolist())
         document = course(1, 0).scene.to_dict()
         document["obstacles"] = [{"type": "box", "center": [9.0, 1.0, 9.0], "size": list(size), "euler": list(turn)}]
-        row = Scene.from_dict(document).boxes.table[0]
+        row = Scene.from_dict(document).obstacles.standing.rows[0, :15]
         placed = Placed("box", (9.0, 1.0, 9.0), turn, size)
         assert np.allclose(placed.row(), row, atol=1e-12)
 

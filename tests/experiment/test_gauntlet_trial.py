@@ -17,7 +17,7 @@ from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.plan import RootPlanKind
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from gauntlet_courses import course, stock
 
 WALKED = [(1, 0), (2, 1), (3, 0), (3, 1), (4, 0), (5, 1), (5, 2)]
@@ -52,7 +52,7 @@ def test_legs_walk_the_line_and_who_does_as_the_certificate_gets_through(level: 
 
 def test_an_empty_course_is_crossed_straight() -> None:
     made = course(3, 0)
-    empty = replace(made, scene=replace(made.scene, boxes=Boxes.empty(), box_names=()))
+    empty = replace(made, scene=replace(made.scene, obstacles=Obstacles()))
     result = walk_course(controller_on(stock()[0], empty, TrialSettings()), empty)
     assert result.crossed
     assert result.straight

@@ -14,8 +14,8 @@ from elbowroom.experiment.judge.obstacles import obstacles_of
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import pairwise_clearance
+from elbowroom.world.obstacles.clearance import pairwise_clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
 from judged_bodies import T_POSE, gliding, random_boxes, random_postures, scene_with, upright
 
 BODY = proportional_humanoid(1.72)
@@ -29,7 +29,7 @@ def hand_of(humanoid: Humanoid) -> tuple[np.ndarray, np.ndarray, float]:
     return segments[:3], segments[3:], float(humanoid.capsules.radii[which])
 
 
-def post_before_the_hand(front: float) -> Boxes:
+def post_before_the_hand(front: float) -> Obstacles:
     """A post wider than high: its front face at z = `front`, in the way of nothing but the left hand."""
     a, b, _ = hand_of(BODY)
     middle = 0.5 * (a + b)
@@ -83,7 +83,7 @@ def test_a_contact_between_two_frames_is_seen() -> None:
 
 def test_without_obstacles_everything_is_far() -> None:
     q, roots = gliding(T_POSE, 3, speed=1.0)
-    verdict = judge(ShownMotion.at_rate(q, roots), BODY, scene_with(Boxes.empty()), CAPSULES)
+    verdict = judge(ShownMotion.at_rate(q, roots), BODY, scene_with(Obstacles()), CAPSULES)
     assert verdict.clean
     assert verdict.capsules.least is None
     assert verdict.mesh is None
@@ -119,14 +119,14 @@ def test_agrees_with_our_own_clearance() -> None:
     rng = np.random.default_rng(9)
     q, roots = random_postures(rng, 40)
     near = random_boxes(rng, 2)
-    boxes = Boxes(near.centers + np.array([4.0, 0.0, 0.0]), near.rotations, near.half_sizes)
-    gaps = pairwise_clearance(posture_capsules(body_model(BODY), q, roots), BODY.capsules.radii, boxes.table)
+    boxes = Obstacles.boxes(near.centers + np.array([4.0, 0.0, 0.0]), near.rotations, near.half_sizes)
+    gaps = pairwise_clearance(posture_capsules(body_model(BODY), q, roots), BODY.capsules.radii, boxes.standing)
     verdict = judge(ShownMotion.at_rate(q, roots), BODY, scene_with(boxes), JudgeSettings(rate=60.0, mesh=False))
     assert verdict.capsules.least is not None
     assert verdict.capsules.least.clearance == pytest.approx(float(gaps.min()), abs=1e-5)
 
 
-def coal_distance(segment: np.ndarray, radius: float, boxes: Boxes, index: int) -> float:
+def coal_distance(segment: np.ndarray, radius: float, boxes: Obstacles, index: int) -> float:
     a, b = segment[:3], segment[3:]
     capsule = coal.Capsule(radius, float(np.linalg.norm(b - a)))
     turn = quaternion.to_matrix(quaternion.between([0.0, 0.0, 1.0], b - a))

@@ -14,7 +14,7 @@ from elbowroom.experiment.judge.verdict import BodyVerdict, JudgeSettings, judge
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import SKIN, self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from judged_bodies import random_postures, scene_with
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ def walking(seconds: float) -> tuple[Floats, Floats]:
 
 def judged(q: Floats, roots: Floats) -> BodyVerdict:
     motion = ShownMotion.at_rate(q, roots)
-    return judge(motion, BODY, scene_with(Boxes.empty()), JudgeSettings(mesh=False)).itself
+    return judge(motion, BODY, scene_with(Obstacles()), JudgeSettings(mesh=False)).itself
 
 
 def test_the_natural_walk_does_not_touch_itself() -> None:

@@ -58,7 +58,7 @@ def test_a_walk_without_assistance_touches(tmp_path: Path) -> None:
     assert verdict.capsules.touching > 10
     assert verdict.capsules.touching_assisted == 0
     assert verdict.capsules.deepest >= -told - 1e-5
-    assert verdict.capsules.contacts[0].obstacle in Scene.load("c").box_names
+    assert verdict.capsules.contacts[0].obstacle in Scene.load("c").obstacles.standing_names
 
 
 def test_a_torn_recording_is_judged_to_its_last_whole_chunk(tmp_path: Path) -> None:

@@ -15,7 +15,9 @@ from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge, judge_recording
 from elbowroom.planning.command import Command
-from elbowroom.world.moving import MovingBoxes, Repeat, Track
+from elbowroom.world.obstacles.moving import Moving, Repeat, Track
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.scene import Scene
 
 AVATAR = Humanoid.default()
@@ -32,8 +34,8 @@ def coal() -> None:
 def rolling(x: float, z: float, to_x: float, to_z: float, seconds: float) -> Scene:
     """A box of 0.6 m that rolls once from one place to another."""
     centers = np.array([[x, 0.5, z], [to_x, 0.5, to_z]])
-    track = Track("box", np.array([0.6, 1.0, 0.6]), np.array([0.0, seconds]), centers, np.zeros(2), Repeat.ONCE)
-    return replace(Scene.load("empty"), moving=MovingBoxes((track,)))
+    track = Track("box", Box((0.6, 1.0, 0.6)), np.array([0.0, seconds]), centers, np.zeros(2), Repeat.ONCE)
+    return replace(Scene.load("empty"), obstacles=Obstacles(moving=Moving((track,))))
 
 
 def judged(frames: list[Frame], scene: Scene) -> Verdict:
@@ -86,8 +88,8 @@ def test_who_walks_lets_the_crossing_box_pass() -> None:
 def test_what_leaves_no_way_out_hits_and_says_so() -> None:
     """A wall that sweeps the whole floor, faster than anyone walks."""
     centers = np.array([[0.0, 1.0, 3.0], [0.0, 1.0, -6.0]])
-    track = Track("wall", np.array([9.0, 2.0, 0.3]), np.array([0.0, 2.0]), centers, np.zeros(2), Repeat.ONCE)
-    scene = replace(Scene.load("empty"), moving=MovingBoxes((track,)))
+    track = Track("wall", Box((9.0, 2.0, 0.3)), np.array([0.0, 2.0]), centers, np.zeros(2), Repeat.ONCE)
+    scene = replace(Scene.load("empty"), obstacles=Obstacles(moving=Moving((track,))))
     frames = walked(scene, Command(), 2.0)
     touching = [frame for frame in frames if frame.touching]
     assert touching

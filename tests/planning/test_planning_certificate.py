@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_boxes
+from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_obstacles
 
 
 def random_contacts(seed: int) -> SliceContacts:
@@ -35,7 +35,7 @@ def blocks(contacts: SliceContacts, boxes: list[int]) -> bool:
 @given(st.integers(0, 100_000))
 def test_the_named_boxes_block_and_each_is_needed(seed: int) -> None:
     contacts = random_contacts(seed)
-    found, every = blocking_boxes(contacts), list(range(len(contacts.waist)))
+    found, every = blocking_obstacles(contacts), list(range(len(contacts.waist)))
     assert (found is not None) == blocks(contacts, every)
     if found is not None:
         named = [int(b) for b in found]
@@ -47,6 +47,6 @@ def test_the_named_boxes_block_and_each_is_needed(seed: int) -> None:
 def test_nothing_is_named_where_nothing_was_possible() -> None:
     contacts = random_contacts(1)
     contacts.candidates[:] = False
-    found = blocking_boxes(contacts)
+    found = blocking_obstacles(contacts)
     assert found is not None
     assert len(found) == 0

@@ -17,8 +17,8 @@ from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -43,19 +43,19 @@ def scene(seed: int) -> Scene:
     halves = rng.uniform([0.02, 0.03, 0.05], [0.06, 0.1, 0.2], (count, 3))
     aside, up, ahead = rng.uniform([0.18, 0.4, 0.9], [0.27, 0.6, 1.7], (count, 3)).T
     centers = np.stack([side * (aside + halves[:, 0]), up, ahead], axis=1)
-    boxes = Boxes(
+    boxes = Obstacles.boxes(
         np.concatenate([[[0.0, 1.5, 1.35]], centers]),
         np.tile([0.0, 0.0, 0.0, 1.0], (count + 1, 1)),
         np.concatenate([[[1.5, 0.1, 0.06]], halves]),
     )
     names = tuple(f"box {i}" for i in range(count + 1))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=names)
+    return replace(Scene.load("empty"), obstacles=replace(boxes, standing_names=names))
 
 
 def leaves_upright_legs_alone(made: Scene) -> bool:
     fine = np.linspace(0.0, 16.0, 200)
     states = np.stack([np.interp(fine, np.arange(17.0), column) for column in walk().states.T], axis=1)
-    gaps = clearance(leg_capsules(MODEL, states), MODEL.roots.radii, made.boxes.table)
+    gaps = clearance(leg_capsules(MODEL, states), MODEL.roots.radii, made.obstacles.standing)
     return bool(gaps.min() > 0.005)
 
 
@@ -71,7 +71,7 @@ def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, floa
         queue.advance(1 / 240)
     q = np.array(postures)
     capsules = posture_capsules(MODEL, q, np.array(roots))[MODEL.roots.indices]
-    return float(clearance(capsules, MODEL.roots.radii, made.boxes.table).min()), float(q[:, LOWERING].max())
+    return float(clearance(capsules, MODEL.roots.radii, made.obstacles.standing).min()), float(q[:, LOWERING].max())
 
 
 def planned(made: Scene, body: UpperBodyPlanner) -> tuple[float, float] | None:
@@ -91,7 +91,7 @@ def test_bent_knees_touch_nothing_and_would_if_nobody_looked() -> None:
         if found is not None:
             assert found[0] > 0.0, seed
             crouched += found[1] > 0.15
-        body._legs = LoweredLegs(MODEL, Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3))))
+        body._legs = LoweredLegs(MODEL, Obstacles())
         blind = planned(made, body)
         touching += blind is not None and blind[0] < 0.0
     assert crouched >= 3
@@ -100,7 +100,9 @@ def test_bent_knees_touch_nothing_and_would_if_nobody_looked() -> None:
 
 def wall_before_the_knees() -> LoweredLegs:
     """A step before the feet that upright legs do not reach, and bent knees do."""
-    boxes = Boxes(np.array([[0.0, 0.45, 0.31]]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[0.5, 0.06, 0.05]]))
+    boxes = Obstacles.boxes(
+        np.array([[0.0, 0.45, 0.31]]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[0.5, 0.06, 0.05]])
+    )
     return LoweredLegs(MODEL, boxes)
 
 

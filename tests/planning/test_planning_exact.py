@@ -21,8 +21,8 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -43,9 +43,11 @@ def walk(speed: float = 1.1, horizon: int = 12, phase: float = 0.0) -> RootPath:
 
 
 def scene_of(centers: Floats, half_sizes: Floats) -> Scene:
-    boxes = Boxes(np.asarray(centers, float), np.tile([0.0, 0, 0, 1], (len(centers), 1)), np.asarray(half_sizes, float))
+    boxes = Obstacles.boxes(
+        np.asarray(centers, float), np.tile([0.0, 0, 0, 1], (len(centers), 1)), np.asarray(half_sizes, float)
+    )
     names = tuple(f"box {i}" for i in range(len(centers)))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=names)
+    return replace(Scene.load("empty"), obstacles=replace(boxes, standing_names=names))
 
 
 def course(seed: int, count: int = 5) -> Scene:
@@ -73,7 +75,7 @@ def shown_clearance(humanoid: Humanoid, scene: Scene, path: RootPath, uppers: Fl
         queue.advance(1 / 240)
     capsules = posture_capsules(model, np.array(postures), np.array(roots))
     chosen = np.concatenate([model.capsules_of(group).indices for group in LOCAL_GROUPS])
-    return float(clearance(capsules[chosen], humanoid.capsules.radii[chosen], scene.boxes.table).min())
+    return float(clearance(capsules[chosen], humanoid.capsules.radii[chosen], scene.obstacles.standing).min())
 
 
 def test_what_is_found_is_free_as_shown_and_within_the_speed_limits(humanoid: Humanoid) -> None:

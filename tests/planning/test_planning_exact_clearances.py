@@ -6,18 +6,19 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.lattice.postures import BLOCK, blocks_of
-from elbowroom.planning.exact.sweep.block_clearances import COMFORT, box_in_frame, capsule_clearances, lower_blocks
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import pairwise_clearance
+from elbowroom.world.obstacles.blocks import COMFORT, capsule_clearances, lower_blocks
+from elbowroom.world.obstacles.clearance import pairwise_clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import joined, move_into, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 FAR = np.float32(1e3)
 
 
-def random_boxes(rng: np.random.Generator, count: int) -> Boxes:
+def random_boxes(rng: np.random.Generator, count: int) -> Obstacles:
     turns = quaternion.normalize(rng.normal(size=(count, 4)))
-    return Boxes(rng.uniform(-0.9, 0.9, (count, 3)), turns, rng.uniform(0.02, 0.2, (count, 3)))
+    return Obstacles.boxes(rng.uniform(-0.9, 0.9, (count, 3)), turns, rng.uniform(0.02, 0.2, (count, 3)))
 
 
 def neighbours(rng: np.random.Generator, capsules: int, count: int) -> Floats32:
@@ -43,13 +44,13 @@ def test_blocks_have_the_least_of_the_pairs_wherever_it_is_asked_for(postures: i
         parts = [neighbours(rng, 3, min(BLOCK, postures - begin)) for begin in range(0, postures, BLOCK)]
         segments, radii = np.concatenate(parts, axis=2), rng.uniform(0.03, 0.08, 3).astype(np.float32)
         lanes, balls = blocks_of(segments, radii)
-        table = random_boxes(rng, boxes).table
-        spare = np.concatenate([table, np.full((2, 15), np.nan)])  # behind the count, not looked at
+        near = random_boxes(rng, boxes).standing
+        spare = joined(near, random_boxes(np.random.default_rng(0), 2).standing)  # behind the count, not looked at
         out = np.full((len(lanes), BLOCK), FAR, np.float32)
         checks += lower_blocks(lanes, balls, spare, boxes, out)
         pairs += lanes.shape[0] * lanes.shape[1] * boxes * BLOCK
         found.append(out.ravel()[:postures])
-        truth.append(pairwise_clearance(segments, radii, table).min(axis=(0, 1)))
+        truth.append(pairwise_clearance(segments, radii, near).min(axis=(0, 1)))
     assert checks % BLOCK == 0
     assert 0 < checks < pairs
     as_near_as_asked(np.concatenate(found), np.concatenate(truth))
@@ -61,11 +62,11 @@ def test_capsules_have_their_own_clearance_wherever_it_is_asked_for() -> None:
     for _ in range(40):
         segments, radii = neighbours(rng, 4, BLOCK), rng.uniform(0.03, 0.08, 4).astype(np.float32)
         lanes = np.concatenate([segments, np.broadcast_to(radii[:, None, None], (4, 1, BLOCK))], axis=1)
-        table = random_boxes(rng, 5).table
+        near = random_boxes(rng, 5).standing
         out = np.full((4, BLOCK), FAR, np.float32)
-        checks += capsule_clearances(np.ascontiguousarray(lanes), table, 5, out)
+        checks += capsule_clearances(np.ascontiguousarray(lanes), near, 5, out)
         found.append(out)
-        truth.append(pairwise_clearance(segments, radii, table).min(axis=1))
+        truth.append(pairwise_clearance(segments, radii, near).min(axis=1))
     assert 0 < checks < 40 * 4 * 5 * BLOCK
     as_near_as_asked(np.concatenate(found), np.concatenate(truth))
 
@@ -73,7 +74,7 @@ def test_capsules_have_their_own_clearance_wherever_it_is_asked_for() -> None:
 def test_nothing_near_lowers_nothing() -> None:
     segments, radii = neighbours(np.random.default_rng(1), 2, 20), np.full(2, 0.05, np.float32)
     lanes, balls = blocks_of(segments, radii)
-    away = np.array([[9.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.3, 0.3, 0.3]])
+    away = Obstacles.boxes([[9.0, 0.0, 0.0]], [quaternion.IDENTITY], [[0.3, 0.3, 0.3]]).standing
     out = np.full((len(lanes), BLOCK), FAR, np.float32)
     assert lower_blocks(lanes, balls, away, 1, out) == 0
     assert lower_blocks(lanes, balls, away, 0, out) == 0
@@ -82,15 +83,16 @@ def test_nothing_near_lowers_nothing() -> None:
 
 def test_a_box_in_a_frame_is_as_far_as_it_was() -> None:
     rng = np.random.default_rng(5)
-    table, moved = random_boxes(rng, 6).table, np.empty((6, 15))
+    near = random_boxes(rng, 6).standing
+    moved = unfilled(near)
     place, turn = rng.uniform(-1.0, 1.0, 3), quaternion.normalize(rng.normal(size=4))
-    for row, out in zip(table, moved, strict=True):
-        box_in_frame(row, place, turn, out)
+    for b in range(6):
+        move_into(near, b, place, turn, moved, b)
     segments = neighbours(rng, 3, 30).astype(np.float64)
     ends = segments.reshape(3, 2, 3, 30).transpose(0, 1, 3, 2) - place
     inside = quaternion.rotate(quaternion.conjugate(turn), ends.reshape(-1, 3)).reshape(3, 2, 30, 3)
     seen = inside.transpose(0, 1, 3, 2).reshape(3, 6, 30)
     radii = np.full(3, 0.05)
     np.testing.assert_allclose(
-        pairwise_clearance(seen, radii, moved), pairwise_clearance(segments, radii, table), atol=2e-6
+        pairwise_clearance(seen, radii, moved), pairwise_clearance(segments, radii, near), atol=2e-6
     )

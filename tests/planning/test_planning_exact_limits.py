@@ -22,7 +22,7 @@ from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -34,12 +34,12 @@ HUMANOID = proportional_humanoid(1.72)
 
 def beside() -> Scene:
     """A post to the left and a beam at the height of the head, a step ahead."""
-    boxes = Boxes(
+    boxes = Obstacles.boxes(
         np.array([[0.42, 1.0, 0.7], [0.0, 1.72, 1.2]]),
         np.tile([0.0, 0, 0, 1], (2, 1)),
         np.array([[0.1, 0.3, 0.1], [0.5, 0.08, 0.1]]),
     )
-    return replace(Scene.load("empty"), boxes=boxes, box_names=("post", "beam"))
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def walk() -> RootPath:

@@ -24,7 +24,7 @@ from elbowroom.planning.motion import MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -37,8 +37,8 @@ def humanoid() -> Humanoid:
 
 
 def scene_of(centers: list[list[float]], half_sizes: list[list[float]]) -> Scene:
-    boxes = Boxes(np.array(centers), np.tile([0.0, 0, 0, 1], (len(centers), 1)), np.array(half_sizes))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(len(centers))))
+    boxes = Obstacles.boxes(np.array(centers), np.tile([0.0, 0, 0, 1], (len(centers), 1)), np.array(half_sizes))
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def walk(horizon: int, first: int = 0, speed: float = 1.1) -> RootPath:

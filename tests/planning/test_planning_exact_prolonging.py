@@ -19,9 +19,10 @@ from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
-from elbowroom.world.moving import MovingBoxes, Track
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.moving import Moving, Track
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Sphere
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -42,8 +43,8 @@ def posts() -> Scene:
     rng = np.random.default_rng(5)
     aside = rng.uniform(0.32, 0.45, 12) * np.tile([1.0, -1.0], 6)
     places = np.stack([aside, np.full(12, 1.1), 1.2 + 0.8 * np.arange(12)], axis=1)
-    boxes = Boxes(places, np.tile([0.0, 0, 0, 1], (12, 1)), np.full((12, 3), [0.05, 0.3, 0.05]))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"post {i}" for i in range(12)))
+    boxes = Obstacles.boxes(places, np.tile([0.0, 0, 0, 1], (12, 1)), np.full((12, 3), [0.05, 0.3, 0.05]))
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def first_query(command: Command = FORWARD) -> MotionQuery:
@@ -96,7 +97,7 @@ def test_a_motion_with_many_new_ends_is_free_of_everything_at_every_moment(human
         poses = np.concatenate([states[:, :3], shown], axis=1)
         assert poses.shape[1] == DOF
         segments = posture_capsules(model, poses, states)
-        least = min(least, float(clearance(segments, humanoid.capsules.radii, posts.boxes.table).min()))
+        least = min(least, float(clearance(segments, humanoid.capsules.radii, posts.obstacles.standing).min()))
         query = after(query, motion)
     assert 0.0 < least < SETTINGS.comfort
 
@@ -142,8 +143,8 @@ def test_who_is_elsewhere_or_wants_something_else_is_planned_for_anew(otherwise,
 
 
 def test_while_something_moves_every_plan_is_new(humanoid: Humanoid, posts: Scene) -> None:
-    far = Track("far", np.full(3, 0.2), np.array([0.0, 9.0]), np.array([[5.0, 1.0, 5.0]] * 2), np.zeros(2))
-    scene = replace(posts, moving=MovingBoxes((far,)))
+    far = Track("far", Sphere(0.1), np.array([0.0, 9.0]), np.array([[5.0, 1.0, 5.0]] * 2), np.zeros(2))
+    scene = replace(posts, obstacles=replace(posts.obstacles, moving=Moving((far,))))
     planner, roots, query = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene), first_query()
     for _ in range(5):
         motion = planner.plan_motion(roots, query)

@@ -28,7 +28,8 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.root.path import interpolate_root
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.obstacles import Obstacles
 
 Floats = NDArray[np.float64]
 Ends = tuple[Floats, Floats, Floats, Floats]
@@ -59,7 +60,7 @@ class Body:
         self.waists: LimbSweeps = new_limb_sweeps(8, DofGroup.WAIST.size, carries=True)
         self.arms: LimbSweeps = new_limb_sweeps(8, ARM.size, carries=False)
 
-    def way(self, group: DofGroup, root: int, carrier: int, ends: Ends, boxes: Floats) -> int:
+    def way(self, group: DofGroup, root: int, carrier: int, ends: Ends, near: Nearby) -> int:
         is_waist, roots = group is DofGroup.WAIST, self.roots
         ways, above, on = (self.waists, roots, root) if is_waist else (self.arms, self.waists, carrier)
         carried_by = Carrier(
@@ -67,7 +68,7 @@ class Body:
             roots.places[root], above.entries.keys[on],
         )  # fmt: skip
         at, _ = limb_sweep(
-            ways, self.postures[group], self.levers[group], self.chain, carried_by, ends, boxes, 0.0
+            ways, self.postures[group], self.levers[group], self.chain, carried_by, ends, near, 0.0
         )  # fmt: skip
         return at
 
@@ -128,7 +129,7 @@ def test_no_point_moves_farther_than_the_bound(humanoid: Humanoid) -> None:
             assert np.all(ways > 0.02 * bound)  # the bound says something
 
 
-def judged(points: Floats, radii: Floats, box: Boxes) -> float:
+def judged(points: Floats, radii: Floats, box: Obstacles) -> float:
     """The least distance of moving capsules (C, 2, 3, N) from one box, by coal."""
     shape = coal.Box(*(2.0 * box.half_sizes[0]))
     place = coal.Transform3s(np.eye(3), box.centers[0])
@@ -160,9 +161,9 @@ def test_what_is_proven_is_free_at_every_moment(humanoid: Humanoid) -> None:
         _, points = body.world(states, dense(waist, DENSE), dense(arm, DENSE))
         # A small box beside the hand's way, so that about half of the motions touch it.
         center = points[2, 1, :, DENSE // 2] + rng.normal(0.0, 0.07, 3)
-        box = Boxes(center[None], np.array([[0.0, 0, 0, 1]]), rng.uniform(0.01, 0.04, (1, 3)))
-        carrier = body.way(DofGroup.WAIST, root, 0, waist, np.empty((0, 15)))
-        at = body.way(ARM, root, carrier, arm, box.table)
+        box = Obstacles.boxes(center[None], np.array([[0.0, 0, 0, 1]]), rng.uniform(0.01, 0.04, (1, 3)))
+        carrier = body.way(DofGroup.WAIST, root, 0, waist, Obstacles().standing)
+        at = body.way(ARM, root, carrier, arm, box.standing)
         every = judged(points[..., ::30], radii, box)
         least = judged(points, radii, box) if every > -0.02 else every
         assert body.arms.least[at] >= min(least, 0.06) - 2e-6

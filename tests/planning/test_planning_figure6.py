@@ -16,8 +16,9 @@ from elbowroom.planning.paper import figure6
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.planning.result import PlanStatus, SearchResult
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance_of
+from elbowroom.world.obstacles.clearance import clearance_of
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import stacked
 
 GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 
@@ -47,18 +48,18 @@ class Trial:
         self.before = self.graph.size
         self.goals = rng.normal(0.2, spread, (horizon + 1, self.group.size))
         self.margins = rng.uniform(0.0, 0.1, horizon + 1)
-        self.tables = np.stack([self._boxes(rng).table32 for _ in range(horizon + 1)])
+        self.obstacles = [self._boxes(rng).standing for _ in range(horizon + 1)]
         start = points[0] if rng.random() < 0.5 else rng.normal(0.2, spread, self.group.size)
         start = np.clip(start, *limits(self.group).T)
         self.limb = limb_of(model, self.group)
-        self.roadmap = Roadmap(PosedGraph(self.limb, self.graph), self.tables, start)
+        self.roadmap = Roadmap(PosedGraph(self.limb, self.graph), stacked(self.obstacles), start)
         self._draw_validity(rng)
         self.budget = int(rng.choice([10, 100, 1_000, 20_000]))
 
-    def _boxes(self, rng: np.random.Generator) -> Boxes:
+    def _boxes(self, rng: np.random.Generator) -> Obstacles:
         turns = rng.normal(size=(4, 4))
         turns /= np.linalg.norm(turns, axis=1, keepdims=True)
-        return Boxes(rng.normal(0.0, 0.4, (4, 3)), turns, rng.uniform(0.02, 0.2, (4, 3)))
+        return Obstacles.boxes(rng.normal(0.0, 0.4, (4, 3)), turns, rng.uniform(0.02, 0.2, (4, 3)))
 
     def _draw_validity(self, rng: np.random.Generator) -> None:
         share = rng.uniform(0.1, 1.0)
@@ -98,7 +99,7 @@ class Trial:
         else:
             segments = arm_capsules(self.model, self.group, q[None])
         limb = self.limb
-        clearance = clearance_of(segments[:, :, 0], limb.radii, self.tables[depth])
+        clearance = clearance_of(segments[:, :, 0], limb.radii, self.obstacles[depth])
         into_trunk = vertex < 0 and not clear_of_trunk(segments, limb.trunk, limb.allowed)[0]
         return clearance < self.margins[depth] or bool(into_trunk)
 
@@ -168,7 +169,7 @@ def test_in_free_space_the_path_follows_goals_that_lie_on_the_graph(model: BodyM
     for _ in range(6):
         walk.append(int(rng.choice([walk[-1], *graph.neighbors(walk[-1])])))
     goals = graph.vertices[walk]
-    roadmap = Roadmap(PosedGraph(limb_of(model, group), graph), np.empty((7, 0, 15)), goals[0])
+    roadmap = Roadmap(PosedGraph(limb_of(model, group), graph), stacked([Obstacles().standing] * 7), goals[0])
     result = figure6.search(roadmap, goals, rng, np.zeros(7))
     assert result.vertices.tolist() == walk
     assert result.nodes == 7
@@ -188,6 +189,6 @@ def test_equal_seeds_give_equal_searches_and_reset_forgets(model: BodyModel) -> 
 
 def test_a_search_of_no_depth_is_its_source(model: BodyModel) -> None:
     graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 3)), 0.3)
-    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((1, 0, 15)), np.zeros(3))
+    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), stacked([Obstacles().standing]), np.zeros(3))
     result = figure6.search(roadmap, np.zeros((1, 3)), np.random.default_rng(0), np.zeros(1))
     assert (result.status, result.checks, result.nodes) == (PlanStatus.FOUND, 0, 1)

@@ -20,8 +20,9 @@ from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.result import BlockadeKind, PlanStatus
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import span_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -44,8 +45,8 @@ def humanoid() -> Humanoid:
 
 def scene_of(rows: Rows) -> Scene:
     centers, halves = (np.array(column) for column in zip(*rows, strict=True))
-    boxes = Boxes(centers, np.tile([0.0, 0.0, 0.0, 1.0], (len(centers), 1)), halves)
-    return replace(Scene.load("empty"), boxes=boxes, box_names=tuple(f"box {i}" for i in range(len(centers))))
+    boxes = Obstacles.boxes(centers, np.tile([0.0, 0.0, 0.0, 1.0], (len(centers), 1)), halves)
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def walk(horizon: int = 8) -> RootPath:
@@ -109,7 +110,7 @@ def arm_clearance(humanoid: Humanoid, step: JointStep, depth: int, moment: int, 
     hips = posture_pelvis(humanoid, still)
     moved = capsules + np.tile(place - hips, 2)[None, :, None]
     radii = humanoid.capsules.radii[model.capsules_of(LOCAL_GROUPS[1 + side]).indices]
-    return float(clearance(moved, radii, step.around.boxes[depth])[0])
+    return float(clearance(moved, radii, span_of(step.around.obstacles, depth))[0])
 
 
 def posture_pelvis(humanoid: Humanoid, state: Floats) -> Floats:

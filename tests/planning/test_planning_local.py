@@ -17,8 +17,8 @@ from elbowroom.planning.paper.local_planner import GroupSettings, LocalPlanner, 
 from elbowroom.planning.planner import PLANNERS, make_planner
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -41,8 +41,8 @@ def course(seed: int, count: int = 8) -> Scene:
     rng = np.random.default_rng(seed)
     side = rng.choice([-1.0, 1.0], count)
     centers = np.stack([side * rng.uniform(0.35, 0.7, count), rng.uniform(0.7, 1.7, count), rng.uniform(0.5, 4, count)])
-    boxes = Boxes(centers.T, np.tile([0.0, 0, 0, 1], (count, 1)), rng.uniform(0.03, 0.15, (count, 3)))
-    return replace(Scene.load("empty"), boxes=boxes)
+    boxes = Obstacles.boxes(centers.T, np.tile([0.0, 0, 0, 1], (count, 1)), rng.uniform(0.03, 0.15, (count, 3)))
+    return replace(Scene.load("empty"), obstacles=boxes)
 
 
 def hanging() -> Floats:
@@ -56,7 +56,7 @@ def world_clearances(humanoid: Humanoid, scene: Scene, path: RootPath, upper: Fl
     postures = np.concatenate([np.zeros((len(upper), 3)), upper], axis=1)
     capsules = posture_capsules(model, postures, path.states)
     chosen = np.concatenate([model.capsules_of(group).indices for group in groups])
-    return clearance(capsules[chosen], humanoid.capsules.radii[chosen], scene.boxes.table).astype(np.float64)
+    return clearance(capsules[chosen], humanoid.capsules.radii[chosen], scene.obstacles.standing).astype(np.float64)
 
 
 def plans(humanoid: Humanoid, settings: LocalPlannerSettings) -> list[tuple[Scene, RootPath, LocalPlan]]:
@@ -94,8 +94,8 @@ def test_what_is_found_is_free_at_every_key_time_and_bounded_in_speed(humanoid: 
 
 
 def test_an_arm_evades_a_box_that_the_walk_would_touch(humanoid: Humanoid) -> None:
-    box = Boxes(np.array([[0.37, 0.85, 1.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[0.1, 0.15, 0.3]]))
-    scene = replace(Scene.load("empty"), boxes=box)
+    box = Obstacles.boxes(np.array([[0.37, 0.85, 1.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[0.1, 0.15, 0.3]]))
+    scene = replace(Scene.load("empty"), obstacles=box)
     path = walk(z=0.1)
     plan = LocalPlanner(humanoid, scene).plan(path, hanging(), np.random.default_rng(0))
     touching = world_clearances(humanoid, scene, path, plan.goals, [DofGroup.LEFT_ARM])
@@ -130,8 +130,8 @@ def test_a_posture_far_from_the_graph_finds_back(humanoid: Humanoid) -> None:
 
 
 def test_a_wall_is_a_failure_of_the_waist(humanoid: Humanoid) -> None:
-    wall = Boxes(np.array([[0.0, 1.5, 0.5]]), np.array([[0.0, 0, 0, 1]]), np.array([[3.0, 1.0, 0.3]]))
-    scene = replace(Scene.load("empty"), boxes=wall)
+    wall = Obstacles.boxes(np.array([[0.0, 1.5, 0.5]]), np.array([[0.0, 0, 0, 1]]), np.array([[3.0, 1.0, 0.3]]))
+    scene = replace(Scene.load("empty"), obstacles=wall)
     plan = LocalPlanner(humanoid, scene).plan(walk(z=0.4), hanging(), np.random.default_rng(0))
     assert plan.status is PlanStatus.EXHAUSTED
     assert [group.group for group in plan.evidence] == [DofGroup.WAIST]
@@ -173,14 +173,14 @@ def test_graphs_begin_anew_when_they_are_full(humanoid: Humanoid) -> None:
 
 def test_boxes_out_of_reach_change_nothing(humanoid: Humanoid) -> None:
     near = course(3)
-    far = Boxes(
-        np.concatenate([near.boxes.centers, [[0.0, 1.0, 40.0], [-30.0, 1.0, 0.0]]]),
-        np.concatenate([near.boxes.rotations, np.tile([0.0, 0, 0, 1], (2, 1))]),
-        np.concatenate([near.boxes.half_sizes, np.ones((2, 3))]),
+    far = Obstacles.boxes(
+        np.concatenate([near.obstacles.centers, [[0.0, 1.0, 40.0], [-30.0, 1.0, 0.0]]]),
+        np.concatenate([near.obstacles.rotations, np.tile([0.0, 0, 0, 1], (2, 1))]),
+        np.concatenate([near.obstacles.half_sizes, np.ones((2, 3))]),
     )
     results = [
         LocalPlanner(humanoid, scene).plan(walk(z=0.5), hanging(), np.random.default_rng(1))
-        for scene in (near, replace(near, boxes=far))
+        for scene in (near, replace(near, obstacles=far))
     ]
     np.testing.assert_array_equal(results[0].configurations, results[1].configurations)
     assert results[0].checks == results[1].checks

@@ -8,9 +8,12 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.root.path import RootPath, sample_states
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance_of
-from elbowroom.world.moving import MovingBoxes, Repeat, Track
+from elbowroom.world.obstacles.clearance import clearance_of
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.moving import Moving, Repeat, Track
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import about
+from elbowroom.world.obstacles.shapes import Box
 
 Floats = NDArray[np.float64]
 
@@ -20,11 +23,11 @@ LEGS = HUMANOID.capsules.of(DofGroup.ROOT)
 DEEPEST = float(limits(DofGroup.WAIST)[2, 1])
 
 
-def random_boxes(rng: np.random.Generator, count: int) -> Boxes:
+def random_boxes(rng: np.random.Generator, count: int) -> Obstacles:
     turns = rng.normal(size=(count, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     centers = rng.uniform([-2.0, 0.0, -2.0], [2.0, 2.2, 2.0], (count, 3))
-    return Boxes(centers + np.array([300.0, 0.0, -200.0]), turns, rng.uniform(0.02, 0.2, (count, 3)))
+    return Obstacles.boxes(centers + np.array([300.0, 0.0, -200.0]), turns, rng.uniform(0.02, 0.2, (count, 3)))
 
 
 def random_states(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
@@ -40,14 +43,13 @@ def walk(horizon: int) -> RootPath:
     return RootPath(0.0, 0.15, states)
 
 
-def naive(boxes: Boxes, root: Floats, lowering: float) -> float:
+def naive(near: Nearby, root: Floats, lowering: float) -> float:
     q = np.zeros(DOF)
     q[LOWERING] = lowering
-    here, table = root.copy(), boxes.table.copy()
+    here = root.copy()
     here[:2] = 0.0
-    table[:, [0, 2]] -= root[:2]
     segments = posture_capsules(MODEL, q, here)[LEGS][:, :, 0]
-    return float(clearance_of(segments, HUMANOID.capsules.radii[LEGS], table))
+    return float(clearance_of(segments, HUMANOID.capsules.radii[LEGS], about(near, root[0], root[1])))
 
 
 def test_clearances_are_those_of_the_whole_body_posed() -> None:
@@ -55,7 +57,7 @@ def test_clearances_are_those_of_the_whole_body_posed() -> None:
     boxes = random_boxes(rng, 25)
     roots, lowerings = random_states(rng, 200)
     found = LoweredLegs(MODEL, boxes).clearances(roots, lowerings)
-    expected = np.array([naive(boxes, *row) for row in zip(roots, lowerings, strict=True)])
+    expected = np.array([naive(boxes.standing, *row) for row in zip(roots, lowerings, strict=True)])
     assert np.isinf(found[lowerings == 0.0]).all()
     near = np.isfinite(found)
     np.testing.assert_allclose(found[near & (expected < 0.1)], expected[near & (expected < 0.1)], atol=1e-5)
@@ -71,7 +73,7 @@ def test_far_and_high_boxes_are_left_out_and_nothing_else() -> None:
         roots, lowerings = random_states(rng, 5)
         found = LoweredLegs(MODEL, boxes).clearances(roots, lowerings)
         for k in np.flatnonzero(lowerings > 0.0):
-            expected = naive(boxes, roots[k], float(lowerings[k]))
+            expected = naive(boxes.standing, roots[k], float(lowerings[k]))
             assert found[k] == pytest.approx(expected, abs=1e-4) or (expected > 0.05 and found[k] > 0.05)
 
 
@@ -109,17 +111,17 @@ def test_an_interval_is_blocked_by_what_is_shown_in_it() -> None:
 
 
 def test_no_boxes_no_contact() -> None:
-    legs = LoweredLegs(MODEL, Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3))))
+    legs = LoweredLegs(MODEL, Obstacles())
     roots, lowerings = random_states(np.random.default_rng(4), 8)
     assert np.isinf(legs.clearances(roots, lowerings)).all()
 
 
 def test_what_moves_is_where_it_is_then() -> None:
     """A box crosses the way: no clearance is more than that from the box as it stands at the moment."""
-    path, size = walk(12), np.array([0.4, 0.8, 0.4])
+    path, size = walk(12), Box((0.4, 0.8, 0.4))
     centers = np.array([[298.5, 0.4, -199.5], [301.5, 0.4, -199.5]])
     track = Track("crossing", size, np.array([0.0, 1.8]), centers, np.zeros(2), Repeat.ONCE)
-    moving = MovingBoxes((track,))
+    moving = Moving((track,))
     nothing = random_boxes(np.random.default_rng(0), 0)
     legs = LoweredLegs(MODEL, nothing).among(moving, path)
     times = np.linspace(0.0, 1.79, 90)
@@ -134,4 +136,4 @@ def test_what_moves_is_where_it_is_then() -> None:
     assert len(hit)
     assert blocked[hit].all()
     assert not blocked.all()
-    assert legs.among(MovingBoxes(), path) is legs
+    assert legs.among(Moving(), path) is legs

@@ -13,8 +13,9 @@ from elbowroom.planning.model.limb import limb_of, pose
 from elbowroom.planning.model.self_contact import axis_distance, clear_of_trunk
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
-from elbowroom.world.boxes import Boxes, tables_in_frames
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import seen_from, stacked
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +30,9 @@ def random_rotations(rng: np.random.Generator, count: int) -> np.ndarray:
 @pytest.mark.parametrize("group", LOCAL_GROUPS)
 def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, group: DofGroup) -> None:
     rng = np.random.default_rng(5)
-    boxes = Boxes(rng.normal([0, 1, 0], 0.6, (6, 3)), random_rotations(rng, 6), rng.uniform(0.02, 0.3, (6, 3)))
+    boxes = Obstacles.boxes(
+        rng.normal([0, 1, 0], 0.6, (6, 3)), random_rotations(rng, 6), rng.uniform(0.02, 0.3, (6, 3))
+    )
     roots = rng.normal(0.0, 0.3, (5, 7))
     waist = rng.uniform([-0.3, -0.7, 0.0], [1.0, 0.7, 0.7], (5, 3))
     graph = ActivityGraph(group, rng.normal(0.2, 0.5, (25, group.size)), 0.5)
@@ -37,7 +40,7 @@ def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, gro
     if group is not DofGroup.WAIST:
         frames = compose(*frames, *chest_frames(model, waist))
     start = rng.normal(0.2, 0.5, group.size)
-    roadmap = Roadmap(PosedGraph(limb_of(model, group), graph), tables_in_frames(boxes.table, *frames), start)
+    roadmap = Roadmap(PosedGraph(limb_of(model, group), graph), seen_from(boxes.standing, *frames), start)
     chosen = model.capsules_of(group).indices
     radii = model.capsules_of(group).radii
     for depth in range(5):
@@ -45,14 +48,16 @@ def test_clearances_are_those_of_the_postures_in_the_world(model: BodyModel, gro
         postures[:, DofGroup.WAIST.at] = waist[depth]
         postures[:, group.at] = [*graph.vertices, start]
         capsules = posture_capsules(model, postures, np.tile(roots[depth], (graph.size + 1, 1)))[chosen]
-        expected = clearance(capsules, radii, boxes.table)
+        expected = clearance(capsules, radii, boxes.standing)
         np.testing.assert_allclose(roadmap.clearance(depth), expected[:-1], atol=2e-6)
         assert abs(roadmap.clearance_of(roadmap.source, depth) - expected[-1]) < 2e-6
 
 
 def test_without_boxes_all_is_free(model: BodyModel) -> None:
     graph = ActivityGraph(DofGroup.WAIST, np.zeros((1, 3)), 0.5)
-    roadmap = Roadmap(PosedGraph(limb_of(model, DofGroup.WAIST), graph), np.empty((3, 0, 15)), np.zeros(3))
+    roadmap = Roadmap(
+        PosedGraph(limb_of(model, DofGroup.WAIST), graph), stacked([Obstacles().standing] * 3), np.zeros(3)
+    )
     assert roadmap.horizon == 2
     assert np.all(roadmap.clearance(2) == np.inf)
 

@@ -19,8 +19,8 @@ from elbowroom.planning.root.motion import MotionBounds, RootMotionSettings
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.root.profile import Course, follow_profile, turned_speed
-from elbowroom.world.clearance import clearance
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -44,8 +44,8 @@ def gap(width: float) -> Scene:
 
 
 def evasion(scene: Scene, start: RootState = WALKING) -> Any:
-    finder = EvasionFinder(AVATAR, scene.boxes.table)
-    grid = finder.ahead_of(new_line(start, FORWARD, RootMotionSettings()), start, 3.2, (1.1, 0.45), MovingBoxes(), 0.0)
+    finder = EvasionFinder(AVATAR, scene.obstacles)
+    grid = finder.ahead_of(new_line(start, FORWARD, RootMotionSettings()), start, 3.2, (1.1, 0.45), Moving(), 0.0)
     return grid.cheapest(finder.settings.bodies[0], None)
 
 
@@ -167,7 +167,7 @@ def test_before_a_narrow_doorway_the_turned_way_comes_first_and_its_legs_are_fre
     assert np.abs(first.path.states[:, 2]).max() > math.radians(75.0)
     model = body_model(AVATAR)
     states = first.path.sample(np.linspace(2.0, 4.4, 600))
-    assert clearance(leg_capsules(model, states), model.roots.radii, scene.boxes.table).min() > 0.0
+    assert clearance(leg_capsules(model, states), model.roots.radii, scene.obstacles.standing).min() > 0.0
 
 
 @pytest.mark.parametrize("command", [Command(), Command(forward=0.5, turn=0.5)])

@@ -11,8 +11,9 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.root.hull import ground_below, to_look_at
 from elbowroom.planning.root.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 AVATAR = Humanoid.default()
@@ -31,10 +32,12 @@ def walks(seed: int, count: int) -> list[NDArray[np.float64]]:
     return found
 
 
-def least_by_owner(body: LowerBody, found: tuple[NDArray[np.float64], NDArray[np.int64]]) -> NDArray[np.float64]:
+def least_by_owner(
+    body: LowerBody, near: Nearby, found: tuple[NDArray[np.float64], NDArray[np.int64]]
+) -> NDArray[np.float64]:
     """The least clearance of posed legs from all boxes over each key interval's states."""
     least = np.full(8, np.inf)
-    clear = clearance(leg_capsules(body.model, found[0]), body.radii, body.boxes.table)
+    clear = clearance(leg_capsules(body.model, found[0]), body.radii, near)
     np.minimum.at(least, found[1] - 1, clear)
     return least
 
@@ -42,11 +45,12 @@ def least_by_owner(body: LowerBody, found: tuple[NDArray[np.float64], NDArray[np
 def test_no_contact_is_left_out_and_much_is() -> None:
     every, looked_at, total = np.ones(8, np.bool_), 0, 0
     for scene in "abcd":
-        body = LowerBody(AVATAR, Scene.load(scene).boxes)
+        obstacles = Scene.load(scene).obstacles
+        body, near = LowerBody(AVATAR, obstacles), obstacles.standing
         for states in walks(ord(scene), 40):
-            moving, stopping = to_look_at(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.boxes.ground)
-            shown = least_by_owner(body, dense_states(states, 0.15, SPACING, every))
-            stops = least_by_owner(body, stopping_states(states, 0.15, BOUNDS, SPACING, every))
+            moving, stopping = to_look_at(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.ground)
+            shown = least_by_owner(body, near, dense_states(states, 0.15, SPACING, every))
+            stops = least_by_owner(body, near, stopping_states(states, 0.15, BOUNDS, SPACING, every))
             assert not np.any(~moving & (shown < 0.01))
             assert not np.any(~stopping & (stops < 0.01))
             looked_at, total = looked_at + int(moving.sum()) + int(stopping.sum()), total + 16
@@ -54,12 +58,12 @@ def test_no_contact_is_left_out_and_much_is() -> None:
 
 
 def test_a_stride_stays_in_its_rectangle() -> None:
-    hull = LowerBody(AVATAR, Scene.load("empty").boxes).hull
+    hull = LowerBody(AVATAR, Scene.load("empty").obstacles).hull
     rng = np.random.default_rng(1)
     states = np.zeros((400, 7))
     states[:, 3:] = rng.uniform([-0.7, -0.7, -2.5, 0.0], [2.3, 0.7, 2.5, 1.0], (400, 4))
     states[200:, 4:6] *= 0.005 / 0.7, 0.01 / 2.5  # nearly straight: as straight
-    body = LowerBody(AVATAR, Scene.load("empty").boxes)
+    body = LowerBody(AVATAR, Scene.load("empty").obstacles)
     ends = leg_capsules(body.model, states).reshape(len(body.radii), 2, 3, 400)
     cell = np.ceil(np.abs(states[:, 3:6]) / hull.cell).astype(int)
     cell[200:, 1:] = 0
@@ -72,7 +76,7 @@ def test_a_stride_stays_in_its_rectangle() -> None:
 
 def test_only_what_is_low_enough_covers_the_ground() -> None:
     turn = np.array([[0.0, 0.0, np.sin(0.4), np.cos(0.4)]])  # leans over to the side
-    plank = Boxes(np.array([[0.0, 1.0, 2.0]]), turn, np.array([[0.05, 1.0, 0.3]]))
+    plank = Obstacles.boxes(np.array([[0.0, 1.0, 2.0]]), turn, np.array([[0.05, 1.0, 0.3]]))
     rng: Any = np.random.default_rng(2)
     inside = rng.uniform(-1.0, 1.0, (4000, 3)) * plank.half_sizes
     angle = 0.8

@@ -16,7 +16,7 @@ from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ def least_clearance(path: RootPath, scene: Scene, body: Humanoid = BODY) -> floa
     model = MODEL if body is BODY else body_model(body)
     count = int(240 * path.horizon * path.interval) + 1
     states = path.sample(path.start_time + np.linspace(0.0, path.horizon * path.interval, count))
-    return float(np.min(clearance(leg_capsules(model, states), model.roots.radii, scene.boxes.table)))
+    return float(np.min(clearance(leg_capsules(model, states), model.roots.radii, scene.obstacles.standing)))
 
 
 def world_velocities(states: Floats) -> Floats:

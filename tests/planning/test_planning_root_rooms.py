@@ -6,12 +6,15 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
+from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.line_rooms import Grid, LineRooms
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.root.turned_body import TurnedBody
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import about, joined, stacked
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -22,47 +25,46 @@ GRID = Grid(0.1, 0.08, 7, 0.06)
 ANGLES = np.array([-0.8, 0.0, 1.2])
 LINE = TravelLine((0.0, 0.0), 3.0, -2.0, 0.7, 0.7, True)
 SPEEDS = (1.1, 0.45)
-NOTHING = np.empty((8, 0, 15))
+NOTHING = stacked([Obstacles().standing] * 8)
 
 
-def rows_near(line: TravelLine, seed: int, count: int) -> Floats:
+def boxes_near(line: TravelLine, seed: int, count: int) -> Obstacles:
     """Random boxes beside the first three metres of a line."""
-    rng, rows = np.random.default_rng(seed), np.zeros((count, 15))
-    for row in rows:
+    rng, centers, turns, halves = np.random.default_rng(seed), [], [], []
+    for _ in range(count):
         x, z = line.point(rng.uniform(-1.0, 3.0), rng.uniform(-1.2, 1.2))
-        row[:3], yaw = (x, rng.uniform(0.1, 1.8), z), rng.uniform(-3.0, 3.0)
-        row[3:12] = np.cos(yaw), 0.0, -np.sin(yaw), 0.0, 1.0, 0.0, np.sin(yaw), 0.0, np.cos(yaw)
-        row[12:] = rng.uniform(0.05, 0.4, 3)
-    return rows
+        centers.append((x, rng.uniform(0.1, 1.8), z))
+        turns.append(quaternion.about_axis(1, rng.uniform(-3.0, 3.0)))
+        halves.append(rng.uniform(0.05, 0.4, 3))
+    return Obstacles.boxes(centers, turns, halves)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_rows_that_are_kept_are_those_that_would_be_found_anew(seed: int) -> None:
-    table = rows_near(LINE, seed, 6)
-    walking = LineRooms(BODY, table, ANGLES, GRID)
+    boxes = boxes_near(LINE, seed, 6)
+    walking = LineRooms(BODY, boxes, ANGLES, GRID)
     for first in (0, 2, 3, 9, 1, 40):
         previous = walking.ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
-        fresh = LineRooms(BODY, table, ANGLES, GRID).ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
+        fresh = LineRooms(BODY, boxes, ANGLES, GRID).ahead(LINE, SPEEDS, first, 8, NOTHING)[0]
         np.testing.assert_array_equal(previous.clear, fresh.clear)
         np.testing.assert_array_equal(previous.shift, fresh.shift)
     other = LINE._replace(heading=0.9, facing=0.9)
     previous = walking.ahead(other, SPEEDS, 2, 8, NOTHING)[0]
     np.testing.assert_array_equal(
-        previous.clear, LineRooms(BODY, table, ANGLES, GRID).ahead(other, SPEEDS, 2, 8, NOTHING)[0].clear
+        previous.clear, LineRooms(BODY, boxes, ANGLES, GRID).ahead(other, SPEEDS, 2, 8, NOTHING)[0].clear
     )
 
 
 @pytest.mark.parametrize("first", [0.0, 3.0, 4.37])
 def test_the_room_is_the_clearance_of_the_body_moved_to_each_place(first: float) -> None:
     """The twin: every capsule at every place against every box; what passes counts in its own row alone."""
-    table, passing = rows_near(LINE, 7, 5), np.stack([rows_near(LINE, 20 + i, 2) for i in range(8)])
+    standing, passing = boxes_near(LINE, 7, 5), [boxes_near(LINE, 20 + i, 2).standing for i in range(8)]
     grid = GRID._replace(aside=1e-9)  # so narrow that each place is its own best
-    scratch = LineRooms(BODY, table, ANGLES, grid).ahead(LINE, SPEEDS, first, 8, passing)[0]
+    scratch = LineRooms(BODY, standing, ANGLES, grid).ahead(LINE, SPEEDS, first, 8, stacked(passing))[0]
     capsules = BODY.along(LINE, ANGLES, SPEEDS).capsules.astype(np.float64)
     for i in range(8):
         x, z = LINE.point(grid.step * (first + i))
-        boxes = np.concatenate([table, passing[i]])
-        boxes[:, [0, 2]] -= x, z
+        boxes = about(joined(standing.standing, passing[i]), x, z)
         for t, posed in enumerate(capsules):
             for g in range(3):
                 part = slice(BODY.groups[g], BODY.groups[g + 1])
@@ -71,9 +73,11 @@ def test_the_room_is_the_clearance_of_the_body_moved_to_each_place(first: float)
 
 
 def test_boxes_that_pass_leave_nothing_behind() -> None:
-    rooms = LineRooms(BODY, rows_near(LINE, 3, 1), ANGLES, GRID)
+    rooms = LineRooms(BODY, boxes_near(LINE, 3, 1), ANGLES, GRID)
     before = rooms.ahead(LINE, SPEEDS, 0, 8, NOTHING)[0]
-    assert (rooms.ahead(LINE, SPEEDS, 0, 8, np.stack([rows_near(LINE, 4, 12)] * 8))[0].clear < before.clear).any()
+    assert (
+        rooms.ahead(LINE, SPEEDS, 0, 8, stacked([boxes_near(LINE, 4, 12).standing] * 8))[0].clear < before.clear
+    ).any()
     np.testing.assert_array_equal(rooms.ahead(LINE, SPEEDS, 0, 8, NOTHING)[0].clear, before.clear)
 
 

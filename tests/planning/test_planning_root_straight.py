@@ -16,23 +16,23 @@ from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 HORIZON, INTERVAL, SIGHT, REACH = 12, 0.15, 4.5, 9.0
 SETTINGS, BOUNDS = RootPlannerSettings(), MotionBounds(2.5, 2.0, 3.0, 14.0)
-STILL = MovingBoxes()
+STILL = Moving()
 
 
 class Paths:
     """One body in a scene, asked both ways."""
 
     def __init__(self, scene: str) -> None:
-        self.body = LowerBody(Humanoid.default(), Scene.load(scene).boxes)
+        self.body = LowerBody(Humanoid.default(), Scene.load(scene).obstacles)
         self.check = LegCheck(self.body, BOUNDS, SETTINGS.skin, SETTINGS.spacing)
         self.ways = WayFinder(SETTINGS, self.body)
-        ground = self.body.boxes.ground
-        self.walker = Walker(BOUNDS, self.ways.half, SETTINGS.skin, self.body.hull, ground, prices_of(SETTINGS))
+        hull, ground, grids = self.body.hull, self.body.ground, self.body.grids
+        self.walker = Walker(BOUNDS, self.ways.half, SETTINGS.skin, hull, ground, grids, prices_of(SETTINGS))
 
     def agree(self, start: RootState, command: Command, pace: float) -> bool:
         """Whether nothing is near; if so, the query must say the same."""

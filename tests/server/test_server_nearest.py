@@ -1,5 +1,7 @@
 """The nearest obstacle, against brute force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,21 +9,18 @@ from hypothesis import strategies as st
 
 from elbowroom.geometry import quaternion
 from elbowroom.server.nearest import nearest
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 
-def scene_of(boxes: Boxes) -> Scene:
-    empty = Scene.load("empty")
+def scene_of(boxes: Obstacles) -> Scene:
     names = tuple(f"box {i}" for i in range(len(boxes)))
-    return Scene(
-        empty.name, empty.title, "", empty.ground_center, empty.ground_size, empty.start, empty.finish, boxes, names
-    )
+    return replace(Scene.load("empty"), obstacles=replace(boxes, standing_names=names))
 
 
-def random_boxes(rng: np.random.Generator, count: int) -> Boxes:
+def random_boxes(rng: np.random.Generator, count: int) -> Obstacles:
     turns = quaternion.normalize(rng.normal(size=(count, 4)))
-    return Boxes(rng.uniform(-1, 1, (count, 3)), turns, rng.uniform(0.05, 0.6, (count, 3)))
+    return Obstacles.boxes(rng.uniform(-1, 1, (count, 3)), turns, rng.uniform(0.05, 0.6, (count, 3)))
 
 
 @given(seed=st.integers(0, 2**32 - 1))
@@ -47,5 +46,5 @@ def test_points_and_distance_agree_with_many_samples(seed: int) -> None:
 
 
 def test_without_obstacles_nothing_is_near() -> None:
-    none = Boxes(np.empty((0, 3)), np.empty((0, 4)), np.empty((0, 3)))
+    none = Obstacles()
     assert nearest(np.zeros((1, 6), np.float32), np.ones(1), ("head",), scene_of(none), 0.0) is None

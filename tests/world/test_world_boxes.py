@@ -1,56 +1,56 @@
-"""Boxes seen from other frames."""
+"""Obstacles seen from other frames, and boxes round them."""
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes, tables_in_frames
+from elbowroom.world.obstacles.closest_points import closest_points
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import bounds_of, corners_of, seen_from, span_count, span_of
+from shapes import some_obstacles
+
+Floats = NDArray[np.float64]
 
 
-def _rotations(rng: np.random.Generator, count: int) -> NDArray[np.float64]:
+def rotations(rng: np.random.Generator, count: int) -> Floats:
     return quaternion.normalize(rng.normal(size=(count, 4)))
 
 
-def _boxes(rng: np.random.Generator, count: int) -> Boxes:
-    return Boxes(rng.normal(size=(count, 3)), _rotations(rng, count), rng.uniform(0.1, 1.0, (count, 3)))
-
-
-def _to_box(row: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
-    local: NDArray[np.float64] = row[3:12].reshape(3, 3) @ (point - row[:3])
-    return local
-
-
-def test_a_point_keeps_its_place_in_the_box_in_every_frame() -> None:
+def test_a_point_is_as_far_from_an_obstacle_in_every_frame() -> None:
     rng = np.random.default_rng(1)
-    boxes = _boxes(rng, 5)
-    for _ in range(20):
-        position, rotation, local = rng.normal(size=3), _rotations(rng, 1)[0], rng.normal(size=3)
-        world = position + quaternion.rotate(rotation, local)
-        moved = boxes.in_frame(position, rotation)
-        for before, after in zip(boxes.table, moved.table, strict=True):
-            np.testing.assert_allclose(_to_box(after, local), _to_box(before, world), atol=1e-12)
-            np.testing.assert_array_equal(after[12:], before[12:])
+    near = some_obstacles(rng, 4).standing
+    positions, turns = rng.normal(size=(9, 3)), rotations(rng, 9)
+    seen = seen_from(near, positions, turns)
+    assert span_count(seen) == 9
+    for k in range(9):
+        here = rng.normal(size=3)
+        there = positions[k] + quaternion.rotate(turns[k], here)
+        before = np.subtract(*closest_points(np.tile(there, 2), near))
+        after = np.subtract(*closest_points(np.tile(here, 2), span_of(seen, k)))
+        np.testing.assert_allclose(quaternion.rotate(turns[k], after), before, atol=1e-6)
 
 
-def test_tables_in_frames_are_the_tables_of_boxes_in_each_frame() -> None:
-    rng = np.random.default_rng(2)
-    boxes, positions, rotations = _boxes(rng, 7), rng.normal(size=(9, 3)), _rotations(rng, 9)
-    tables = tables_in_frames(boxes.table, positions, rotations)
-    assert tables.shape == (9, 7, 15)
-    assert tables.dtype == np.float32
-    for table, position, rotation in zip(tables, positions, rotations, strict=True):
-        np.testing.assert_allclose(table, boxes.in_frame(position, rotation).table, atol=2e-6)
+def test_no_obstacles_and_no_frames_are_none() -> None:
+    nothing = seen_from(Obstacles().standing, np.zeros((3, 3)), np.tile(quaternion.IDENTITY, (3, 1)))
+    assert nothing.rows.shape[:2] == (3, 0)
+    two = some_obstacles(np.random.default_rng(3), 2)
+    assert span_count(seen_from(two.standing, np.empty((0, 3)), np.empty((0, 4)))) == 0
 
 
-def test_no_boxes_and_no_frames_give_empty_tables() -> None:
-    assert Boxes.empty().table.shape == (0, 15)
-    assert tables_in_frames(Boxes.empty().table, np.zeros((3, 3)), np.tile(quaternion.IDENTITY, (3, 1))).shape[1] == 0
-    boxes = _boxes(np.random.default_rng(3), 2)
-    assert tables_in_frames(boxes.table, np.empty((0, 3)), np.empty((0, 4))).shape == (0, 2, 15)
-
-
-def test_corners_lie_on_the_faces() -> None:
-    boxes = _boxes(np.random.default_rng(4), 3)
-    for row, corners in zip(boxes.table, boxes.corners, strict=True):
-        for corner in corners:
-            np.testing.assert_allclose(np.abs(_to_box(row, corner)), row[12:], atol=1e-12)
+@pytest.mark.parametrize("seed", range(3))
+def test_corners_and_bounds_hold_what_they_are_round(seed: int) -> None:
+    """Points far out, in all directions: the nearest points of the shape come next to the bounds, and not beyond."""
+    rng = np.random.default_rng(seed)
+    near = some_obstacles(rng, 3).standing
+    least, most = bounds_of(near)
+    corners = corners_of(near)
+    for axis in range(3):
+        for sign, bound in ((1.0, most), (-1.0, least)):
+            far = np.zeros(3)
+            far[axis] = sign * 1e5
+            _, points = closest_points(np.tile(far, 2), near)
+            assert np.all(sign * points[:, axis] <= sign * bound[:, axis] + 1e-6)
+            assert np.all(sign * corners[:, :, axis].max(axis=1) >= sign * points[:, axis].max() - 1e9)
+            reach = (sign * corners[:, :, axis]).max(axis=1)
+            assert np.all(reach >= sign * points[:, axis] - 1e-6)

@@ -5,22 +5,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import pairwise_clearance
-from elbowroom.world.closest_points import closest_points
+from elbowroom.world.obstacles.clearance import pairwise_clearance
+from elbowroom.world.obstacles.closest_points import closest_points
+from elbowroom.world.obstacles.obstacles import Obstacles
 
 
 @given(seed=st.integers(0, 2**32 - 1))
 def test_their_distance_is_the_kernels_and_they_lie_where_they_should(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turns = quaternion.normalize(rng.normal(size=(7, 4)))
-    boxes = Boxes(rng.uniform(-1, 1, (7, 3)), turns, rng.uniform(0.02, 0.6, (7, 3)))
+    boxes = Obstacles.boxes(rng.uniform(-1, 1, (7, 3)), turns, rng.uniform(0.02, 0.6, (7, 3)))
     segment = rng.uniform(-1.5, 1.5, 6)
     if seed % 3 == 0:
         segment[3:] = segment[:3]  # a point
-    on_segment, on_box = closest_points(segment, boxes.table)
+    on_segment, on_box = closest_points(segment, boxes.standing)
     found = np.linalg.norm(on_segment - on_box, axis=1)
-    expected = pairwise_clearance(segment[None, :, None], np.zeros(1), boxes.table)[0, :, 0]
+    expected = pairwise_clearance(segment[None, :, None], np.zeros(1), boxes.standing)[0, :, 0]
     np.testing.assert_allclose(found, expected, atol=2e-5)
     inside = quaternion.rotate(quaternion.conjugate(boxes.rotations), on_box - boxes.centers)
     assert np.all(np.abs(inside) <= boxes.half_sizes + 1e-9)
@@ -31,5 +31,5 @@ def test_their_distance_is_the_kernels_and_they_lie_where_they_should(seed: int)
 
 
 def test_there_need_not_be_a_box() -> None:
-    on_segment, on_box = closest_points(np.zeros(6), np.zeros((0, 15)))
+    on_segment, on_box = closest_points(np.zeros(6), Obstacles().standing)
     assert on_segment.shape == on_box.shape == (0, 3)

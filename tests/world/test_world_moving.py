@@ -7,14 +7,17 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.moving import MovingBoxes, Repeat, Track
+from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.moving import Moving, Repeat, Track
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import corners_of
+from elbowroom.world.obstacles.shapes import Box, extents_of
 from elbowroom.world.scene import Scene
 
 
 def track(repeat: Repeat, yaws: tuple[float, float, float] = (0.0, 0.4, -0.3)) -> Track:
     centers = np.array([[0.0, 0.5, 0.0], [2.0, 0.5, 0.0], [2.0, 0.5, 1.0]])
-    return Track("box", np.array([0.5, 1.0, 0.8]), np.array([0.0, 2.0, 3.0]), centers, np.array(yaws), repeat)
+    return Track("box", Box((0.5, 1.0, 0.8)), np.array([0.0, 2.0, 3.0]), centers, np.array(yaws), repeat)
 
 
 @pytest.mark.parametrize(
@@ -30,33 +33,35 @@ def track(repeat: Repeat, yaws: tuple[float, float, float] = (0.0, 0.4, -0.3)) -
     ],
 )
 def test_a_track_goes_on_after_its_last_key_pose(repeat: Repeat, time: float, x: float, z: float) -> None:
-    centers, _ = MovingBoxes((track(repeat),)).poses([time])
+    centers, _ = Moving((track(repeat),)).poses([time])
     np.testing.assert_allclose(centers[0, 0], [x, 0.5, z], atol=1e-12)
 
 
-def test_rows_are_those_of_boxes_that_stand_there() -> None:
-    moving = MovingBoxes((track(Repeat.LOOP), track(Repeat.PINGPONG)))
-    times = [0.0, 0.7, 2.9, 11.3]
-    for time, rows in zip(times, moving.tables(times), strict=True):
-        np.testing.assert_allclose(rows, moving.at(time).table, atol=1e-12)
+def test_what_moves_stands_at_its_pose() -> None:
+    moving = Moving((track(Repeat.LOOP), track(Repeat.PINGPONG)))
+    for time in (0.0, 0.7, 2.9, 11.3):
+        centers, yaws = moving.poses(time)
+        turns = np.array([quaternion.about_axis(1, float(yaw)) for yaw in yaws[0]])
+        there = Obstacles.boxes(centers[0], turns, moving.half_sizes).standing
+        np.testing.assert_allclose(moving.at(time).rows, there.rows, atol=1e-12)
 
 
 @pytest.mark.parametrize("repeat", list(Repeat))
 def test_a_sweep_holds_every_corner_at_every_time_and_little_else(repeat: Repeat) -> None:
     rng = np.random.default_rng(4)
-    moving = MovingBoxes((track(repeat, (0.0, 2.0, -1.0)),))
+    moving = Moving((track(repeat, (0.0, 2.0, -1.0)),))
     for _ in range(60):
         first = rng.uniform(0.0, 14.0)
         last = first + rng.uniform(0.05, 0.6)
-        row = moving.swept([first, last])[0, 0]
+        row = moving.swept([first, last]).rows[0, 0]
         times = np.linspace(first, last, 200)
-        corners = np.concatenate([moving.at(float(time)).corners[0] for time in times])
+        corners = np.concatenate([corners_of(moving.at(float(time)))[0] for time in times])
         own = (corners - row[:3]) @ row[3:12].reshape(3, 3).T
-        assert np.all(np.abs(own) <= row[12:] + 1e-9)
-        np.testing.assert_allclose(np.abs(own).max(axis=0), row[12:], atol=0.03)
+        assert np.all(np.abs(own) <= row[12:15] + 1e-9)
+        np.testing.assert_allclose(np.abs(own).max(axis=0), row[12:15], atol=0.03)
 
 
-def swept_slowly(moving: MovingBoxes, first: float, last: float) -> np.ndarray:
+def swept_slowly(moving: Moving, first: float, last: float) -> np.ndarray:
     """The twin of a sweep: NumPy, one box after the other, looked at evenly and at the key poses."""
     rows = []
     for one in moving.tracks:
@@ -70,7 +75,7 @@ def swept_slowly(moving: MovingBoxes, first: float, last: float) -> np.ndarray:
         between = points[(points > first) & (points < last)]
         times = np.sort(np.concatenate([np.linspace(first, last, 5), between]))
         centers, yaws = one.poses(times)
-        yaw, half = one.poses([0.5 * (first + last)])[1][0], 0.5 * one.size
+        yaw, half = one.poses([0.5 * (first + last)])[1][0], extents_of(one.shape)
         to_box = np.array([[np.cos(yaw), 0.0, -np.sin(yaw)], [0.0, 1.0, 0.0], [np.sin(yaw), 0.0, np.cos(yaw)]])
         turned = yaws - yaw
         wide = half[0] * np.abs(np.cos(turned)) + half[2] * np.abs(np.sin(turned))
@@ -93,18 +98,18 @@ def test_sweeps_are_those_of_a_slow_twin(still: bool) -> None:
             count = 1 if still else int(rng.integers(2, 6))
             times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.05, 1.5, count - 1))])
             poses = rng.normal(0.0, 1.0, (count, 3)), rng.uniform(-3.0, 3.0, count)
-            tracks.append(Track("box", rng.uniform(0.1, 1.0, 3), times, *poses, repeat))
-        moving = MovingBoxes(tuple(tracks))
+            tracks.append(Track("box", Box(tuple(rng.uniform(0.1, 1.0, 3).tolist())), times, *poses, repeat))
+        moving = Moving(tuple(tracks))
         first = rng.uniform(0.0, 9.0, 5)
         last = first + rng.uniform(0.01, 1.2, 5)
         found = moving.swept_between(first, last)
-        for rows, begin, end in zip(found, first, last, strict=True):
-            np.testing.assert_allclose(rows, swept_slowly(moving, float(begin), float(end)), atol=1e-12)
+        for rows, begin, end in zip(found.rows, first, last, strict=True):
+            np.testing.assert_allclose(rows[:, :15], swept_slowly(moving, float(begin), float(end)), atol=1e-12)
 
 
 def test_no_boxes_sweep_nothing() -> None:
-    assert MovingBoxes().swept([0.0, 1.0, 2.0]).shape == (2, 0, 15)
-    assert MovingBoxes((track(Repeat.LOOP),)).swept([0.0]).shape == (0, 1, 15)
+    assert Moving().swept([0.0, 1.0, 2.0]).rows.shape[:2] == (2, 0)
+    assert Moving((track(Repeat.LOOP),)).swept([0.0]).rows.shape[:2] == (0, 1)
 
 
 def document(**changes: Any) -> dict[str, Any]:
@@ -138,14 +143,15 @@ def test_what_was_read_is_what_is_written() -> None:
     again = Scene.from_dict(scene.to_dict())
     assert again.to_dict() == scene.to_dict()
     times = np.linspace(0.0, 30.0, 50)
-    np.testing.assert_array_equal(again.moving.tables(times), scene.moving.tables(times))
-    assert scene.moving.names == ("trolley", "swinging beam", "cart")
+    for one, other in zip(again.obstacles.moving.poses(times), scene.obstacles.moving.poses(times), strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert scene.obstacles.moving.names == ("trolley", "swinging beam", "cart")
 
 
 def test_the_beam_swings_about_its_post() -> None:
     scene = Scene.load("traffic")
-    post = scene.boxes.centers[0, [0, 2]]
+    post = scene.obstacles.centers[0, [0, 2]]
     for time in np.linspace(0.0, 6.0, 13):
-        beam: Boxes = scene.moving.at(float(time))
-        away = math.hypot(*(beam.centers[1, [0, 2]] - post))
+        centers, _ = scene.obstacles.moving.poses(time)
+        away = math.hypot(*(centers[0, 1, [0, 2]] - post))
         assert away == pytest.approx(0.45, abs=0.04)

@@ -14,16 +14,34 @@ import pytest
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import MAX_FILE_BYTES, Gate, Scene
 
 SCHEMA = json.loads((files("elbowroom.world") / "data" / "scene.schema.json").read_text("utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 
 
-def document() -> dict[str, Any]:
-    """A document that uses every field of the format."""
-    return {
+CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0.5, 0.7]]
+TRACK = [{"center": [-3, 0.5, 4], "seconds": 2}, {"center": [-3, 0.5, 5], "seconds": 2}]
+
+
+STANDING = [
+    {"type": "sphere", "name": "four", "center": [3, 1, 3], "radius": 0.3},
+    {"type": "capsule", "center": [3, 1, 4], "radius": 0.2, "length": 0.9, "yaw": 0.1},
+    {"type": "cylinder", "center": [3, 1, 5], "radius": 0.2, "height": 0.9, "euler": [0.4, 0, 0]},
+    {"type": "hull", "center": [3, 0, 6], "points": CORNERS, "rotation": [0, 0.6, 0, 0.8]},
+]
+MOVING = [
+    {"type": "sphere", "radius": 0.2, "track": TRACK},
+    {"type": "capsule", "radius": 0.2, "length": 1, "track": TRACK},
+    {"type": "cylinder", "radius": 0.2, "height": 1, "track": TRACK},
+    {"type": "hull", "name": "wedge", "points": CORNERS, "track": TRACK, "repeat": "once"},
+]
+
+
+def document(standing: list[Any] = STANDING, moving: list[Any] = MOVING) -> dict[str, Any]:
+    """A document that uses every field of the format, and every shape."""
+    made = {
         "$schema": "scene.schema.json",
         "format": "elbowroom-scene",
         "version": 1,
@@ -37,6 +55,7 @@ def document() -> dict[str, Any]:
             {"type": "box", "name": "one", "center": [1, 1, 2], "size": [0.5, 1, 0.5], "yaw": 0.3},
             {"type": "box", "center": [-1, 1, 2], "size": [0.5, 1, 0.5], "euler": [0.1, 0.2, 0.3]},
             {"type": "box", "name": "three", "center": [0, 2, 3], "size": [2, 0.1, 0.1], "rotation": [0, 0, 0, 1]},
+            *standing,
         ],
         "moving": [
             {
@@ -45,9 +64,11 @@ def document() -> dict[str, Any]:
                 "size": [0.5, 1, 0.8],
                 "repeat": "pingpong",
                 "track": [{"center": [3, 0.5, 4], "yaw": 0.2, "seconds": 2}, {"center": [3, 0.5, 6], "seconds": 1}],
-            }
+            },
+            *moving,
         ],
     }
+    return dict(json.loads(json.dumps(made)))  # no two parts of it are one object
 
 
 def spots(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
@@ -84,24 +105,42 @@ STRANGERS: list[Any] = [
 
 
 def mutants() -> list[Any]:
-    base, out = document(), []
-    for path in spots(base):
-        out += [replaced(base, path, value) for value in STRANGERS]
-        if path:
-            out.append(removed(base, path))
-        target: Any = base
-        for key in path:
-            target = target[key]
-        if isinstance(target, dict):
-            out += [replaced(base, path, {**target, extra: 0.1}) for extra in ("yaw", "colour", "rotation", "$schema")]
+    """All mutants of a document of boxes, and those of each other shape in a document that has nothing else."""
+    plain, bare, out = document([], []), {**document([], []), "obstacles": [], "moving": []}, []
+    for base, places in (
+        (plain, spots(plain)),
+        *(({**bare, "obstacles": [one]}, spots(one, ("obstacles", 0))) for one in STANDING),
+        *(({**bare, "moving": [one]}, spots(one, ("moving", 0))) for one in MOVING),
+    ):
+        for path in places:
+            out += mutated(base, path)
     return out
 
 
-SAID_BY_NO_SCHEMA = ("stands in the obstacle", "leads on at", "off the ground", "lies behind it already")
+def mutated(base: Any, path: tuple[Any, ...]) -> list[Any]:
+    """A document with something else at a path, with nothing there, and with a field too many."""
+    out = [replaced(base, path, value) for value in STRANGERS]
+    if path:
+        out.append(removed(base, path))
+    target: Any = base
+    for key in path:
+        target = target[key]
+    if isinstance(target, dict):
+        out += [replaced(base, path, {**target, extra: 0.1}) for extra in ("yaw", "colour", "rotation", "$schema")]
+    return out
+
+
+SAID_BY_NO_SCHEMA = (
+    "stands in the obstacle",
+    "leads on at",
+    "off the ground",
+    "lies behind it already",
+    "lie in a plane",
+)
 
 
 def _read_unless_start_is_blocked(mutant: Any) -> None:
-    """The rules that a schema cannot state: start and finish lie on the ground and apart, and nothing leaps."""
+    """The rules that a schema cannot state: start and finish lie on the ground and apart, and such."""
     try:
         Scene.from_dict(mutant)
     except InputError as error:
@@ -132,7 +171,13 @@ def test_reader_and_published_schema_agree_on_every_mutant() -> None:
         (("obstacles", 2, "size", 1), -0.1, ["$.obstacles[2].size[1] is -0.1", "above 0 and at most 1000"]),
         (("obstacles", 0, "yaw"), 45, ["$.obstacles[0].yaw is 45", "radians", "0.7854"]),
         (("obstacles", 0, "tpye"), "box", ["unknown field", "did you mean 'type'"]),
-        (("obstacles", 1, "type"), "sphere", ['$.obstacles[1].type is "sphere"', 'must be "box"']),
+        (("obstacles", 1, "type"), "cone", ['$.obstacles[1].type is "cone"', "one of box, sphere, capsule"]),
+        (("obstacles", 1, "type"), "sphere", ["$.obstacles[1]", "lacks the field 'radius'"]),
+        (("obstacles", 3, "yaw"), 0.1, ["$.obstacles[3] has an unknown field", "yaw"]),
+        (("obstacles", 5, "height"), 0, ["$.obstacles[5].height is 0", "above 0"]),
+        (("obstacles", 6, "points"), CORNERS[:3], ["$.obstacles[6].points has 3 points", "4 to 128"]),
+        (("obstacles", 6, "points", 3), [0.4, 0.4, 0], ["$.obstacles[6].points lie in a plane", "1 mm"]),
+        (("moving", 4, "points", 0, 1), "0", ["$.moving[4].points[0][1]", "must be a number"]),
         (("obstacles", 1, "yaw"), 0.0, ["$.obstacles[1] has both yaw and euler"]),
         (("obstacles", 2, "rotation"), [0.1, 0, 0, 0], ["$.obstacles[2].rotation", "unit quaternion"]),
         (("version",), 2, ["$.version is 2", "must be 1"]),
@@ -159,8 +204,8 @@ def test_what_was_read_is_what_is_written() -> None:
     again = Scene.from_dict(json.loads(json.dumps(scene.to_dict())))
     assert again.to_dict() == scene.to_dict()
     assert VALIDATOR.is_valid(scene.to_dict())
-    np.testing.assert_array_equal(again.boxes.table, scene.boxes.table)
-    assert scene.box_names == ("one", "box 2", "three")
+    np.testing.assert_array_equal(again.obstacles.standing.rows, scene.obstacles.standing.rows)
+    assert scene.obstacles.standing_names == ("one", "box 2", "three", "four", "capsule 5", "cylinder 6", "hull 7")
     assert scene.start == RootState(x=0.0, z=-1.0, heading=0.5)
     assert scene.finish == Gate((1.0, 5.0), 0.25, 3.0)
 
@@ -168,9 +213,9 @@ def test_what_was_read_is_what_is_written() -> None:
 def test_rotations_mean_what_the_schema_says() -> None:
     scene = Scene.from_dict(document())
     x, y, z = (quaternion.to_matrix(quaternion.about_axis(axis, 0.1 + 0.1 * axis)) for axis in range(3))
-    np.testing.assert_allclose(quaternion.to_matrix(scene.boxes.rotations[1]), y @ x @ z, atol=1e-12)
-    np.testing.assert_allclose(scene.boxes.rotations[0], [0.0, math.sin(0.15), 0.0, math.cos(0.15)], atol=1e-12)
-    np.testing.assert_allclose(scene.boxes.half_sizes[0], [0.25, 0.5, 0.25])
+    np.testing.assert_allclose(quaternion.to_matrix(scene.obstacles.rotations[1]), y @ x @ z, atol=1e-12)
+    np.testing.assert_allclose(scene.obstacles.rotations[0], [0.0, math.sin(0.15), 0.0, math.cos(0.15)], atol=1e-12)
+    np.testing.assert_allclose(scene.obstacles.half_sizes[0], [0.25, 0.5, 0.25])
 
 
 @pytest.mark.parametrize(
@@ -245,9 +290,9 @@ def test_a_missing_file_is_missing(name: str) -> None:
 
 
 def test_stock_scenes_by_name() -> None:
-    assert Scene.stock_names() == ("a", "b", "c", "d", "beam", "empty", "doorway", "traffic")
+    assert Scene.stock_names() == ("a", "b", "c", "d", "beam", "empty", "shapes", "doorway", "traffic")
     assert Scene.load("D").name == "d"
-    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, beam, empty, doorway, traffic\)"):
+    with pytest.raises(InputError, match=r"stock scene \(a, b, c, d, beam, empty, shapes, doorway, traffic\)"):
         Scene.load("e")
 
 
@@ -260,7 +305,7 @@ def test_a_stock_scene_is_valid_and_lies_on_its_ground(name: str) -> None:
     way = scene.finish.position[1] - scene.start.z
     assert scene.finished(RootState(x=0.0, z=scene.start.z + way + 0.01))
     low = np.array(scene.ground_center) - 0.5 * np.array(scene.ground_size)
-    corners = scene.boxes.corners[..., [0, 2]].reshape(-1, 2)
+    corners = scene.obstacles.corners[..., [0, 2]].reshape(-1, 2)
     assert np.all(corners >= low)
     assert np.all(corners <= low + scene.ground_size)
 
@@ -268,10 +313,10 @@ def test_a_stock_scene_is_valid_and_lies_on_its_ground(name: str) -> None:
 @pytest.mark.parametrize(("name", "count"), [("a", 4), ("b", 4), ("c", 4), ("d", 6), ("beam", 4), ("empty", 0)])
 def test_the_papers_scenes_leave_the_straight_way_free_for_the_legs(name: str, count: int) -> None:
     scene = Scene.load(name)
-    assert len(scene.boxes) == count
+    assert len(scene.obstacles) == count
     z = scene.start.z + np.linspace(0.0, scene.finish.position[1] - scene.start.z + 1.0, 200)
     legs = np.stack([0 * z, 0 * z + 0.24, z, 0 * z, 0 * z + 0.8, z])
-    assert np.all(clearance(legs[None], np.array([0.24]), scene.boxes.table) > 0.0)
+    assert np.all(clearance(legs[None], np.array([0.24]), scene.obstacles.standing) > 0.0)
 
 
 def test_a_gate_is_crossed_in_its_direction_and_width() -> None:
@@ -284,7 +329,7 @@ def test_a_gate_is_crossed_in_its_direction_and_width() -> None:
 def test_a_scene_made_in_code_is_one_of_a_file() -> None:
     post = {"type": "box", "name": "post", "center": [1.0, 1.0, 2.0], "size": [0.2, 2.0, 0.2], "yaw": 0.5}
     scene = Scene.of("posts", [post], finish=(3.0, 4.0), start=(0.0, 1.0))
-    assert (scene.name, scene.title, scene.box_names) == ("posts", "posts", ("post",))
+    assert (scene.name, scene.title, scene.obstacles.standing_names) == ("posts", "posts", ("post",))
     assert scene.start.heading == scene.finish.heading == pytest.approx(np.pi / 4.0)
     assert scene.ground_center == (1.5, 2.5)
     assert scene.ground_size == (19.0, 19.0)

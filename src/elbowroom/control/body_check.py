@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.neighbour import Neighbour
-from elbowroom.world.clearance import clearance, clearance_of
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -30,14 +30,13 @@ class BodyCheck:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
-        self._table = scene.boxes.table
-        self._moving = scene.moving
+        self._obstacles = scene.obstacles
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
 
     @property
     def restless(self) -> bool:
         """Whether anything moves by itself."""
-        return bool(len(self._moving) or self.others)
+        return bool(len(self._obstacles.moving) or self.others)
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (11,).
@@ -50,10 +49,10 @@ class BodyCheck:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
         return self._least(self._posed(root, upper), root, time, others_at=-np.inf)
 
-    def clearance_from(self, moving: MovingBoxes, root: Floats, upper: Floats, time: float) -> float:
-        """The same from some moving boxes alone."""
+    def clearance_from(self, moving: Moving, root: Floats, upper: Floats, time: float) -> float:
+        """The same from some moving obstacles alone."""
         segments = self._posed(root, upper)
-        return clearance_of(segments[:, :, 0], self._radii, _seen_from(root, moving.tables([time])[0]))
+        return Obstacles(moving=moving).clearance(segments, self._radii, root[:2], time)
 
     def clearance_between(
         self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats], times: tuple[float, float]
@@ -67,7 +66,7 @@ class BodyCheck:
         upper = uppers[0] + looks[:, None] * (uppers[1] - uppers[0])
         segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
         if not self.restless:
-            return float(clearance(segments, self._radii, self._around(roots[0], times[0])).min())
+            return self._obstacles.clearance(segments, self._radii, roots[0][:2], times[0])
         moments = times[0] + looks * (times[1] - times[0])
         return min(self._least(segments[:, :, i : i + 1], roots[0], float(time)) for i, time in enumerate(moments))
 
@@ -77,7 +76,7 @@ class BodyCheck:
 
     def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
         """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""
-        found = clearance_of(segments[:, :, 0], self._radii, self._around(origin, time))
+        found = self._obstacles.clearance(segments, self._radii, origin[:2], time)
         axes, when = np.ascontiguousarray(segments), time if others_at is None else others_at
         return min([found, *(other.clearance(axes, self._radii, origin, when) for other in self.others)])
 
@@ -85,16 +84,3 @@ class BodyCheck:
         near = roots.copy()
         near[..., :2] -= origin[:2]
         return near
-
-    def _around(self, origin: Floats, time: float) -> Floats:
-        table = self._table
-        if len(self._moving):
-            table = np.concatenate([table, self._moving.tables([time])[0]])
-        return _seen_from(origin, table)
-
-
-def _seen_from(origin: Floats, table: Floats) -> Floats:
-    moved = table.copy()
-    moved[:, 0] -= origin[0]
-    moved[:, 2] -= origin[1]
-    return moved

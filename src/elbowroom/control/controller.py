@@ -31,7 +31,7 @@ from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root.plan import RootPlanKind
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -222,7 +222,7 @@ class Controller:
         self._errands.ask(Question(query, self._assist, held, reserve), self._wayfinder.answer, self._queue)
         self._take_plan(command)
 
-    def _others_beside(self, start: Playback, time: float) -> MovingBoxes:
+    def _others_beside(self, start: Playback, time: float) -> Moving:
         """The others' boxes; slimmer, where a motion starts within one: it is larger than the body that it holds."""
         others = boxes_of(self.others)
         if not len(others):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.planning.model.axis_distances import lower_to_body
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 class Neighbour(NamedTuple):
     """Another avatar, as it plans to move."""
 
-    boxes: MovingBoxes  # that hold its parts
+    boxes: Moving  # that hold its parts
     times: Floats  # (m,) seconds, increasing: the moments whose bodies are known
     axes: Floats  # (m, C, 6) its capsules' axes then, in the world
     radii: Floats  # (C,) metres
@@ -45,6 +45,6 @@ class Neighbour(NamedTuple):
         return float(out[0])
 
 
-def boxes_of(neighbours: Sequence[Neighbour]) -> MovingBoxes:
+def boxes_of(neighbours: Sequence[Neighbour]) -> Moving:
     """The boxes of all of them."""
-    return MovingBoxes(tuple(track for neighbour in neighbours for track in neighbour.boxes.tracks))
+    return Moving(tuple(track for neighbour in neighbours for track in neighbour.boxes.tracks))

@@ -15,7 +15,8 @@ from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.control.body_check import configuration
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
 from elbowroom.control.neighbour import Neighbour
-from elbowroom.world.moving import MovingBoxes, Repeat, Track
+from elbowroom.world.obstacles.moving import Moving, Repeat, Track
+from elbowroom.world.obstacles.shapes import Box, extents_of
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +43,7 @@ def neighbour(
     return Neighbour(predicted(humanoid, model, keys, onward=onward), times, axes, humanoid.capsules.radii)
 
 
-def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: bool) -> MovingBoxes:
+def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: bool) -> Moving:
     """Moving boxes that hold the avatar at its key frames; the first of these is shown now.
 
     `onward`: whether it wants to go ahead. Then a step back gives way, and does not go on.
@@ -64,14 +65,21 @@ def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: 
         x = places[:, 0] + left * cosine + ahead * sine
         z = places[:, 1] - left * sine + ahead * cosine
         centers = np.stack([x, np.full(len(times), middle), z], axis=1)
-        tracks.append(Track(f"{humanoid.name}: {group.label}", high - low, times, centers, yaws, Repeat.ONCE))
-    return MovingBoxes(tuple(tracks))
+        tracks.append(Track(f"{humanoid.name}: {group.label}", _box(high - low), times, centers, yaws, Repeat.ONCE))
+    return Moving(tuple(tracks))
 
 
-def slimmer(moving: MovingBoxes, margin: float) -> MovingBoxes:
+def slimmer(moving: Moving, margin: float) -> Moving:
     """The same boxes, `margin` metres less to every side: so that who is in touch with one can leave it."""
     less = np.array([2.0 * margin, 0.0, 2.0 * margin])
-    return MovingBoxes(tuple(replace(track, size=np.maximum(track.size - less, _THIN)) for track in moving.tracks))
+    sizes = [np.maximum(2.0 * extents_of(track.shape) - less, _THIN) for track in moving.tracks]
+    rows = zip(moving.tracks, sizes, strict=True)
+    return Moving(tuple(replace(track, shape=_box(size)) for track, size in rows))
+
+
+def _box(size: Floats) -> Box:
+    x, y, z = size.tolist()
+    return Box((x, y, z))
 
 
 def _postures(keys: KeyFrames) -> Floats:

@@ -15,7 +15,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class MotionQuery(NamedTuple):
     command: Command
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames
-    others: MovingBoxes = MovingBoxes()  # that move, besides the scene's own
+    others: Moving = Moving()  # that move, besides the scene's own
     hurry: bool = False  # something else is wanted than what is played: what is found soon, better later
     superseded: Callable[[], bool] = _wanted  # whether nobody waits for the motion any more
 

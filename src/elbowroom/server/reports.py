@@ -26,7 +26,8 @@ from elbowroom.server.schema.picture import (
     SceneMessage,
 )
 from elbowroom.server.schema.progress import Blocked, GroupReport, Plan
-from elbowroom.world.moving import Track
+from elbowroom.world.obstacles.moving import Track
+from elbowroom.world.obstacles.shapes import Shape, extents_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -41,27 +42,24 @@ _REASONS: dict[BlockadeKind, Reason] = {
 
 def scene_message(scene: Scene) -> SceneMessage:
     """The scene as a client draws it."""
-    boxes = zip(
-        scene.box_names,
-        scene.boxes.centers.tolist(),
-        (2.0 * scene.boxes.half_sizes).tolist(),
-        scene.boxes.rotations.tolist(),
-        strict=True,
-    )
     return SceneMessage(
         name=scene.name,
         title=scene.title,
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
-        boxes=[Box(name, tuple(center), tuple(size), tuple(turn)) for name, center, size, turn in boxes],
-        moving=[_moving_box(track) for track in scene.moving.tracks],
+        boxes=[_box(*obstacle) for obstacle in scene.obstacles],
+        moving=[_moving_box(track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
     )
 
 
+def _box(name: str, shape: Shape, center: Floats, turn: Floats) -> Box:
+    return Box(name, tuple(center.tolist()), tuple((2.0 * extents_of(shape)).tolist()), tuple(turn.tolist()))
+
+
 def _moving_box(track: Track) -> MovingBox:
-    x, y, z = track.size.tolist()
+    x, y, z = (2.0 * extents_of(track.shape)).tolist()
     centers = [(a, b, c) for a, b, c in track.centers.tolist()]
     return MovingBox(track.name, (x, y, z), track.times.tolist(), centers, track.yaws.tolist(), track.repeat.value)
 
@@ -129,7 +127,7 @@ def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
     blockade = None if plan is None else plan.local.blockade
     if blockade is None:
         return None
-    known = (*scene.box_names, *scene.moving.names)
+    known = scene.obstacles.names
     names = [known[box] for box in blockade.boxes if box < len(known)]
     return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 

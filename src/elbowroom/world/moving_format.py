@@ -1,4 +1,4 @@
-"""Moving boxes in scene documents: the part of reader and writer that knows tracks."""
+"""Moving obstacles in scene documents: the part of reader and writer that knows tracks."""
 
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -7,8 +7,9 @@ import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.world.json_place import Place
-from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
-from elbowroom.world.moving import FASTEST, MovingBoxes, Repeat, Track
+from elbowroom.world.limits import FARTHEST, NAME, read_angle
+from elbowroom.world.obstacles.moving import FASTEST, Moving, Repeat, Track
+from elbowroom.world.shape_format import FIELDS, read_shape, type_of, write_shape
 
 MAX_MOVING = 100
 MAX_KEYS = 1_000
@@ -22,26 +23,25 @@ class _Key(NamedTuple):
     seconds: float  # until the next
 
 
-def read_moving(place: Place) -> MovingBoxes:
+def read_moving(place: Place) -> Moving:
     """The tracks in a list; raises `InputError` at the first wrong field."""
-    return MovingBoxes(tuple(_read_track(item, i) for i, item in enumerate(place.items(MAX_MOVING))))
+    return Moving(tuple(_read_track(item, i) for i, item in enumerate(place.items(MAX_MOVING))))
 
 
 def _read_track(place: Place, index: int) -> Track:
-    if isinstance(place.value, dict) and "type" in place.value:
-        Place(place.source, f"{place.path}.type", place.value["type"]).constant("box")
-    fields = place.fields(("type", "size", "track"), ("name", "repeat"))
-    name = fields["name"].text(NAME, least=1) if "name" in fields else f"moving box {index + 1}"
+    kind = type_of(place)
+    fields = place.fields(("type", *FIELDS[kind], "track"), ("name", "repeat"))
+    name = fields["name"].text(NAME, least=1) if "name" in fields else f"moving {kind} {index + 1}"
     repeat = _read_repeat(fields["repeat"]) if "repeat" in fields else Repeat.LOOP
-    size = fields["size"].vector(3, 0.0, LARGEST, above=True)
+    shape = read_shape(kind, fields)
     keys = [_read_key(item) for item in fields["track"].items(MAX_KEYS)]
     if len(keys) < 2:
-        fields["track"].fail("must have at least 2 key poses; a box that stands still is an obstacle")
+        fields["track"].fail("must have at least 2 key poses; what stands still is an obstacle")
     closed = [*keys, keys[0]] if repeat is Repeat.LOOP else keys
     _refuse_leaps(closed)
     times = np.cumsum([0.0, *(key.seconds for key in closed[:-1])])
     return Track(
-        name, np.array(size), times, np.array([key.center for key in closed]), np.array([key.yaw for key in closed]),
+        name, shape, times, np.array([key.center for key in closed]), np.array([key.yaw for key in closed]),
         repeat,
     )  # fmt: skip
 
@@ -69,7 +69,7 @@ def _refuse_leaps(keys: list[_Key]) -> None:
             raise InputError(f"{key.place.source}: {key.place.path} leads on at {fastest:.3g}; {most}")
 
 
-def write_moving(moving: MovingBoxes) -> list[dict[str, Any]]:
+def write_moving(moving: Moving) -> list[dict[str, Any]]:
     """The list in a scene's JSON document."""
     return [_written(track) for track in moving.tracks]
 
@@ -79,10 +79,5 @@ def _written(track: Track) -> dict[str, Any]:
     seconds = [*np.diff(track.times).tolist(), 1.0][:keys]
     rows = zip(track.centers[:keys].tolist(), track.yaws[:keys].tolist(), seconds, strict=True)
     poses = [{"center": center, "yaw": yaw, "seconds": wait} for center, yaw, wait in rows]
-    return {
-        "type": "box",
-        "name": track.name,
-        "size": track.size.tolist(),
-        "repeat": track.repeat.value,
-        "track": poses,
-    }
+    shape = write_shape(track.shape)
+    return {"type": shape.pop("type"), "name": track.name, **shape, "repeat": track.repeat.value, "track": poses}

@@ -8,10 +8,9 @@ from typing import Any
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
-from elbowroom.world.boxes import Boxes
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.json_place import parse_json, read_json
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.stock_scenes import check_scene_name, stock_folder, stock_names
 
 MAX_FILE_BYTES = 16 * 2**20
@@ -44,9 +43,7 @@ class Scene:
     ground_size: tuple[float, float]  # extent along x and z, metres
     start: RootState  # where an avatar is put
     finish: Gate  # the line that ends the walk
-    boxes: Boxes  # B obstacles that stand still
-    box_names: tuple[str, ...]  # (B,)
-    moving: MovingBoxes = field(default_factory=MovingBoxes)  # besides the boxes, which stand still
+    obstacles: Obstacles = field(default_factory=Obstacles)  # all that stands or moves in the way
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> "Scene":

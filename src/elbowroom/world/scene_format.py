@@ -5,6 +5,7 @@ A test holds reader and schema together on many broken documents.
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,14 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.closest_points import closest_points
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
-from elbowroom.world.moving import MovingBoxes
 from elbowroom.world.moving_format import read_moving, write_moving
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Hull, Shape
 from elbowroom.world.scene import Gate, Scene
+from elbowroom.world.shape_format import FIELDS, MOST_POINTS_TOGETHER, read_shape, type_of, write_shape
 
 FORMAT = "elbowroom-scene"
 VERSION = 1
@@ -44,7 +46,6 @@ def read_scene(document: Any, source: str) -> Scene:
         fields["$schema"].text(_TITLE)
     name = fields["name"].text(NAME, least=1)
     ground = fields["ground"].fields(("size",), ("center",))
-    boxes, names = _read_obstacles(fields["obstacles"])
     scene = Scene(
         name=name,
         title=fields["title"].text(_TITLE) if "title" in fields else name,
@@ -53,9 +54,10 @@ def read_scene(document: Any, source: str) -> Scene:
         ground_size=_pair(ground["size"].vector(2, 0.0, LARGEST, above=True)),
         start=_read_start(fields["start"]),
         finish=_read_gate(fields["finish"]),
-        boxes=boxes,
-        box_names=names,
-        moving=read_moving(fields["moving"]) if "moving" in fields else MovingBoxes(),
+        obstacles=replace(
+            _read_obstacles(fields["obstacles"]),
+            moving=read_moving(fields["moving"]) if "moving" in fields else Moving(),
+        ),
     )
     _refuse_off_the_ground(scene, fields)
     _refuse_start_in_obstacle(scene, fields["start"])
@@ -81,25 +83,26 @@ def _read_gate(place: Place) -> Gate:
     )
 
 
-def _read_obstacles(place: Place) -> tuple[Boxes, tuple[str, ...]]:
+def _read_obstacles(place: Place) -> Obstacles:
     rows = [_read_obstacle(item, i) for i, item in enumerate(place.items(MAX_OBSTACLES))]
     if not rows:
-        return Boxes.empty(), ()
-    names, centers, rotations, sizes = zip(*rows, strict=True)
-    return Boxes(np.array(centers), np.array(rotations), 0.5 * np.array(sizes)), names
+        return Obstacles()
+    names, shapes, centers, rotations = zip(*rows, strict=True)
+    together = sum(len(shape.points) for shape in shapes if isinstance(shape, Hull))
+    if together > MOST_POINTS_TOGETHER:
+        most = f"at most {MOST_POINTS_TOGETHER} are allowed"
+        raise InputError(f"{place.source}: the hulls in {place.path} have {together} points together; {most}")
+    return Obstacles(shapes, np.array(centers), np.array(rotations), names)
 
 
-def _read_obstacle(place: Place, index: int) -> tuple[str, list[float], NDArray[np.float64], list[float]]:
-    """One obstacle: name, centre, rotation, size. Its type decides which fields it has; today all are boxes."""
-    if isinstance(place.value, dict) and "type" in place.value:
-        Place(place.source, f"{place.path}.type", place.value["type"]).constant("box")
-    fields = place.fields(("type", "center", "size"), ("name", *_TURNS))
-    return (
-        fields["name"].text(NAME, least=1) if "name" in fields else f"box {index + 1}",
-        fields["center"].vector(3, -FARTHEST, FARTHEST),
-        _read_rotation(place, fields),
-        fields["size"].vector(3, 0.0, LARGEST, above=True),
-    )
+def _read_obstacle(place: Place, index: int) -> tuple[str, Shape, list[float], NDArray[np.float64]]:
+    """One obstacle: name, shape, centre, rotation. Its type decides which fields it has."""
+    kind = type_of(place)
+    fields = place.fields(("type", "center", *FIELDS[kind]), ("name", *(_TURNS if kind != "sphere" else ())))
+    name = fields["name"].text(NAME, least=1) if "name" in fields else f"{kind} {index + 1}"
+    center = fields["center"].vector(3, -FARTHEST, FARTHEST)
+    rotation = _read_rotation(place, fields)
+    return name, read_shape(kind, fields), center, rotation
 
 
 def _read_rotation(place: Place, fields: dict[str, Place]) -> NDArray[np.float64]:
@@ -151,13 +154,12 @@ def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     x, z = scene.start.x, scene.start.z
-    legs = np.array([x, _STANCE_LOW, z, x, _STANCE_HIGH, z])
-    on_legs, on_boxes = closest_points(legs, np.concatenate([scene.boxes.table, scene.moving.tables([0.0])[0]]))
-    distances = np.linalg.norm(on_boxes - on_legs, axis=1)
-    if distances.min(initial=np.inf) >= _STANCE_RADIUS:
-        return
-    name = (*scene.box_names, *scene.moving.names)[int(np.argmin(distances))]
-    Place(place.source, f"{place.path}.position", [x, z]).fail(f"it stands in the obstacle {name!r}; move one of them")
+    legs = np.array([[0.0, _STANCE_LOW, 0.0, 0.0, _STANCE_HIGH, 0.0]])
+    found = scene.obstacles.nearest(legs, [_STANCE_RADIUS], (x, z), 0.0)
+    if found is not None and found.distance < 0.0:
+        name = scene.obstacles.names[found.obstacle]
+        here = Place(place.source, f"{place.path}.position", [x, z])
+        here.fail(f"it stands in the obstacle {name!r}; move one of them")
 
 
 def scene_document(
@@ -186,13 +188,6 @@ def scene_document(
 
 def write_scene(scene: Scene) -> dict[str, Any]:
     """The JSON document of a scene."""
-    rows = zip(
-        scene.box_names,
-        scene.boxes.centers.tolist(),
-        (2.0 * scene.boxes.half_sizes).tolist(),
-        scene.boxes.rotations.tolist(),
-        strict=True,
-    )
     document = {
         "format": FORMAT,
         "version": VERSION,
@@ -206,9 +201,13 @@ def write_scene(scene: Scene) -> dict[str, Any]:
             "heading": scene.finish.heading,
             "width": scene.finish.width,
         },
-        "obstacles": [
-            {"type": "box", "name": name, "center": center, "size": size, "rotation": rotation}
-            for name, center, size, rotation in rows
-        ],
+        "obstacles": [_written(*row) for row in scene.obstacles],
     }
-    return document | ({"moving": write_moving(scene.moving)} if len(scene.moving) else {})
+    moving = scene.obstacles.moving
+    return document | ({"moving": write_moving(moving)} if len(moving) else {})
+
+
+def _written(name: str, shape: Shape, center: NDArray[np.float64], rotation: NDArray[np.float64]) -> dict[str, Any]:
+    fields = write_shape(shape)
+    turned = {} if fields["type"] == "sphere" else {"rotation": rotation.tolist()}
+    return {"type": fields.pop("type"), "name": name, "center": center.tolist(), **fields, **turned}

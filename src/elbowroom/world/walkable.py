@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.jit import kernel
-from elbowroom.world.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.from_above import ball_radius, place_of
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import how_many, row_of
 from elbowroom.world.scene import Scene
 
 Floats32 = NDArray[np.float32]
@@ -50,11 +53,11 @@ def walkable_map(scene: Scene, radius: float, low: float, high: float, cell: flo
     cell = max(cell, float(np.sqrt(width * depth / MAX_CELLS)) * 1.01)
     shape = (int(depth / cell) + 1, int(width / cell) + 1)
     origin = (scene.ground_center[0] - 0.5 * width, scene.ground_center[1] - 0.5 * depth)
-    return walkable_window(scene.boxes.table32, Stance(radius, low, high), origin, 0.0, shape, cell)
+    return walkable_window(scene.obstacles.standing, Stance(radius, low, high), origin, 0.0, shape, cell)
 
 
 def walkable_window(
-    table: Floats32,
+    near: Nearby,
     stance: Stance,
     origin: tuple[float, float],
     heading: float,
@@ -62,13 +65,13 @@ def walkable_window(
     cell: float,
     farthest: float = FARTHEST,
 ) -> WalkableMap:
-    """Clearance over a grid that starts at `origin` and runs along `heading`; `table` as in `Boxes.table32`.
+    """Clearance over a grid that starts at `origin` and runs along `heading`.
 
     Clearance above `farthest` metres is given as `farthest`: the less, the sooner it is done.
     """
     out = np.full(shape, farthest, np.float32)
     place = np.array([*origin, np.sin(heading), np.cos(heading), cell, farthest])
-    _fill_window(table, np.array(stance, np.float32), place, out)
+    _fill_window(near, np.array(stance, np.float32), place, out)
     return WalkableMap(origin, heading, cell, out)
 
 
@@ -80,15 +83,15 @@ def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
 
 
 @kernel
-def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
-    """Lower every point within reach of a box; the points around a box are one batch of the clearance kernel."""
+def _fill_window(near: Nearby, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
+    """Lower every point within reach of an obstacle; the points around one are one batch of the clearance kernel."""
     sine, cosine, cell, farthest = place[2], place[3], place[4], place[5]
     ahead, left = out.shape
-    for b in range(table.shape[0]):
-        dx, dz = table[b, 0] - place[0], table[b, 2] - place[1]
+    for b in range(how_many(near)):
+        x, z = place_of(near, b)
+        dx, dz = x - place[0], z - place[1]
         center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
-        half = table[b, 12:15]
-        reach = (np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + stance[0] + farthest) / cell + 1.0
+        reach = (ball_radius(near, b) + stance[0] + farthest) / cell + 1.0
         first_a, last_a = max(0, int(center_a - reach)), min(ahead, int(center_a + reach) + 1)
         first_l, last_l = max(0, int(center_l - reach)), min(left, int(center_l + reach) + 1)
         rows, columns = last_a - first_a, last_l - first_l
@@ -103,7 +106,7 @@ def _fill_window(table: Floats32, stance: Floats32, place: NDArray[np.float64], 
                 z = place[1] + along * cosine - aside * sine
                 segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, stance[1], z
                 segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, stance[2], z
-        clearance_into(segments, stance[:1], table[b : b + 1], least)
+        clearance_into(segments, stance[:1], row_of(near, b), least)
         for i in range(rows):
             for j in range(columns):
                 out[first_a + i, first_l + j] = min(out[first_a + i, first_l + j], least[i * columns + j])

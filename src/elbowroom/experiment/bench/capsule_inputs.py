@@ -9,7 +9,7 @@ from elbowroom.body.dof import DofGroup, clamp, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -22,7 +22,7 @@ class CapsuleInputs(NamedTuple):
 
     segments: Floats32  # (C, 6, N) metres
     radii: Floats32  # (C,)
-    boxes: Boxes
+    boxes: Obstacles
 
     @property
     def checks(self) -> int:
@@ -62,4 +62,4 @@ def capsule_inputs(postures: int, boxes: int, seed: int) -> CapsuleInputs:
     centers = shoulder + towards * rng.uniform(0.5, 0.85, (boxes, 1))
     turns = quaternion.normalize(rng.normal(size=(boxes, 4)))
     radii = model.capsules_of(DofGroup.LEFT_ARM).radii
-    return CapsuleInputs(segments, radii, Boxes(centers, turns, rng.uniform(0.05, 0.22, (boxes, 3))))
+    return CapsuleInputs(segments, radii, Obstacles.boxes(centers, turns, rng.uniform(0.05, 0.22, (boxes, 3))))

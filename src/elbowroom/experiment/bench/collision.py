@@ -11,7 +11,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.bench.capsule_inputs import capsule_inputs
 from elbowroom.experiment.bench.rivals import Rival, rivals
 from elbowroom.experiment.bench.vector_code import vector_bits
-from elbowroom.world.clearance import clearance, clearance_into
+from elbowroom.world.obstacles.clearance import clearance, clearance_into
 
 Bools = NDArray[np.bool_]
 
@@ -66,13 +66,13 @@ def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: Non
     inputs = capsule_inputs(settings.postures, settings.boxes, settings.seed)
     few = inputs.first(min(settings.rival_postures, settings.postures))
     others, missing = rivals(few)
-    clear = clearance(few.segments, few.radii, few.boxes.table)
+    clear = clearance(few.segments, few.radii, few.boxes.standing)
     answers = [other.touching() for other in others]
-    table, out = inputs.boxes.table32, np.empty(inputs.segments.shape[2], np.float32)
+    near, out = inputs.boxes.standing, np.empty(inputs.segments.shape[2], np.float32)
     own_rates: list[float] = []
     rates: list[list[float]] = [[] for _ in others]
     for number in range(settings.rounds):
-        own_rates.append(_rate(inputs.checks, lambda: clearance_into(inputs.segments, inputs.radii, table, out)))
+        own_rates.append(_rate(inputs.checks, lambda: clearance_into(inputs.segments, inputs.radii, near, out)))
         for i, other in enumerate(others):
             rates[i].append(_rate(other.checks, other.touching))
         tick(number + 1)

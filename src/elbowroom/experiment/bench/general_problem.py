@@ -20,8 +20,8 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -65,7 +65,7 @@ class CrossingProblem:
         """Whether no state (n, d + 1) touches an obstacle."""
         q, roots = self.postures(states)
         segments = posture_capsules(self._model, q, roots)  # type: ignore[attr-defined]
-        return bool((clearance(segments, self._radii, self.scene.boxes.table32) >= 0.0).all())  # type: ignore[attr-defined]
+        return bool((clearance(segments, self._radii, self.scene.obstacles.standing) >= 0.0).all())  # type: ignore[attr-defined]
 
     def is_slow_enough(self, a: Floats, b: Floats) -> bool:
         """Whether the motion goes forward in time, within the joint speeds."""
@@ -99,7 +99,7 @@ def crossing_problem(humanoid: Humanoid, scene: Scene) -> CrossingProblem:
 
 def _straight_walk(humanoid: Humanoid, scene: Scene) -> RootPath:
     """Straight ahead until the finish, as if nothing stood in the way: set off, then walk on at the pace reached."""
-    bare = replace(scene, boxes=Boxes.empty(), box_names=())
+    bare = replace(scene, obstacles=Obstacles())
     path = RootPlanner(humanoid, bare).plan(scene.start, Command(forward=1.0), _SETTING_OFF, _INTERVAL).path
     states = list(path.states)
     last, before = states[-1], states[-2]

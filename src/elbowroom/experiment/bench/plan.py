@@ -13,7 +13,7 @@ from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
 from elbowroom.experiment.crossing import start_for
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.rehearsal import rehearse
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 _POST = 0.03  # metres, half the thickness of a post in the lane
@@ -115,9 +115,9 @@ def lane(posts: int) -> Scene:
     left = np.where(np.arange(posts) % 2 == 0, 1.0, -1.0)
     aside = np.where(np.arange(posts) % 4 < 2, *_ASIDE)
     centers = np.stack([left * aside, np.full(posts, 0.9), np.linspace(*_LANE, posts)], axis=1)
-    boxes = Boxes(centers, np.tile(quaternion.IDENTITY, (posts, 1)), np.tile([_POST, 0.9, _POST], (posts, 1)))
+    turns, halves = np.tile(quaternion.IDENTITY, (posts, 1)), np.tile([_POST, 0.9, _POST], (posts, 1))
     names = tuple(f"post {i + 1}" for i in range(posts))
-    return replace(bare, name=f"lane of {posts}", boxes=boxes, box_names=names)
+    return replace(bare, name=f"lane of {posts}", obstacles=Obstacles.boxes(centers, turns, halves, names))
 
 
 def _costs(calls: Sequence[PlanCall]) -> CallCosts:

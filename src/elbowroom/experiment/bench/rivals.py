@@ -44,7 +44,7 @@ def _mujoco(inputs: CapsuleInputs) -> Rival:
     geoms = [
         f'<geom type="box" pos="{_text(center)}" quat="{_text(np.roll(turn, 1))}" size="{_text(size)}" '
         'conaffinity="0"/>'
-        for center, turn, size in zip(boxes.centers, boxes.rotations, boxes.half_sizes, strict=True)
+        for center, turn, size in zip(boxes.centers, boxes.rotations, inputs.boxes.half_sizes, strict=True)
     ]
     bodies = [
         f'<body><freejoint/><geom type="capsule" size="{radius} {length}" contype="0" mass="1"/></body>'

@@ -12,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
-from elbowroom.world.boxes import Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Gate, Scene
 
 Floats = NDArray[np.float64]
@@ -151,6 +151,7 @@ def _scene(name: str, corners: Floats, boxes: list[tuple[Floats, float, tuple[fl
     half = 0.5 * np.array([size for _, _, size in boxes])
     low, high = corners.min(axis=0) - 3.0, corners.max(axis=0) + 3.0
     x, z = corners[-1].tolist()
+    names = tuple(f"{name} {i + 1}" for i in range(len(boxes)))
     return replace(
         Scene.load("empty"),
         name=name,
@@ -159,8 +160,7 @@ def _scene(name: str, corners: Floats, boxes: list[tuple[Floats, float, tuple[fl
         ground_center=tuple((0.5 * (low + high)).tolist()),
         ground_size=tuple((high - low).tolist()),
         finish=Gate((x, z), math.atan2(*(corners[-1] - corners[-2]))),
-        boxes=Boxes(np.array([middle for middle, _, _ in boxes]), turns, half),
-        box_names=tuple(f"{name} {i + 1}" for i in range(len(boxes))),
+        obstacles=Obstacles.boxes([middle for middle, _, _ in boxes], turns, half, names),
     )
 
 

@@ -7,7 +7,8 @@ from typing import Any, cast
 import numba
 import numpy as np
 
-from elbowroom.world import capsule_tiles
+from elbowroom.world.obstacles import capsule_box
+from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 
 _ARITHMETIC = r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%"
 _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
@@ -16,11 +17,11 @@ _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
 @cache
 def clearance_loop_code() -> str:
     """The assembly of the hot loop, compiled anew: what comes from the disk cache cannot be read."""
-    kernel = cast(Any, capsule_tiles.lower_squares)
+    kernel = cast(Any, capsule_box.lower_from_boxes)
     options = {key: value for key, value in kernel.targetoptions.items() if key != "nopython"}
     fresh = numba.njit(**options)(kernel.py_func)
-    tile, box = np.zeros(capsule_tiles.TILE, np.float32), np.zeros(capsule_tiles.BOX, np.float32)
-    fresh(tile, box, np.zeros((1, 2), np.int64), 0, np.zeros(capsule_tiles.LANES, np.float32))
+    tile, box = np.zeros(TILE, np.float32), np.zeros(ROW, np.float32)
+    fresh(tile, box, np.zeros((1, 2), np.int64), 0, np.zeros(LANES, np.float32))
     return "\n".join(fresh.inspect_asm().values())
 
 

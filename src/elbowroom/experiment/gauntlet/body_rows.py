@@ -32,7 +32,10 @@ class BodyRows(NamedTuple):
         return BodyRows(*(np.ascontiguousarray(column[::step]) for column in self))
 
     def gap(self, box: Floats) -> float:
-        """The least clearance of any row from a box (15,), a row of `Boxes.table`; infinite without rows."""
+        """The least clearance of any row from a box (15,); infinite without rows.
+
+        A box is its centre, the rotation matrix from the world to its axes row by row, and half its sizes.
+        """
         return float(least_gap(self.axes, self.radii, box))
 
 

@@ -39,7 +39,7 @@ class Placed:
     size: tuple[float, float, float]
 
     def row(self) -> Floats:
-        """The obstacle as a row (15,) of `Boxes.table`."""
+        """The obstacle as a row (15,), for `BodyRows.gap`."""
         return np.concatenate([self.center, _to_box(self.turn).ravel(), 0.5 * np.array(self.size)])
 
 

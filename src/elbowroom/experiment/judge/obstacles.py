@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
-from elbowroom.world.moving import Track
+from elbowroom.world.obstacles.hulls import surface_of
+from elbowroom.world.obstacles.moving import Track
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -69,25 +71,53 @@ class Surroundings:
 
 def obstacles_of(scene: Scene) -> tuple[Obstacle, ...]:
     """Every obstacle of a scene that stands still."""
-    boxes = scene.boxes
-    turns = quaternion.to_matrix(boxes.rotations)
-    rows = zip(scene.box_names, boxes.centers, turns, boxes.half_sizes, strict=True)
-    return tuple(_box(*row) for row in rows)
+    return tuple(
+        _obstacle(name, shape, center, quaternion.to_matrix(turn)) for name, shape, center, turn in scene.obstacles
+    )
 
 
 def surroundings_of(scene: Scene) -> tuple[Surroundings, ...]:
     """Every obstacle of a scene: those that stand still together, each moving one by itself."""
     moving = [
-        Surroundings((_box(track.name, np.zeros(3), np.eye(3), 0.5 * track.size),), track)
-        for track in scene.moving.tracks
+        Surroundings((_obstacle(track.name, track.shape, np.zeros(3), np.eye(3)),), track)
+        for track in scene.obstacles.moving.tracks
     ]
     return (Surroundings(obstacles_of(scene), None), *moving)
 
 
-def _box(name: str, center: Floats, turn: Floats, half: Floats) -> Obstacle:
+def _obstacle(name: str, shape: Shape, origin: Floats, turn: Floats) -> Obstacle:
+    made, to_made = _library_shape(shape)
+    place, center = coal_library().Transform3s(turn @ to_made, origin), origin + turn @ shape.middle
+    half = shape.half + shape.rounding
+    return Obstacle(name=name, shape=made, place=place, center=center, to_box=turn.T, half_size=half)
+
+
+def _library_shape(shape: Shape) -> tuple[Any, Floats]:
+    """The library's own shape, and how it is turned in ours: its capsules and cylinders lie along Z."""
+    coal, along_y = coal_library(), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    match shape:
+        case Box(size):
+            return coal.Box(*size), np.eye(3)
+        case Sphere(radius):
+            return coal.Sphere(radius), np.eye(3)
+        case Capsule(radius, length):
+            return coal.Capsule(radius, length), along_y
+        case Cylinder(radius, height):
+            return coal.Cylinder(radius, height), along_y
+        case Hull():
+            return _library_hull(shape), np.eye(3)
+
+
+def _library_hull(hull: Hull) -> Any:
+    """A hull by its corners and triangles, as the library wants it."""
     coal = coal_library()
-    shape, place = coal.Box(*(2.0 * half)), coal.Transform3s(turn, center)
-    return Obstacle(name=name, shape=shape, place=place, center=center, to_box=turn.T, half_size=half)
+    corners, triangles = surface_of(hull)
+    points, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    for corner in corners:
+        points.append(corner)
+    for a, b, c in triangles.tolist():
+        faces.append(coal.Triangle(a, b, c))
+    return coal.Convex(points, faces)
 
 
 def _about_y(yaws: Floats) -> Floats:

@@ -77,7 +77,7 @@ def _drawn(drawing: _Drawing, low: Floats, high: Floats) -> str:
     """Everything between two corners of the picture, from far to near."""
     scene, crossing, view = drawing.scene, drawing.crossing, drawing.view
     layers: list[tuple[float, str]] = []
-    for name, corners in zip(scene.box_names, scene.boxes.corners, strict=True):
+    for name, corners in zip(scene.obstacles.standing_names, scene.obstacles.outlines, strict=True):
         seen = view.see(corners)
         hull = seen[ConvexHull(seen[:, :2]).vertices, :2]
         shape = tag("polygon", title(name), points=points((x, y) for x, y in hull.tolist()), class_="obstacle")
@@ -142,7 +142,7 @@ def _ground(low: Floats, high: Floats, view: _View) -> str:
 def _bounds(drawing: _Drawing) -> tuple[Floats, Floats]:
     """Two corners with everything between them."""
     scene, crossing, view = drawing.scene, drawing.crossing, drawing.view
-    shown = [scene.boxes.corners.reshape(-1, 3), _start(scene)[None], _on_ground(np.array([scene.finish.position]))]
+    shown = [scene.obstacles.corners.reshape(-1, 3), _start(scene)[None], _on_ground(np.array([scene.finish.position]))]
     if crossing is not None:
         shown.append(crossing.postures.reshape(-1, 3))
     seen = view.see(np.concatenate(shown))[:, :2]

@@ -33,7 +33,7 @@ from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.boxes import BOX_ROW, Boxes
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
@@ -91,14 +91,17 @@ def rehearse_detour(humanoid: Humanoid) -> RootPlan:
 
 def rehearse_crouch(humanoid: Humanoid) -> None:
     """Hold the legs of a body that crouches on its way against a low box."""
-    path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).boxes)
+    path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).obstacles)
     keys = np.full(len(path.states), 0.1)
     legs.blocked_intervals(path, keys, np.zeros_like(keys), 0.0)
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
-    boxes = Boxes(np.array([center]), np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([half]))
-    return replace(Scene.load("empty"), boxes=boxes, box_names=("box",))
+    return replace(Scene.load("empty"), obstacles=_one_box(center, half))
+
+
+def _one_box(center: tuple[float, ...], half: tuple[float, ...]) -> Obstacles:
+    return Obstacles.boxes([center], [[0.0, 0.0, 0.0, 1.0]], [half])
 
 
 def rehearse_product() -> None:
@@ -122,8 +125,6 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     places, turns, states = np.zeros((SWEEP + 1, 3)), np.zeros((SWEEP + 1, 4)), np.zeros(16)
     turns[:, 3], states[0] = 1.0, _INTERVAL
     carrier = Carrier(0, places, turns, np.full(SWEEP, 0.1), states, places, states)
-    boxes = np.zeros((1, BOX_ROW))
-    boxes[0, 3:12:4], boxes[0, 12:] = 1.0, 0.01
-    boxes[0, 0] = postures.reach
+    box = _one_box((postures.reach, 0.0, 0.0), (0.01, 0.01, 0.01)).standing
     ends = (rest[0], rest[0], rest[0], rest[0])
-    limb_sweep(ways, postures, levers_of(model, limb), chain, carrier, ends, boxes, 0.0)
+    limb_sweep(ways, postures, levers_of(model, limb), chain, carrier, ends, box, 0.0)

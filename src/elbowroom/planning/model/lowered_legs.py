@@ -1,4 +1,4 @@
-"""The legs of a body that crouches: knees that come forward and aside, hips that go down and back, among the boxes.
+"""The legs of a body that crouches: knees that come forward and aside, hips that go down and back, among the obstacles.
 
 The root's path is planned for upright legs. How deep the body crouches on it is chosen with the waist, so legs and
 pelvis have to be looked at again where it does. That depends on the lowering and on the root's state alone.
@@ -14,9 +14,11 @@ from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.path import RootPath, ground_covered, interpolate_between, rates_at, sample_states
-from elbowroom.world.boxes import BOX_ROW, Boxes
-from elbowroom.world.clearance import clearance
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.layout import Nearby, Spans
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import about, is_empty, span_count, span_of
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -34,19 +36,17 @@ _SHOWN = 12  # shown moments of a key interval
 class LoweredLegs:
     """Legs and pelvis of one humanoid in one scene; frozen once made."""
 
-    def __init__(self, model: BodyModel, boxes: Boxes) -> None:
-        self._model = model
+    def __init__(self, model: BodyModel, obstacles: Obstacles) -> None:
+        self._model, self._obstacles = model, obstacles
         self._reach, height = _extent(model)
-        corners = boxes.corners
-        low = corners[:, :, 1].min(axis=1, initial=np.inf) < height
-        ground = np.ascontiguousarray(corners[low][:, :, [0, 2]])
-        self._table = np.ascontiguousarray(boxes.table[low])
-        self._least, self._most = ground.min(axis=1), ground.max(axis=1)
-        self._sweeps, self._interval = np.empty((1, 0, BOX_ROW)), 1.0
+        self._low = obstacles.corners[:, :, 1].min(axis=1, initial=np.inf) < height
+        self._sweeps: Spans | None = None
+        self._interval = 1.0
 
-    def among(self, moving: MovingBoxes, path: RootPath) -> "LoweredLegs":
-        """The same legs where something moves besides, along a path."""
-        if not moving.tracks:
+    def among(self, others: Moving | None, path: RootPath) -> "LoweredLegs":
+        """The same legs along a path, among what moves: the scene's own and others."""
+        moving = self._obstacles.moving + others if others else self._obstacles.moving
+        if not len(moving):
             return self
         made = copy(self)
         made._sweeps, made._interval = moving.swept(path.times), path.interval
@@ -55,7 +55,7 @@ class LoweredLegs:
     def clearances(self, roots: Floats, lowerings: Floats, after: Floats | None = None) -> Floats32:
         """Clearance (N,) at root states (N, 7) and lowerings (N,), `after` (N,) seconds on the path, or at its start.
 
-        Infinite where upright or far from every box.
+        Infinite where upright or far from everything.
         """
         out = np.full(len(roots), np.inf, np.float32)
         lowered = np.flatnonzero(lowerings > _LEAST)
@@ -66,23 +66,32 @@ class LoweredLegs:
 
     def _crouching(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
         """`clearances` (N,) where all are lowered, N at least 1."""
-        out = self._clear(_near(self._table, self._least, self._most, roots, self._reach), roots, lowerings)
-        if self._sweeps.shape[1]:
-            spans = np.clip((after / self._interval).astype(np.int64), 0, len(self._sweeps) - 1)
+        out = self._clear(self._near(roots), roots, lowerings)
+        if self._sweeps is not None:
+            spans = np.clip((after / self._interval).astype(np.int64), 0, span_count(self._sweeps) - 1)
             for span in np.unique(spans):
                 at = spans == span
-                out[at] = np.minimum(out[at], self._clear(self._sweeps[span], roots[at], lowerings[at]))
+                out[at] = np.minimum(out[at], self._clear(span_of(self._sweeps, span), roots[at], lowerings[at]))
         return out
 
-    def _clear(self, rows: Floats, roots: Floats, lowerings: Floats) -> Floats32:
-        """Clearance (N,) from boxes, rows (B, 15)."""
-        if not len(rows):
+    def _near(self, roots: Floats) -> Nearby:
+        """The obstacles that legs at root states (N, 7) may touch."""
+        low_x, high_x, low_z, high_z = ground_covered(roots)
+        reach = self._reach
+        numbers = self._obstacles.numbers_near((low_x - reach, low_z - reach), (high_x + reach, high_z + reach))
+        return self._obstacles.picked(numbers[self._low[numbers]])
+
+    def _clear(self, near: Nearby, roots: Floats, lowerings: Floats) -> Floats32:
+        """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds."""
+        if is_empty(near):
             return np.full(len(roots), np.inf, np.float32)
-        table, states = _about_first(rows, roots)
-        return clearance(leg_capsules(self._model, states, lowerings), self._model.roots.radii, table)
+        states = roots.copy()
+        states[:, :2] -= roots[0, :2]
+        segments = leg_capsules(self._model, states, lowerings)
+        return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]))
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
-        """Which of the lowerings (n+1, V) bring the legs within `margin` of a box around their key time: (n+1, V)."""
+        """Which of the lowerings (n+1, V) bring legs within `margin` of anything about their key time: (n+1, V)."""
         around = np.linspace(-0.5, 0.5, _AROUND) * path.interval
         times = np.arange(len(path.states))[:, None] * path.interval + around
         times = np.clip(times, 0.0, path.horizon * path.interval)
@@ -95,7 +104,7 @@ class LoweredLegs:
         return blocked
 
     def blocked_intervals(self, path: RootPath, keys: Floats, velocities: Floats, margin: float) -> Bools:
-        """In which key intervals (n,) the curve of lowerings brings the legs within `margin` of a box.
+        """In which key intervals (n,) the curve of lowerings brings the legs within `margin` of anything.
 
         It leads through `keys` (n+1,) with `velocities` (n+1,), as playback shows it.
         """
@@ -105,34 +114,6 @@ class LoweredLegs:
         if len(owner):
             blocked[owner[self._crouching(roots, lowerings, after) < margin]] = True
         return blocked
-
-
-@exact_kernel
-def _near(table: Floats, least: Floats, most: Floats, roots: Floats, reach: float) -> Floats:
-    """The rows (B, 15) of the boxes, bounds (S, 2) on the ground, that legs within `reach` of the roots may touch."""
-    low_x, high_x, low_z, high_z = ground_covered(roots)
-    out, count = np.empty(table.shape), 0
-    for b in range(table.shape[0]):
-        across = least[b, 0] <= high_x + reach and most[b, 0] >= low_x - reach
-        if across and least[b, 1] <= high_z + reach and most[b, 1] >= low_z - reach:
-            for c in range(table.shape[1]):
-                out[count, c] = table[b, c]
-            count += 1
-    return out[:count]
-
-
-@exact_kernel
-def _about_first(rows: Floats, roots: Floats) -> tuple[Floats32, Floats]:
-    """Boxes (B, 15) and root states (N, 7) about the first root's place, so that single precision holds anywhere."""
-    x, z = roots[0, 0], roots[0, 1]
-    table, states = rows.copy(), roots.copy()
-    for b in range(table.shape[0]):
-        table[b, 0] -= x
-        table[b, 2] -= z
-    for n in range(states.shape[0]):
-        states[n, 0] -= x
-        states[n, 1] -= z
-    return table.astype(np.float32), states
 
 
 @exact_kernel

@@ -131,7 +131,7 @@ def _enhance(
     size = graph.size[0]
     vertex = insert(graph, candidate)
     if vertex >= size:
-        for t in range(roadmap.tables.shape[0]):
+        for t in range(roadmap.ready.shape[0]):
             roadmap.clearances[t, vertex] = clearance_at(roadmap, segments, t)
     return vertex
 

@@ -19,7 +19,8 @@ from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus, SearchResult
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.boxes import tables_in_frames
+from elbowroom.world.obstacles.layout import Nearby, Spans
+from elbowroom.world.obstacles.rows import seen_from
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -79,9 +80,8 @@ class LocalPlanner:
         self.use_scene(scene)
 
     def use_scene(self, scene: Scene) -> None:
-        """Plan among the boxes of another scene, with the same graphs."""
-        self._boxes = scene.boxes.table
-        self._box_radii = np.linalg.norm(self._boxes[:, 12:], axis=1)
+        """Plan among the obstacles of another scene, with the same graphs."""
+        self._obstacles = scene.obstacles
 
     def reset(self) -> None:
         """Forget the vertices that searches have added."""
@@ -95,25 +95,25 @@ class LocalPlanner:
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Find motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians.
 
-        `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all boxes.
+        `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all obstacles.
         """
         goals = self.goals(path)
         configurations = np.empty_like(goals)
         evidence: list[GroupEvidence] = []
         positions, rotations = pelvis_frames(self._model, path.states)
-        boxes = self._near(positions)
-        tables = tables_in_frames(boxes, positions, rotations)
+        near = self._near(positions)
+        obstacles = seen_from(near, positions, rotations)
         margins = self.margins(path)
         for group in LOCAL_GROUPS:
             columns = columns_of(group)
-            roadmap = self._roadmap(group, tables, start[columns])
+            roadmap = self._roadmap(group, obstacles, start[columns])
             result = figure6.search(roadmap, goals[:, columns], rng, margins, self.settings.budget)
             evidence.append(_evidence(group, result))
             if result.status is not PlanStatus.FOUND:
                 return LocalPlan(result.status, configurations[:0], goals, tuple(evidence))
             configurations[:, columns] = result.path
             if group is DofGroup.WAIST:
-                tables = self._chest_tables(boxes, positions, rotations, result.path)
+                obstacles = self._from_chest(near, positions, rotations, result.path)
         return LocalPlan(PlanStatus.FOUND, configurations, goals, tuple(evidence))
 
     def margins(self, path: RootPath) -> Floats:
@@ -123,22 +123,21 @@ class LocalPlanner:
         longest: Floats = np.maximum(way[:-1], way[1:])
         return self.settings.margin + self.settings.margin_of_way * longest
 
-    def _roadmap(self, group: DofGroup, tables: NDArray[np.float32], start: Floats) -> Roadmap:
+    def _roadmap(self, group: DofGroup, obstacles: Spans, start: Floats) -> Roadmap:
         posed = self._posed[group]
         if posed.graph.full:
             posed.graph.reset()
-        return Roadmap(posed, tables, start)
+        return Roadmap(posed, obstacles, start)
 
-    def _chest_tables(self, boxes: Floats, positions: Floats, rotations: Floats, waist: Floats) -> NDArray[np.float32]:
-        """The boxes in the chest frame at each key time, for the chosen waist motion (n+1, 3)."""
+    def _from_chest(self, near: Nearby, positions: Floats, rotations: Floats, waist: Floats) -> Spans:
+        """The obstacles in the chest frame at each key time, for the chosen waist motion (n+1, 3)."""
         chest_positions, chest_rotations = chest_frames(self._model, waist)
-        return tables_in_frames(boxes, *compose(positions, rotations, chest_positions, chest_rotations))
+        return seen_from(near, *compose(positions, rotations, chest_positions, chest_rotations))
 
-    def _near(self, pelvis: Floats) -> Floats:
-        """The rows of the boxes that the upper body could reach, or nearly, at any key time."""
-        gaps = np.linalg.norm(self._boxes[:, None, :3] - pelvis, axis=2).min(axis=1, initial=np.inf) - self._box_radii
-        near: Floats = self._boxes[gaps < self._reach + _NEARLY]
-        return near
+    def _near(self, pelvis: Floats) -> Nearby:
+        """The obstacles that the upper body could reach, or nearly, at any key time."""
+        reach, ground = self._reach + _NEARLY, pelvis[:, [0, 2]]
+        return self._obstacles.near(ground.min(axis=0) - reach, ground.max(axis=0) + reach)
 
     def _posed_graph(self, group: DofGroup) -> PosedGraph:
         chosen, limb = self.settings.of(group), limb_of(self._model, group)

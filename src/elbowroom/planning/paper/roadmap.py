@@ -17,7 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.limb import Limb, pose
 from elbowroom.planning.paper.activity_graph import VISITORS, ActivityGraph, GraphArrays
-from elbowroom.world.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import at_span, span_count
 
 Floats32 = NDArray[np.float32]
 _REACH = 2.0  # a stretched limb reaches at most so much farther than the farthest reaching vertex that we know
@@ -28,7 +30,7 @@ class RoadmapArrays(NamedTuple):
 
     limb: Limb
     segments: Floats32  # (C, 6, V) capsules of the graph's vertices at the start of this plan
-    tables: Floats32  # (n+1, B, 15) obstacles in the limb's frame at each key time
+    obstacles: Spans  # in the limb's frame at each key time, n+1
     clearances: Floats32  # (n+1, rows) metres; valid at depths that are `ready`
     ready: NDArray[np.bool_]  # (n+1,)
 
@@ -64,22 +66,21 @@ class PosedGraph:
 class Roadmap:
     """The roadmap of one group along one root path, entered at configuration `start` (d,).
 
-    `tables` (n+1, B, 15) are the obstacles at the n+1 key times in the frame that carries the group.
+    `obstacles` are those at the n+1 key times in the frame that carries the group.
     """
 
-    def __init__(self, posed: PosedGraph, tables: ArrayLike, start: ArrayLike) -> None:
+    def __init__(self, posed: PosedGraph, obstacles: Spans, start: ArrayLike) -> None:
         self.graph = posed.graph
         self.source = self.graph.enter(start)
-        rows = np.ascontiguousarray(tables, np.float32)
-        depths, columns = len(rows), self.graph.arrays.capacity + VISITORS
+        depths, columns = span_count(obstacles), self.graph.arrays.capacity + VISITORS
         self.arrays = RoadmapArrays(
-            posed.limb, posed.segments, rows, np.empty((depths, columns), np.float32), np.zeros(depths, np.bool_)
+            posed.limb, posed.segments, obstacles, np.empty((depths, columns), np.float32), np.zeros(depths, np.bool_)
         )
 
     @property
     def horizon(self) -> int:
         """n: the depth of a complete path."""
-        return len(self.arrays.tables) - 1
+        return span_count(self.arrays.obstacles) - 1
 
     def clearance(self, depth: int) -> Floats32:
         """The clearance in metres of every vertex of the graph at a depth, shape (V,); a view."""
@@ -97,12 +98,12 @@ def touch(graph: GraphArrays, roadmap: RoadmapArrays, depth: int) -> None:
     """Make the clearances at `depth` ready: one batch over the graph's vertices, one over the visitors."""
     if roadmap.ready[depth]:
         return
-    row, table, radii = roadmap.clearances[depth], roadmap.tables[depth], roadmap.limb.radii
-    clearance_into(roadmap.segments, radii, table, row[: roadmap.segments.shape[2]])
+    row, near, radii = roadmap.clearances[depth], at_span(roadmap.obstacles, depth), roadmap.limb.radii
+    clearance_into(roadmap.segments, radii, near, row[: roadmap.segments.shape[2]])
     first, count = graph.capacity, graph.visitors[0]
     if count > 0:
         segments = pose(roadmap.limb, graph.vertices[first : first + count])
-        clearance_into(segments, radii, table, row[first : first + count])
+        clearance_into(segments, radii, near, row[first : first + count])
     roadmap.ready[depth] = True
 
 
@@ -110,5 +111,5 @@ def touch(graph: GraphArrays, roadmap: RoadmapArrays, depth: int) -> None:
 def clearance_at(roadmap: RoadmapArrays, segments: Floats32, depth: int) -> float:
     """The clearance in metres of one posture, capsules (C, 6, 1), at a depth."""
     out = np.empty(1, np.float32)
-    clearance_into(segments, roadmap.limb.radii, roadmap.tables[depth], out)
+    clearance_into(segments, roadmap.limb.radii, at_span(roadmap.obstacles, depth), out)
     return float(out[0])

@@ -37,20 +37,20 @@ class WayFinder:
         self._settings, self._body = settings, body
         self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
-    def ahead(self, start: RootState, line: TravelLine, boxes: Neighbours, sight: float) -> Way:
-        """The way from a start along a line of travel among `boxes`, `sight` metres of it."""
+    def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Way:
+        """The way from a start along a line of travel among `obstacles`, `sight` metres of it."""
         straight = straight_route(float(start.x), float(start.z), line, sight)
-        if way_is_open(straight, self.half, boxes.ground):
+        if way_is_open(straight, self.half, obstacles.ground):
             return Way(straight, detour=False, ends=False, checks=0)
-        free, checks = self._free_length(straight, boxes)
+        free, checks = self._free_length(straight, obstacles)
         if free >= sight:
             return Way(straight, detour=False, ends=False, checks=checks)
-        return self._round(straight, free, line, boxes, sight, checks)
+        return self._round(straight, free, line, obstacles, sight, checks)
 
-    def _free_length(self, route: Floats, boxes: Neighbours) -> tuple[float, int]:
+    def _free_length(self, route: Floats, obstacles: Neighbours) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
         points, along = route_points(route, _LOOKS)
-        clear = self._body.standing_clearance(boxes, points)
+        clear = self._body.standing_clearance(obstacles, points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
         blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
         return float(along[blocked[0]]) if len(blocked) else math.inf, len(points)
@@ -60,7 +60,7 @@ class WayFinder:
         straight: Floats,
         free: float,
         line: TravelLine,
-        boxes: Neighbours,
+        obstacles: Neighbours,
         sight: float,
         checks: int,
     ) -> Way:
@@ -69,7 +69,7 @@ class WayFinder:
         windows: dict[float, WalkableMap] = {}
         for margin, cell in s.searches:
             if cell not in windows:
-                windows[cell] = self._window(line, ahead, cell, boxes, sight)
+                windows[cell] = self._window(line, ahead, cell, obstacles, sight)
                 checks += windows[cell].clearance.size
             behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
             route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
@@ -78,14 +78,14 @@ class WayFinder:
                 return Way(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
         return Way(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
 
-    def _window(self, line: TravelLine, ahead: float, cell: float, boxes: Neighbours, sight: float) -> WalkableMap:
+    def _window(self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, sight: float) -> WalkableMap:
         """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
         s = self._settings
         behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
         shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
         roomy = max(margin for margin, _ in s.searches) + s.route.roomy
-        return walkable_window(boxes.table, self._body.stance, origin, line.heading, shape, cell, roomy)
+        return walkable_window(obstacles.obstacles, self._body.stance, origin, line.heading, shape, cell, roomy)
 
 
 def _cells(length: float, cell: float) -> float:

@@ -24,7 +24,10 @@ from elbowroom.planning.root.line_rooms import Grid, LineRooms
 from elbowroom.planning.root.profile import Profile
 from elbowroom.planning.root.room import Room
 from elbowroom.planning.root.turned_body import TurnedBody
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import grown_aside
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -85,12 +88,12 @@ class Evasion(NamedTuple):
 
 
 class EvasionFinder:
-    """Finds evasions for one humanoid among some boxes. What it keeps is what it would find again."""
+    """Finds evasions for one humanoid among some obstacles. What it keeps is what it would find again."""
 
-    def __init__(self, humanoid: Humanoid, table: Floats, settings: EvasionSettings | None = None) -> None:
+    def __init__(self, humanoid: Humanoid, obstacles: Obstacles, settings: EvasionSettings | None = None) -> None:
         self.settings = s = settings or EvasionSettings()
         grid = Grid(s.step, s.aside, 2 * round(s.widest / s.aside) + 1, s.comfort)
-        self._rooms = LineRooms(TurnedBody(humanoid), table, s.angles, grid)
+        self._rooms = LineRooms(TurnedBody(humanoid), obstacles, s.angles, grid)
 
     def ahead_of(
         self,
@@ -98,7 +101,7 @@ class EvasionFinder:
         start: RootState,
         sight: float,
         speeds: tuple[float, float],
-        moving: MovingBoxes,
+        moving: Moving,
         time: float,
     ) -> "EvasionGrid":
         """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
@@ -113,12 +116,10 @@ class EvasionFinder:
         room, slowness = self._rooms.ahead(line, speeds, first, rows, passing)
         return EvasionGrid(s, line, start, slowness, first * s.step, room, len(moving) > 0)
 
-    def _passing(self, moving: MovingBoxes, time: float, ahead: Floats, start: RootState, speed: float) -> Floats:
-        """Rows (n, M, 15) of what moves about when places `ahead` (n,) metres are reached, a little larger."""
+    def _passing(self, moving: Moving, time: float, ahead: Floats, start: RootState, speed: float) -> Spans:
+        """What moves about when places `ahead` (n,) metres are reached, a little larger."""
         s, then = self.settings, time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)
-        rows = moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual)
-        rows[..., [12, 14]] += s.polite
-        return rows
+        return grown_aside(moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual), s.polite)
 
 
 def _arrival(ahead: Floats, now: float, speed: float) -> Floats:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
+from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -44,7 +45,7 @@ _ENDS = np.array([(i, i + step) for step in (1, 2, 4) for i in range(8) if not i
 
 
 def ground_below(corners: Floats, height: float) -> Ground:
-    """What the parts of boxes below a height cover; `corners` (B, 8, 3) as in `Boxes.corners`, each partly below."""
+    """What the parts of boxes below a height cover; `corners` (B, 8, 3) each partly below."""
     one, other = corners[:, _ENDS[:, 0]], corners[:, _ENDS[:, 1]]
     rise = other[..., 1] - one[..., 1]
     at = np.clip((height - one[..., 1]) / np.where(np.abs(rise) < _FLAT, _FLAT, rise), 0.0, 1.0)[..., None]
@@ -196,14 +197,10 @@ def way_is_open(route: Floats, half: float, ground: Ground) -> bool:
 
 
 @exact_kernel
-def ground_near(ground: Ground, x: float, z: float, reach: float) -> Ground:
-    """What of it may come within `reach` metres of a place."""
-    near, count = np.empty(ground.least.shape[0], np.int64), 0
-    for b in range(near.shape[0]):
-        least, most = ground.least[b], ground.most[b]
-        if least[0] <= x + reach and most[0] >= x - reach and least[1] <= z + reach and most[1] >= z - reach:
-            near[count] = b
-            count += 1
+def ground_near(ground: Ground, grids: Grids, x: float, z: float, reach: float) -> Ground:
+    """What of it may come within `reach` metres of a place; `grids` as `grids_of` its bounds."""
+    near = meeting_any_order(grids, x - reach, z - reach, x + reach, z + reach)
+    count = near.shape[0]
     found = Ground(np.empty((count, ground.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)))
     for n in range(count):
         for i in range(2):

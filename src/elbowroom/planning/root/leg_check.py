@@ -28,13 +28,13 @@ class LegCheck:
 
 
 class FreeLegs:
-    """Tells of paths from one start how much of each is free, among boxes that stand and what moves."""
+    """Tells of paths from one start how much of each is free, among what stands and what moves."""
 
     def __init__(
-        self, check: LegCheck, boxes: Neighbours, around: MovingAround, start: RootState, interval: float
+        self, check: LegCheck, near: Neighbours, around: MovingAround, start: RootState, interval: float
     ) -> None:
-        """`boxes` are all that stand within reach of the paths, `interval` is the seconds between key frames."""
-        self._check, self._boxes, self._around = check, boxes, around
+        """`near` are all that stand within reach of the paths, `interval` is the seconds between key frames."""
+        self._check, self._near, self._around = check, near, around
         self._start, self._interval = start, interval
         self.checks = 0  # postures whose clearance was computed
 
@@ -45,7 +45,7 @@ class FreeLegs:
 
     def touches(self, states: Floats) -> bool:
         """Whether a path overlaps with what stands, stops aside."""
-        if not len(self._boxes.table):
+        if self._near.empty:
             return False
         shown, _ = dense_states(states, self._interval, self._check.spacing, np.ones(len(states) - 1, np.bool_))
         return bool(np.any(self._clearance(shown) < 0.0))
@@ -54,7 +54,7 @@ class FreeLegs:
     def _skin(self) -> float:
         """The clearance to ask for: less where the start has little."""
         full, standing = self._check.skin, np.array([self._start, self._start])
-        if not len(self._boxes.table) or not self._to_look_at(standing, 2.0 * full)[0].any():
+        if self._near.empty or not self._to_look_at(standing, 2.0 * full)[0].any():
             return full
         return min(full, max(0.5 * float(self._clearance(standing[:1])[0]), 0.0))
 
@@ -62,18 +62,18 @@ class FreeLegs:
         if not len(states):
             return np.empty(0, np.float32)
         self.checks += len(states)
-        return self._check.body.clearance(self._boxes, states)
+        return self._check.body.clearance(self._near, states)
 
     def _to_look_at(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""
         bounds = self._check.bounds
         return to_look_at(
             states, self._interval, bounds.braking, bounds.turn_acceleration, skin, self._check.body.hull,
-            self._boxes.ground,
+            self._near.ground,
         )  # fmt: skip
 
     def _kept_in_motion(self, states: Floats) -> int:
-        """The number of leading key intervals that no moving box comes into."""
+        """The number of leading key intervals that nothing that moves comes into."""
         horizon = len(states) - 1
         shown, owner = dense_states(states, self._interval, self._check.spacing, np.ones(horizon, np.bool_))
         after = self._interval * horizon / len(shown) * np.arange(1.0, len(shown) + 1.0)
@@ -85,7 +85,7 @@ class FreeLegs:
     def _kept_at_rest(self, states: Floats) -> int:
         """The number of leading key intervals that no standing box is in, with a free stop from the end of each."""
         kept = len(states) - 1
-        if not len(self._boxes.table):
+        if self._near.empty:
             return kept
         moving, stopping = self._to_look_at(states, self._check.skin)
         if moving.any():
@@ -106,7 +106,7 @@ class FreeLegs:
                 shown, owner = stopping_states(states, self._interval, bounds, spacing, fresh)
             else:
                 shown, owner = dense_states(states, self._interval, spacing, fresh)
-            near = states_to_look_at(shown, self._check.skin, self._check.body.hull, self._boxes.ground)
+            near = states_to_look_at(shown, self._check.skin, self._check.body.hull, self._near.ground)
             np.minimum.at(found, owner[near] - 1, self._clearance(shown[near]))
             self._check.known.learn(names, fresh, found)
         touching = np.flatnonzero(found < self._skin)

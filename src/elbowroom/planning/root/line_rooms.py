@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.room import Room, lower_rows, room_at_best
 from elbowroom.planning.root.turned_body import Turned, TurnedBody
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import always, any_in
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -28,20 +31,20 @@ class Grid(NamedTuple):
 
 
 class LineRooms:
-    """Finds the room of one body among boxes that stand, and what is left of it by what passes."""
+    """Finds the room of one body among what stands, and what is left of it by what passes."""
 
-    def __init__(self, body: TurnedBody, table: Floats, angles: Floats, grid: Grid) -> None:
-        """`table` (B, 15) stands; the body is looked at in turns by `angles` (T,)."""
-        self._body, self._table, self._angles, self._grid = body, table, angles, grid
+    def __init__(self, body: TurnedBody, obstacles: Obstacles, angles: Floats, grid: Grid) -> None:
+        """Of `obstacles` those count that stand; the body is looked at in turns by `angles` (T,)."""
+        self._body, self._obstacles, self._angles, self._grid = body, obstacles, angles, grid
         self._known: tuple[tuple[TravelLine, tuple[float, float]], Turned] | None = None
         self._rows: dict[float, Floats32] = {}  # (3, T, columns) each, by their place on the line in steps
 
     def ahead(
-        self, line: TravelLine, speeds: tuple[float, float], first: float, count: int, passing: Floats
+        self, line: TravelLine, speeds: tuple[float, float], first: float, count: int, passing: Spans
     ) -> tuple[Room, Floats]:
         """The room in `count` rows from row `first` on, and the seconds that a metre takes in each turn (T,).
 
-        `speeds` forward and sideways are m/s; `passing` (count, M, 15) is what moves, where it is for each row.
+        `speeds` forward and sideways are m/s; `passing` (count, M) is what moves, where it is for each row.
         """
         asked = line, speeds
         if self._known is None or self._known[0] != asked:
@@ -51,7 +54,7 @@ class LineRooms:
         wanted = [first + i for i in range(count)]
         self._look(line, turned, wanted)
         rows = np.stack([self._rows[row] for row in wanted])
-        if passing.size:
+        if any_in(passing):
             self._lower(rows, line, turned, passing, first)
         return room_at_best(rows, self._grid.comfort, self._grid.aside), turned.slowness
 
@@ -71,12 +74,21 @@ class LineRooms:
             if len(run):
                 shape = len(run), 3, len(self._angles), self._grid.columns
                 rows = np.full(shape, self._grid.comfort, np.float32)
-                self._lower(rows, line, turned, self._table[None], wanted[run[0]])
+                self._lower(rows, line, turned, self._standing(line, turned, wanted[run[0]], len(run)), wanted[run[0]])
                 self._rows.update(zip(wanted[run[0] : run[-1] + 1], rows, strict=True))
 
-    def _lower(self, rows: Floats32, line: TravelLine, turned: Turned, boxes: Floats, first: float) -> None:
+    def _standing(self, line: TravelLine, turned: Turned, first: float, count: int) -> Spans:
+        """What stands by `count` rows from row `first` on, near enough to matter."""
+        ahead = self._grid.step * np.array([first, first + count - 1.0])
+        x, z = line.x + ahead * np.sin(line.heading), line.z + ahead * np.cos(line.heading)
+        ends = np.abs(turned.capsules.reshape(*turned.capsules.shape[:2], 2, 3, -1))
+        reach = ends.max(axis=(0, 1, 2, 4)) + float(self._body.radii.max()) + self._grid.comfort
+        least, most = (x.min() - reach[0], z.min() - reach[2]), (x.max() + reach[0], z.max() + reach[2])
+        return always(self._obstacles.near(least, most))
+
+    def _lower(self, rows: Floats32, line: TravelLine, turned: Turned, obstacles: Spans, first: float) -> None:
         grid, body = self._grid, self._body
         place = np.array(
             [line.x, line.z, np.sin(line.heading), np.cos(line.heading), grid.step, grid.aside, grid.comfort]
         )
-        lower_rows(rows, turned.capsules, body.groups, body.radii, boxes, place, first)
+        lower_rows(rows, turned.capsules, body.groups, body.radii, obstacles, place, first)

@@ -1,4 +1,4 @@
-"""What cannot bend: legs and pelvis of a humanoid among the boxes that they can touch."""
+"""What cannot bend: legs and pelvis of a humanoid among the obstacles that they can touch."""
 
 from typing import NamedTuple
 
@@ -8,8 +8,11 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
 from elbowroom.planning.root.hull import Ground, ground_below, stride_hull
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.clearance import clearance
+from elbowroom.world.obstacles.broad_phase import grids_of, meeting
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import is_empty, joined, some_of
 from elbowroom.world.walkable import Stance, stance_segments
 
 Floats = NDArray[np.float64]
@@ -23,10 +26,15 @@ _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
 class Neighbours(NamedTuple):
-    """Boxes and the ground that they stand on."""
+    """Obstacles and the ground that they stand on."""
 
-    table: Floats32  # (B, 15) as in `Boxes.table32`
+    obstacles: Nearby
     ground: Ground
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing."""
+        return is_empty(self.obstacles)
 
     def around(self, places: Floats, reach: float) -> "Neighbours":
         """Those that may come within `reach` metres of one of `places` (N, 2)."""
@@ -34,46 +42,51 @@ class Neighbours(NamedTuple):
         near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
         if near.all():
             return self
-        return Neighbours(np.ascontiguousarray(self.table[near]), Ground(*(part[near] for part in self.ground)))
+        return Neighbours(some_of(self.obstacles, near), Ground(*(part[near] for part in self.ground)))
 
     def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
         """These and others."""
         ground = Ground(*(np.concatenate([a, b]) for a, b in zip(self.ground, more.ground, strict=True)))
-        return Neighbours(np.concatenate([self.table, more.table]), ground)
+        return Neighbours(joined(self.obstacles, more.obstacles), ground)
 
 
 class LowerBody:
-    """Legs and pelvis, and the boxes low enough to matter to them."""
+    """Legs and pelvis, and the obstacles low enough to matter to them."""
 
-    def __init__(self, humanoid: Humanoid, boxes: Boxes) -> None:
+    def __init__(self, humanoid: Humanoid, obstacles: Obstacles) -> None:
         self.model: BodyModel = body_model(humanoid)
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach = _measure(self.model)
-        corners, height = boxes.corners, height + _SPARE_HEIGHT
+        corners, height = obstacles.corners, height + _SPARE_HEIGHT
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
         self.hull = stride_hull(self.model)
-        self.boxes = Neighbours(np.ascontiguousarray(boxes.table32[low]), ground_below(corners[low], height))
+        self._obstacles, self._low = obstacles, np.flatnonzero(low)
+        self.ground = ground_below(corners[low], height)
+        self.grids = grids_of(self.ground.least, self.ground.most)
         self._near: tuple[tuple[int, int, float], Neighbours] | None = None
 
     def near(self, x: float, z: float, reach: float) -> Neighbours:
-        """The boxes within `reach` metres of a place, and perhaps some a little farther: those of a square metre."""
+        """The obstacles within `reach` metres of a place, perhaps some a little farther: those of a square metre."""
         asked = (round(x), round(z), reach)
         if self._near is None or self._near[0] != asked:
-            self._near = asked, self.boxes.around(np.array([asked[:2]], np.float64), reach + _HALF_DIAGONAL)
+            far, (x, z) = reach + _HALF_DIAGONAL, asked[:2]
+            near = meeting(self.grids, (x - far, z - far), (x + far, z + far))
+            ground = Ground(*(part[near] for part in self.ground))
+            self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), ground)
         return self._near[1]
 
-    def clearance(self, boxes: Neighbours, states: Floats) -> Floats32:
+    def clearance(self, among: Neighbours, states: Floats) -> Floats32:
         """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7); infinite where far."""
-        near = boxes.around(states[:, :2], self.reach)
-        if not len(near.table):
+        near = among.around(states[:, :2], self.reach)
+        if near.empty:
             return np.full(len(states), np.inf, np.float32)
-        return clearance(leg_capsules(self.model, states), self.radii, near.table)
+        return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
 
-    def standing_clearance(self, boxes: Neighbours, places: Floats) -> Floats32:
+    def standing_clearance(self, among: Neighbours, places: Floats) -> Floats32:
         """Clearance (N,) of the stance capsule at `places` (N, 2) on the ground."""
         segments = stance_segments(self.stance, places[:, 0], places[:, 1])
-        return clearance(segments, np.array([self.stance.radius]), boxes.table)
+        return clearance(segments, np.array([self.stance.radius]), among.obstacles)
 
 
 def _measure(model: BodyModel) -> tuple[Stance, float, float]:

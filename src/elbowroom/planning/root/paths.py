@@ -28,7 +28,7 @@ from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSett
 from elbowroom.planning.root.profile import Profile
 from elbowroom.planning.root.query import Answer, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 _NEAR = 1.0  # metres
@@ -49,7 +49,7 @@ class RootPaths:
 
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings) -> None:
         self.settings = settings
-        body, motion = LowerBody(humanoid, scene.boxes), settings.motion
+        body, motion = LowerBody(humanoid, scene.obstacles), settings.motion
         strides = quickness(body.model.gait.scale)
         self.bounds = MotionBounds(
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
@@ -57,28 +57,28 @@ class RootPaths:
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
         self._ways = WayFinder(settings, body)
         self._walker = Walker(
-            self.bounds, self._ways.half, settings.skin, body.hull, body.boxes.ground, prices_of(settings)
+            self.bounds, self._ways.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
         )
         self.evasions = tuple(
-            EvasionFinder(humanoid, scene.boxes.table, grid) for grid in (settings.evasion, settings.wide)
+            EvasionFinder(humanoid, scene.obstacles, grid) for grid in (settings.evasion, settings.wide)
         )
         self._figure = _figure(body.model)
-        self._scenes = scene.moving
-        self.others = MovingBoxes()
+        self._scenes = scene.obstacles.moving
+        self.others = Moving()
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
 
     @property
-    def moving(self) -> MovingBoxes:
+    def moving(self) -> Moving:
         """All that moves."""
         return self._moving
 
     @property
-    def others(self) -> MovingBoxes:
+    def others(self) -> Moving:
         """What moves besides the scene's own."""
         return self._others
 
     @others.setter
-    def others(self, others: MovingBoxes) -> None:
+    def others(self, others: Moving) -> None:
         self._others, self._moving = others, self._scenes + others
 
     def _query(self, asked: Asked) -> RootQuery:
@@ -162,7 +162,7 @@ class RootPaths:
     def is_faced(self, asked: Asked) -> bool:
         """Whether something that could move stands near: to wait for it would be to wait for ever."""
         around, place = self._query(asked).around, np.array([[asked.start.x, asked.start.z]])
-        return bool(around) and len(around.standing.around(place, _NEAR).table) > 0
+        return bool(around) and not around.standing.around(place, _NEAR).empty
 
     def _lost(self, asked: Asked, line: TravelLine, speed: float, answer: Answer) -> float:
         duration, around = asked.horizon * asked.interval, self._query(asked).around

@@ -20,7 +20,7 @@ from elbowroom.planning.root.memory import Evading, RootMemory
 from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.paths import Asked, RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 _Candidate = tuple[RootPlan, Evading]
@@ -56,17 +56,17 @@ class RootPlanner:
         return self._paths.bounds
 
     @property
-    def moving(self) -> MovingBoxes:
+    def moving(self) -> Moving:
         """All that moves."""
         return self._paths.moving
 
     @property
-    def others(self) -> MovingBoxes:
+    def others(self) -> Moving:
         """What moves besides the scene's own."""
         return self._paths.others
 
     @others.setter
-    def others(self, others: MovingBoxes) -> None:
+    def others(self, others: Moving) -> None:
         self._paths.others = others
 
     def plan(

@@ -51,8 +51,8 @@ class RootQuery:
         """`reach` is the metres from the start beyond which nothing is met."""
         self.settings, self.bounds, self.around = settings, check.bounds, around
         self.start, self.horizon, self.interval = start, horizon, interval
-        self._boxes = check.body.near(start.x, start.z, reach)
-        self._legs, self._ways = FreeLegs(check, self._boxes, around, start, interval), ways
+        self._near = check.body.near(start.x, start.z, reach)
+        self._legs, self._ways = FreeLegs(check, self._near, around, start, interval), ways
         self._way: tuple[TravelLine, float, Way] | None = None
         self._looks = 0
 
@@ -64,7 +64,7 @@ class RootQuery:
     @cached_property
     def _mapped(self) -> Neighbours:
         """What ways lead round: what stands, and what could move but stays where it is."""
-        return self._boxes + self.around.standing if self.around else self._boxes
+        return self._near + self.around.standing if self.around else self._near
 
     def _blank(self) -> Floats:
         states = np.empty((self.horizon + 1, ROOT_STATE))

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.world.boxes import BOX_ROW
-from elbowroom.world.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import at_span, how_many, shifted_into, single, spans_in
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -28,13 +30,13 @@ class Room(NamedTuple):
 
 @exact_kernel
 def lower_rows(
-    clear: Floats32, bodies: Floats32, groups: Indices, radii: Floats32, boxes: Floats, place: Floats, first: float
+    clear: Floats32, bodies: Floats32, groups: Indices, radii: Floats32, obstacles: Spans, place: Floats, first: float
 ) -> None:
     """Lower the clearance of rows (n, 3, T, columns) of places on a line, from row `first` on, to what boxes leave.
 
     `bodies` (T, C, 6, columns) are the capsules in each turn at the places of a row, seen from its middle, `groups`
-    (4,) where legs, trunk and arms begin among them. `boxes` (n, B, 15) are those of each row, or (1, B, 15) those of
-    all. `place`: where the line begins, sine and cosine of its heading, the distance of rows and of columns, and the
+    (4,) where legs, trunk and arms begin among them. `obstacles` (n, B) are those of each row, or (1, B) those of all.
+    `place`: where the line begins, sine and cosine of its heading, the distance of rows and of columns, and the
     comfort, beyond which nothing is looked at.
 
     Each row is looked at by itself: it is the same to the last bit, whatever rows are asked for with it.
@@ -49,32 +51,30 @@ def lower_rows(
             axis[0, e, j], axis[0, e + 2, j] = left * cosine, -left * sine
         axis[0, 1, j], axis[0, 4, j] = 0.0, _TALL
     extents, farthest = _extents(bodies, groups, radii, axis)
-    none, box = np.empty(1, np.float32), np.empty((1, BOX_ROW), np.float32)
+    none, one = np.empty(1, np.float32), single(obstacles)
     away, found = np.empty(columns, np.float32), np.empty(columns, np.float32)
     none[0] = 0.0
     for i in range(clear.shape[0]):
         ahead = (first + i) * step
         middle_x, middle_z = place[0] + ahead * sine, place[1] + ahead * cosine
-        own = boxes[min(i, boxes.shape[0] - 1)]
-        for b in range(own.shape[0]):
-            dx, dz = own[b, 0] - middle_x, own[b, 2] - middle_z
-            size = np.sqrt(own[b, 12] ** 2 + own[b, 13] ** 2 + own[b, 14] ** 2)
+        own = at_span(obstacles, min(i, spans_in(obstacles) - 1))
+        for b in range(how_many(own)):
+            x, z = place_of(own, b)
+            dx, dz, size = x - middle_x, z - middle_z, ball_radius(own, b)
             if np.sqrt(dx * dx + dz * dz) > size + wide + farthest:
                 continue
-            for k in range(BOX_ROW):
-                box[0, k] = own[b, k]
-            box[0, 0], box[0, 2] = dx, dz
-            tall = abs(box[0, 4]) * box[0, 12] + abs(box[0, 7]) * box[0, 13] + abs(box[0, 10]) * box[0, 14]
-            clearance_into(axis, none, box, away)
+            shifted_into(own, b, middle_x, middle_z, one)
+            bottom, top = heights_of(own, b)
+            clearance_into(axis, none, one, away)
             nearest = np.inf
             for j in range(columns):
                 nearest = min(nearest, away[j])
             for t in range(turns):
                 for g in range(3):
                     reach, low, high = extents[t, g, 0], extents[t, g, 1], extents[t, g, 2]
-                    if nearest >= reach + most or box[0, 1] - tall > high + most or box[0, 1] + tall < low - most:
+                    if nearest >= reach + most or bottom > high + most or top < low - most:
                         continue
-                    clearance_into(bodies[t, groups[g] : groups[g + 1]], radii[groups[g] : groups[g + 1]], box, found)
+                    clearance_into(bodies[t, groups[g] : groups[g + 1]], radii[groups[g] : groups[g + 1]], one, found)
                     for j in range(columns):
                         clear[i, g, t, j] = min(clear[i, g, t, j], found[j])
 

@@ -15,6 +15,7 @@ from elbowroom.planning.root.cost import Prices, lost_on_line
 from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, to_look_at, way_is_open
 from elbowroom.planning.root.line import TravelLine, straight_route
 from elbowroom.planning.root.motion import MotionBounds, Travel, follow, gets_nowhere
+from elbowroom.world.obstacles.broad_phase import Grids
 
 Floats = NDArray[np.float64]
 
@@ -27,6 +28,7 @@ class Walker(NamedTuple):
     skin: float  # metres that posed legs keep
     hull: StrideHull
     ground: Ground  # what stands
+    grids: Grids  # of it
     prices: Prices
 
 
@@ -50,7 +52,7 @@ def straight_walk(
     """
     who, x, z = walker, start[0], start[1]
     states = np.empty((stretch.horizon + 1, ROOT_STATE))
-    ground, route = ground_near(who.ground, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
+    ground, route = ground_near(who.ground, who.grids, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
     ends = not way_is_open(route, who.half, ground)
     if ends:
         return False, states, False, 0.0, 0.0, 0.0

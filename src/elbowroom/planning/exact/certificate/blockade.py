@@ -8,13 +8,14 @@ and only the motion between them touches, no obstacles are named.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_boxes
+from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_obstacles
 from elbowroom.planning.exact.joint.bounds import Problem
 from elbowroom.planning.exact.joint.clearances import clearances_under
 from elbowroom.planning.exact.joint.reachability import reach, stepped_triples
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.result import Blockade, BlockadeKind
 from elbowroom.planning.root.path import RootPath
+from elbowroom.world.obstacles.rows import each_of, span_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -22,8 +23,8 @@ Indices = NDArray[np.int64]
 
 
 def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Blockade:
-    """Why there is no way into the slice at `depth`; `rows` (B,) are the numbers of the step's boxes in the scene."""
-    named, kind = blocking_boxes(_contacts(step, depth, _possible(step, depth))), BlockadeKind.NO_POSTURE
+    """Why there is no way into the slice at `depth`; `rows` (B,) are its obstacles' numbers."""
+    named, kind = blocking_obstacles(_contacts(step, depth, _possible(step, depth))), BlockadeKind.NO_POSTURE
     if named is None:
         for before in range(depth + 1):
             step.fill(before, np.ones(step.filled.shape[1], np.bool_))
@@ -32,20 +33,20 @@ def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Bloc
         if 0 <= reached.depth < depth:
             depth = reached.depth + 1
             possible = _possible(step, depth)
-            named = blocking_boxes(_contacts(step, depth, possible))
+            named = blocking_obstacles(_contacts(step, depth, possible))
             if named is None:
                 kind = BlockadeKind.OUT_OF_REACH
                 steps = stepped_triples(problem, reached.depth, reached.triples)
-                named = blocking_boxes(_contacts(step, depth, possible & steps))
-    boxes = () if named is None else tuple(int(rows[b]) for b in named)
+                named = blocking_obstacles(_contacts(step, depth, possible & steps))
+    obstacles = () if named is None else tuple(int(rows[b]) for b in named)
     state = path.states[depth]
     way = np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum()
     return Blockade(
-        kind if boxes else BlockadeKind.MOTION,
+        kind if obstacles else BlockadeKind.MOTION,
         path.start_time + path.interval * depth,
         (float(state[0]), float(state[1])),
         float(way),
-        boxes,
+        obstacles,
     )
 
 
@@ -63,21 +64,20 @@ def _possible(step: JointStep, depth: int) -> Bools:
 
 
 def _contacts(step: JointStep, depth: int, candidates: Bools) -> SliceContacts:
-    """Which box closes which node of a slice."""
+    """Which obstacle closes which node of a slice."""
     around, (waist, *arms) = step.around, step.nodes
-    boxes, count = around.boxes[depth], candidates.shape[0]
+    obstacles, count = list(each_of(span_of(around.obstacles, depth))), candidates.shape[0]
     used = candidates.any(axis=(1, 2))
     pelvis = around.places[depth][None], around.turns[depth][None]
     chests = step.chests(depth, step.configurations(0, depth))
     one = np.ones(1, np.bool_)
-    by_waist = np.zeros((len(boxes), count), np.bool_)
-    by_arms = [np.zeros((len(boxes), count, arm.base.shape[1]), np.bool_) for arm in arms]
-    for b in range(len(boxes)):
-        box = boxes[b : b + 1]
-        clear, _ = clearances_under(step.lanes(0, depth), *pelvis, box, one)
+    by_waist = np.zeros((len(obstacles), count), np.bool_)
+    by_arms = [np.zeros((len(obstacles), count, arm.base.shape[1]), np.bool_) for arm in arms]
+    for b, obstacle in enumerate(obstacles):
+        clear, _ = clearances_under(step.lanes(0, depth), *pelvis, obstacle, one)
         by_waist[b] = clear[0, :count] < waist.margins[depth]
         for side, arm in enumerate(arms):
-            found, _ = clearances_under(step.lanes(1 + side, depth), *chests, box, used & ~by_waist[b])
+            found, _ = clearances_under(step.lanes(1 + side, depth), *chests, obstacle, used & ~by_waist[b])
             by_arms[side][b] = found[:, : arm.base.shape[1]] < arm.margins[depth]
     return SliceContacts(candidates, by_waist, by_arms[0], by_arms[1])
 

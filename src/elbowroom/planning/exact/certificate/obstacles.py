@@ -1,9 +1,9 @@
 """Why there is no way: the fewest obstacles that together leave no posture of a slice.
 
-Each candidate posture of the upper body, a triple (w, l, r), is closed by what touches it: its waist by some boxes, its
-left arm under that waist by some, its right arm by some, and by nothing in the scene where the arms touch each other. A
-set of boxes blocks a slice if it closes every candidate. Boxes are taken away one after the other while the rest still
-blocks: what is left is enough, and none of it can be missed.
+Each candidate posture of the upper body, a triple (w, l, r), is closed by what touches it: its waist by some
+obstacles, its left arm under that waist by some, its right arm by some, and by nothing in the scene where the arms
+touch each other. A set of obstacles blocks a slice if it closes every candidate. They are taken away one after the
+other while the rest still blocks: what is left is enough, and none of it can be missed.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ Indices = NDArray[np.int64]
 
 
 class SliceContacts(NamedTuple):
-    """Which box closes which posture of a slice; B boxes, the likeliest to be missed first."""
+    """Which obstacle closes which posture of a slice; B obstacles, the likeliest to be missed first."""
 
     candidates: Bools  # (W, L, R) triples that count: free of the body itself, and in reach
     waist: Bools  # (B, W)
@@ -28,7 +28,7 @@ class SliceContacts(NamedTuple):
 
 @exact_kernel
 def _all_closed(contacts: SliceContacts, previous: Bools) -> bool:
-    """Whether the kept boxes (B,) close every candidate."""
+    """Whether the kept obstacles (B,) close every candidate."""
     _, waists, lefts = contacts.left.shape
     rights = contacts.right.shape[2]
     left, right = np.empty(lefts, np.bool_), np.empty(rights, np.bool_)
@@ -60,8 +60,8 @@ def _needed(contacts: SliceContacts) -> Bools:
     return previous
 
 
-def blocking_boxes(contacts: SliceContacts) -> Indices | None:
-    """Indices of boxes that close every candidate, each of them needed; None where a candidate stays open.
+def blocking_obstacles(contacts: SliceContacts) -> Indices | None:
+    """Indices of obstacles that close every candidate, each of them needed; None where a candidate stays open.
 
     There are none to name where nothing is a candidate to begin with.
     """

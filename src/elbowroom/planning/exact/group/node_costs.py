@@ -22,6 +22,8 @@ from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import Limb, pose_into
 from elbowroom.planning.model.self_contact import is_clear_of_trunk
 from elbowroom.planning.paper.activity_graph import squared_distance
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import at_span
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -63,7 +65,7 @@ def _clearances(
     postures: Postures,
     carriers: Carriers,
     goals: Floats,
-    boxes: Floats,
+    obstacles: Spans,
     own: Floats,
     needed: Bools,
     clear: Floats32,
@@ -73,7 +75,7 @@ def _clearances(
     clear[:] = _INFINITE
     checks = 0
     for k in range(goals.shape[0] - 1):
-        places, turns, around = carriers.places[k], carriers.turns[k], boxes[k]
+        places, turns, around = carriers.places[k], carriers.turns[k], at_span(obstacles, k)
         at, count = interval_clearances(
             scratch, tables, postures, carriers.ids[k], places, turns, goals[k : k + 2], around
         )
@@ -172,14 +174,20 @@ def node_costs(
 
     Returns the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
     """
-    limb, columns, goals, boxes = postures.limb, postures.columns, task.goals, task.boxes
+    limb, columns, goals, obstacles = postures.limb, postures.columns, task.goals, task.obstacles
     most, checks = np.inf, 0
     if not task.settled:
         clearance, checks = held_clearance_in(
-            scratch, postures, task.start, carriers.places[0], carriers.turns[0], boxes[0], HELD_AT_START
+            scratch,
+            postures,
+            task.start,
+            carriers.places[0],
+            carriers.turns[0],
+            at_span(obstacles, 0),
+            HELD_AT_START,
         )
         most = max(0.5 * clearance, 0.0)
-    checks += _clearances(scratch, tables, postures, carriers, goals, boxes, own, needed, clear)
+    checks += _clearances(scratch, tables, postures, carriers, goals, obstacles, own, needed, clear)
     _costs(columns, goals, own, clear, task.extra, task.margins, most, weights, previous, price)
     _rule_out(price, postures.configurations.shape[0], needed)
     if not limb.is_waist:

@@ -11,8 +11,8 @@ from elbowroom.planning.exact.group.problem import GroupTask
 from elbowroom.planning.exact.joint.guide import Guide
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start
-from elbowroom.planning.exact.sweep.near_boxes import NearBoxes
 from elbowroom.planning.root.path import RootPath
+from elbowroom.world.obstacles.along import Along
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -30,7 +30,7 @@ class PathProblem(NamedTuple):
     previous: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
     begins: Start
     roots: Longs  # (n,) slots of the root ways
-    near: NearBoxes
+    near: Along
     anew: Asked  # clearances that are asked for, apart from what the last plan was allowed
     asked: Asked  # with that
 
@@ -41,7 +41,7 @@ class PathProblem(NamedTuple):
         last: PreviousPlan | None,
         begins: Start,
         roots: Longs,
-        near: NearBoxes,
+        near: Along,
         anew: Asked,
     ) -> "PathProblem":
         """What is asked for on a path among what is `near`, in view of the `last` plan.
@@ -75,7 +75,7 @@ class PathProblem(NamedTuple):
             costs,
             self.roots,
             carriers,
-            self.near.intervals,
+            self.near.spans,
             self.path.interval,
             begins.harsh,
             begins.ahead > 0,

@@ -10,6 +10,7 @@ from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances
+from elbowroom.world.obstacles.layout import Spans
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -52,7 +53,7 @@ class GroupTask(NamedTuple):
     extra: Floats32  # (n+1, W+OWN) added to the nodes' prices
     roots: Longs  # (n,) slots of the root ways
     carriers: Longs  # (n,) slots of the waist's ways, for an arm
-    boxes: Floats  # (n, B, 15) in the world, in each key interval
+    obstacles: Spans  # in the world, in each key interval
     interval: float
     harsh: bool  # whether it may begin as hard as it takes, if there is no other way
     settled: bool  # whether it goes on from a way that is proven: then the start lowers no clearance

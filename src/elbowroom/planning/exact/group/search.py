@@ -30,6 +30,8 @@ from elbowroom.planning.exact.sweep.edges import MOST_EDGES, close_edges, close_
 from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, LimbSweeps, RootSweeps
 from elbowroom.planning.exact.sweep.proof import ENOUGH, Carrier, limb_sweep_in
 from elbowroom.planning.exact.sweep.scratch import Scratch, new_scratch
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import at_span
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -86,7 +88,7 @@ def _proven(
         carrier = _carrier(roots, waists, task, k, is_waist)
         ends = (keys[k], tangents[k], keys[k + 1], tangents[k + 1])
         at, count = limb_sweep_in(
-            scratch, ways, postures, levers, chain, carrier, ends, task.boxes[k], motion_margins[k]
+            scratch, ways, postures, levers, chain, carrier, ends, at_span(task.obstacles, k), motion_margins[k]
         )
         entries[k] = at
         checks += count
@@ -132,7 +134,7 @@ def _close_promising(
     scratch: Scratch,
     postures: Postures,
     carriers: Carriers,
-    boxes: Floats,
+    obstacles: Spans,
     motion_margins: Floats,
     lattice: Lattice,
     work: Work,
@@ -153,7 +155,7 @@ def _close_promising(
             if count:
                 places, turns = carriers.places[k], carriers.turns[k]
                 checks += close_edges(
-                    scratch, postures, lattice, k, steps, count, places, turns, boxes[k], motion_margins[k]
+                    scratch, postures, lattice, k, steps, count, places, turns, at_span(obstacles, k), motion_margins[k]
                 )
     return checks
 
@@ -165,10 +167,10 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
     It begins gently; if there is no such way, only who is told so begins as hard as it takes.
     """
     group, roots, waists, chain, work = cache
-    postures, masks, goals, boxes = group.postures, group.masks, task.goals, task.boxes
+    postures, masks, goals, obstacles = group.postures, group.masks, task.goals, task.obstacles
     configurations, columns = postures.configurations, postures.columns
     interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
-    scratch, steps = new_scratch(postures, chain.waist, boxes.shape[1]), np.empty((MOST_EDGES, 2), np.int64)
+    scratch, steps = new_scratch(postures, chain.waist, at_span(obstacles, 0)), np.empty((MOST_EDGES, 2), np.int64)
     begin_round(group.tables.entries)
     own, needed, previous = extra_nodes(
         configurations, columns, postures.step, goals, task.previous, task.start, task.settled
@@ -244,7 +246,7 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)
         checks += _close_promising(
-            scratch, postures, carriers, boxes, motion_margins, lattice, work, masks, steps, first, best
+            scratch, postures, carriers, obstacles, motion_margins, lattice, work, masks, steps, first, best
         )
     until = deepest + 1
     return GroupPath(deepest, keys[:until], tangents[:until], entries, cost, most, checks, nodes, spent)

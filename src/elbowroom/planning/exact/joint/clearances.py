@@ -1,8 +1,8 @@
 """What the joint step looks up: clearances of arm postures under many waists.
 
-An arm's capsules stand still in the chest frame, so each waist of a slice brings its own boxes, moved into the chest
-frame that this waist makes, at the moments around the key time. This is the dear part of the joint step; therefore
-it is done slice by slice and waist by waist, as far as it is asked for.
+An arm's capsules stand still in the chest frame, so each waist of a slice brings its own obstacles, moved into the
+chest frame that this waist makes, at the moments around the key time. This is the dear part of the joint step;
+therefore it is done slice by slice and waist by waist, as far as it is asked for.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, lower_blocks
+from elbowroom.world.obstacles.blocks import lower_blocks
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import around, move_into, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -30,26 +32,25 @@ class Lanes(NamedTuple):
 
 @exact_kernel
 def clearances_under(
-    postures: Lanes, places: Floats, turns: Floats, boxes: Floats, chosen: Bools
+    postures: Lanes, places: Floats, turns: Floats, obstacles: Nearby, chosen: Bools
 ) -> tuple[Floats32, int]:
     """The least clearances (F, 16 B) of all postures over some moments, in each of F chains of frames.
 
-    `places` (F, m, 3) and `turns` (F, m, 4) are the carrier's frames in the world at the moments, `boxes` (B, 15) the
-    obstacles; only `chosen` (F,) chains are looked at, what is beyond some 6 cm may be left out. Also the capsules
-    that were checked.
+    `places` (F, m, 3) and `turns` (F, m, 4) are the carrier's frames in the world at the moments; only `chosen` (F,)
+    chains are looked at, what is beyond some 6 cm may be left out. Also the capsules that were checked.
     """
     blocks, lanes = postures.lanes.shape[0], postures.lanes.shape[3]
     out = np.empty((places.shape[0], blocks, lanes), np.float32)
     out[:] = FAR
-    near, moved, checks = np.empty(boxes.shape), np.empty(boxes.shape), 0
+    near, moved, checks = unfilled(obstacles), unfilled(obstacles), 0
     for f in range(places.shape[0]):
         if not chosen[f]:
             continue
         for i in range(places.shape[1]):
-            count = boxes_around(boxes, places[f, i], postures.reach, near)
+            count = around(obstacles, places[f, i], postures.reach, near)
             if count == 0:
                 continue
             for b in range(count):
-                box_in_frame(near[b], places[f, i], turns[f, i], moved[b])
+                move_into(near, b, places[f, i], turns[f, i], moved, b)
             checks += lower_blocks(postures.lanes, postures.balls, moved, count, out[f])
     return out.reshape(places.shape[0], blocks * lanes), checks

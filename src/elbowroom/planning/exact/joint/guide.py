@@ -15,6 +15,7 @@ from elbowroom.planning.exact.joint.step import GroupNodes, Surroundings
 from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, KEPT
 from elbowroom.planning.exact.lattice.postures import BLOCK
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, RootSweeps
+from elbowroom.world.obstacles.layout import Spans
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -68,7 +69,7 @@ def _only_start(base: Floats32) -> None:
     base[0, base.shape[1] - EXTRA + HOLD] = 0.0
 
 
-def surroundings(states: Floats, ways: RootSweeps, roots: Indices, boxes: Floats) -> Surroundings:
+def surroundings(states: Floats, ways: RootSweeps, roots: Indices, obstacles: Spans) -> Surroundings:
     """The pelvis at the moments around each key time, where its postures have to be free."""
     count, moments = len(states), len(_LATE_LOOKS) + len(_EARLY_LOOKS)
     places, turns = np.empty((count, moments, 3)), np.empty((count, moments, 4))
@@ -78,7 +79,7 @@ def surroundings(states: Floats, ways: RootSweeps, roots: Indices, boxes: Floats
         for i in range(moments):
             interval, sample = samples[min(i, len(samples) - 1)]
             places[t, i], turns[t, i] = ways.places[roots[interval], sample], ways.turns[roots[interval], sample]
-    return Surroundings(states, places, turns, boxes)
+    return Surroundings(states, places, turns, obstacles)
 
 
 def guide(nodes: GroupNodes, chosen: Indices) -> Guide:

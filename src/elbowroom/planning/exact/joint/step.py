@@ -25,6 +25,8 @@ from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import pose
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import PlanStatus
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import span_of
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -64,7 +66,7 @@ class Surroundings(NamedTuple):
     states: Floats  # (n+1, 7) the root at the key times
     places: Floats  # (n+1, m, 3) pelvis at m moments around each key time, in the world
     turns: Floats  # (n+1, m, 4)
-    boxes: Floats  # (n+1, B, 15) in the world, around each key time
+    obstacles: Spans  # in the world, around each key time
 
 
 class JointStep:
@@ -142,7 +144,7 @@ class JointStep:
         for side, group in enumerate(self.nodes[1:]):
             lanes = self.lanes(1 + side, depth)
             every = np.ones(len(chosen), np.bool_)
-            clear, checks = clearances_under(lanes, *frames, self.around.boxes[depth], every)
+            clear, checks = clearances_under(lanes, *frames, span_of(self.around.obstacles, depth), every)
             self.checks += checks
             clear = clear[:, : group.base.shape[1]]
             if depth > 0:

@@ -29,7 +29,6 @@ from elbowroom.planning.exact.refine.blocked import arms_for, waists_for
 from elbowroom.planning.exact.refine.sampling import Pool, RefinementSettings, drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import chain_of, levers_of, new_limb_sweeps, new_root_sweeps
-from elbowroom.planning.exact.sweep.near_boxes import NearBoxes, near_boxes
 from elbowroom.planning.exact.sweep.node_clearances import new_node_clearances
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
@@ -40,8 +39,9 @@ from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.result import LocalPlan, PlanStatus
-from elbowroom.planning.root.path import RootPath
-from elbowroom.world.moving import MovingBoxes
+from elbowroom.planning.root.path import RootPath, ground_covered
+from elbowroom.world.obstacles.along import Along
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -100,8 +100,8 @@ class UpperBodyPlanner:
         self._refinement = RefinementSettings()
         self._pools = {group: Pool(group.size, self._refinement.capacity) for group in LOCAL_GROUPS}
         self._reaches = {group: _reach(group, limb) for group, limb in self._limbs.items()}
-        self._boxes, self._moving = scene.boxes.table, scene.moving
-        self._legs = LoweredLegs(self._model, scene.boxes)
+        self._obstacles = scene.obstacles
+        self._legs = LoweredLegs(self._model, scene.obstacles)
         self._prepare()
 
     def plan(
@@ -109,7 +109,7 @@ class UpperBodyPlanner:
         path: RootPath,
         begins: Start,
         previous: PreviousPlan | None = None,
-        others: MovingBoxes | None = None,
+        others: Moving | None = None,
         effort: Effort = Effort.REFINED,
         go_on: GoOn = keep_going,
     ) -> UpperPlan:
@@ -117,9 +117,8 @@ class UpperBodyPlanner:
 
         `go_on` is called before each search, and raises an exception to call the plan off.
         """
-        moving = self._moving + others if others else self._moving
-        near = near_boxes(path, self._boxes, moving, self._shelves_for(path).span + _NEARLY)
-        legs = self._legs.among(moving, path)
+        near = self._near(path, others)
+        legs = self._legs.among(others, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
         for attempt in range(self.settings.refinements + 1):
@@ -133,6 +132,13 @@ class UpperBodyPlanner:
         evidence_log, goals = search.evidence_log, search.goals
         plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, evidence_log.evidence(), joint=evidence_log.joint)
         return UpperPlan(plan, search.deepest, search)
+
+    def _near(self, path: RootPath, others: Moving | None) -> Along:
+        """What the upper body could reach on a path."""
+        reach = self._shelves_for(path).span + _NEARLY
+        low_x, high_x, low_z, high_z = ground_covered(path.states)
+        ground = (low_x - reach, low_z - reach), (high_x + reach, high_z + reach)
+        return self._obstacles.along(path.times, ground, others)
 
     def reset(self) -> None:
         """Forget the postures that were added, and what was computed of late."""
@@ -157,7 +163,7 @@ class UpperBodyPlanner:
         path: RootPath,
         begins: Start,
         previous: PreviousPlan | None,
-        near: NearBoxes,
+        near: Along,
         legs: LoweredLegs,
         weights: Weights,
         go_on: GoOn,

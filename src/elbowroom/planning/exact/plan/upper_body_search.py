@@ -33,6 +33,7 @@ from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
+from elbowroom.world.obstacles.rows import span_of
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -159,7 +160,7 @@ class UpperBodySearch:
     def blockade(self) -> Blockade:
         """Why there is no way."""
         assert self._waist is not None
-        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.problem.near.rows)
+        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.problem.near.numbers)
 
     def blocked_slice(self) -> Blocked:
         """The slice that the first group to fail could not get through."""
@@ -200,7 +201,7 @@ class UpperBodySearch:
 
     def _surroundings(self) -> Surroundings:
         problem = self.problem
-        return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.slices)
+        return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.moments)
 
     def _waist_path(self, costs: Floats32, follow: Guide | None = None) -> GroupPath:
         """The waist's way on which the legs have room to crouch as it does."""
@@ -233,8 +234,8 @@ class UpperBodySearch:
         if group is not DofGroup.WAIST:
             carriers = caches.group(DofGroup.WAIST).ways
             places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
-        postures, boxes = caches.group(group).postures, self.problem.near.intervals[0]
-        clearance, _ = held_clearance(postures, task.start, places, turns, boxes, HELD_AT_START)
+        postures, obstacles = caches.group(group).postures, span_of(self.problem.near.spans, 0)
+        clearance, _ = held_clearance(postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
     def _search(self, extra: Floats32, follow: Guide | None) -> GroupPath:

@@ -15,6 +15,7 @@ from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import Limb, pose
+from elbowroom.world.obstacles.rows import span_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -37,7 +38,9 @@ def waists_for(limb: Limb, reach: float, known: Floats, blocked: Blocked, settin
     drawn = drawn_postures(DofGroup.WAIST, blocked.goal, settings.drawn, settings.near)
     places, turns = blocked.around.places[blocked.depth][None], blocked.around.turns[blocked.depth][None]
     lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
-    clear, _ = clearances_under(lanes, places, turns, blocked.around.boxes[blocked.depth], np.ones(1, np.bool_))
+    clear, _ = clearances_under(
+        lanes, places, turns, span_of(blocked.around.obstacles, blocked.depth), np.ones(1, np.bool_)
+    )
     free = clear[0, : len(drawn)] >= blocked.margin
     return _worth(drawn, free, known, blocked.goal, settings)
 
@@ -60,7 +63,7 @@ def arms_for(
     lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
     clear, _ = clearances_under(
         lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4),
-        blocked.around.boxes[blocked.depth], np.ones(len(waists), np.bool_),
+        span_of(blocked.around.obstacles, blocked.depth), np.ones(len(waists), np.bool_),
     )  # fmt: skip
     states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
     parts = body.parts(side, waists, states, None)

@@ -6,11 +6,13 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
 from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_WAY, Postures
-from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, capsule_clearances_in
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import pose_into
 from elbowroom.planning.paper.activity_graph import squared_distance
+from elbowroom.world.obstacles.blocks import capsule_clearances_in
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import around, move_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -138,7 +140,7 @@ def close_edges(
     many: int,
     places: Floats,
     turns: Floats,
-    boxes: Floats,
+    obstacles: Nearby,
     motion_margin: float,
 ) -> int:
     """Close those of the first `many` steps (K, 2) that touch on the way; returns the capsules checked.
@@ -149,11 +151,11 @@ def close_edges(
     for part in range(BETWEEN):
         sample = (part + 1) * SWEEP // (BETWEEN + 1)
         place, turn = places[sample], turns[sample]
-        count = boxes_around(boxes, place, postures.reach, scratch.near)
+        count = around(obstacles, place, postures.reach, scratch.near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(scratch.near[b], place, turn, scratch.framed[b])
+            move_into(scratch.near, b, place, turn, scratch.framed, b)
         for first in range(0, many, BLOCK):
             _posed_between(scratch, postures, lattice, depth, steps, many, first, part)
             out[:] = _INFINITE

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
-from elbowroom.planning.exact.sweep.block_clearances import box_in_frame, boxes_around, least_of, lower_blocks_in
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch, held_against, new_scratch
 from elbowroom.planning.model.limb import pose_into
+from elbowroom.world.obstacles.blocks import least_of, lower_blocks_in
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import around, move_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -55,12 +57,12 @@ def interval_clearances(
     places: Floats,
     turns: Floats,
     goals: Floats,
-    boxes: Floats,
+    obstacles: Nearby,
 ) -> tuple[int, int]:
     """The slot of the table of an interval, and the capsules that had to be checked for it.
 
     `carrier` is the number of the carrier's way, `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are its frames,
-    `goals` (2, d) those at the interval's ends, `boxes` (B, 15) in the world.
+    `goals` (2, d) those at the interval's ends, `obstacles` in the world.
     """
     size = goals.shape[1]
     key = scratch.key[: 1 + 2 * size]
@@ -72,9 +74,9 @@ def interval_clearances(
         return int(known), 0
     at = admit(tables.entries, key)
     early, late = tables.early[at], tables.late[at]
-    checks = _moments(scratch, postures, places, turns, boxes, early, late)
+    checks = _moments(scratch, postures, places, turns, obstacles, early, late)
     width = early.shape[0] - 1
-    early[width], late[width], count = _goals_held(scratch, postures, goals, places, turns, boxes)
+    early[width], late[width], count = _goals_held(scratch, postures, goals, places, turns, obstacles)
     return int(at), checks + count
 
 
@@ -89,11 +91,11 @@ def _set_frame(scratch: Scratch, n: int, places: Floats, turns: Floats, sample: 
 
 @helper
 def _goals_held(
-    scratch: Scratch, postures: Postures, goals: Floats, places: Floats, turns: Floats, boxes: Floats
+    scratch: Scratch, postures: Postures, goals: Floats, places: Floats, turns: Floats, obstacles: Nearby
 ) -> tuple[Any, Any, int]:
     """The clearances of an interval's goals (2, d), the first held early and the second late, and capsules checked."""
     near, segments, found = (
-        boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near),
+        around(obstacles, places[0], postures.reach + 0.5, scratch.near),
         scratch.segments,
         scratch.found,
     )
@@ -124,18 +126,24 @@ def _goals_held(
 
 @helper
 def _moments(
-    scratch: Scratch, postures: Postures, places: Floats, turns: Floats, boxes: Floats, early: Floats32, late: Floats32
+    scratch: Scratch,
+    postures: Postures,
+    places: Floats,
+    turns: Floats,
+    obstacles: Nearby,
+    early: Floats32,
+    late: Floats32,
 ) -> int:
     """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
     rows, checks = scratch.blocks, 0
     early[:], late[:] = _FAR, _FAR
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
-        count = boxes_around(boxes, place, postures.reach, scratch.near)
+        count = around(obstacles, place, postures.reach, scratch.near)
         if count == 0:
             continue
         for b in range(count):
-            box_in_frame(scratch.near[b], place, turn, scratch.framed[b])
+            move_into(scratch.near, b, place, turn, scratch.framed, b)
         rows[:] = _FAR
         checks += lower_blocks_in(scratch.checks, scratch.tiles, scratch.spread, scratch.framed, count, rows)
         if moment <= _EARLY:
@@ -156,12 +164,18 @@ def _lower(row: Floats32, blocks: Floats32) -> None:
 
 @exact_kernel
 def held_clearance_in(
-    scratch: Scratch, postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
+    scratch: Scratch,
+    postures: Postures,
+    configuration: Floats,
+    places: Floats,
+    turns: Floats,
+    obstacles: Nearby,
+    part: int,
 ) -> tuple[float, int]:
     """`held_clearance` with room to work in."""
     late = (_LATE, _MOMENTS + 1)
     begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
-    near, segments = boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near), scratch.segments
+    near, segments = around(obstacles, places[0], postures.reach + 0.5, scratch.near), scratch.segments
     if near == 0:
         return float(_FAR), 0
     for i in range(configuration.shape[0]):
@@ -184,9 +198,9 @@ def held_clearance_in(
 
 @exact_kernel
 def held_clearance(
-    postures: Postures, configuration: Floats, places: Floats, turns: Floats, boxes: Floats, part: int
+    postures: Postures, configuration: Floats, places: Floats, turns: Floats, obstacles: Nearby, part: int
 ) -> tuple[float, int]:
     """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
-    scratch = new_scratch(postures, postures.limb, boxes.shape[0])
-    clearance, checks = held_clearance_in(scratch, postures, configuration, places, turns, boxes, part)
+    scratch = new_scratch(postures, postures.limb, obstacles)
+    clearance, checks = held_clearance_in(scratch, postures, configuration, places, turns, obstacles, part)
     return clearance, checks

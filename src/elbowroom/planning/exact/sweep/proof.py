@@ -15,7 +15,6 @@ from elbowroom.body.posing import place_pelvis_into
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import admit, find
-from elbowroom.planning.exact.sweep.block_clearances import COMFORT, boxes_around, least_of
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
     Ends,
@@ -29,6 +28,9 @@ from elbowroom.planning.exact.sweep.scratch import HALVINGS, Parts, Scratch, hel
 from elbowroom.planning.model.frames import compose_into
 from elbowroom.planning.model.limb import carry_frames, pose_into
 from elbowroom.planning.root.path import interpolate_between, rates_at
+from elbowroom.world.obstacles.blocks import COMFORT, least_of
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import around
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -59,7 +61,7 @@ def _samples(
     count: int,
     places: Floats,
     turns: Floats,
-    boxes: Floats,
+    obstacles: Nearby,
     out: Floats32,
 ) -> int:
     """Clearances (C, 16) of a motion's capsules, up to `COMFORT` or more; returns the capsules that were checked.
@@ -71,7 +73,7 @@ def _samples(
         row = out[c]
         for i in range(np.uint64(BLOCK)):
             row[i] = COMFORT
-    near = boxes_around(boxes, places[0], postures.reach + 0.5, scratch.near)
+    near = around(obstacles, places[0], postures.reach + 0.5, scratch.near)
     if near == 0:
         return 0
     if not posed:
@@ -136,7 +138,7 @@ def _refined(
     carrier: Carrier,
     waist: Ends,
     ends: Ends,
-    boxes: Floats,
+    obstacles: Nearby,
 ) -> tuple[float, int]:
     """The proven clearance of a motion whose looks found what is in the room, and the capsules checked.
 
@@ -161,7 +163,7 @@ def _refined(
                 shares[n] = parts.at[now, begin + n] + share / SWEEP
             _frames_between(scratch, chain, is_waist, carrier, waist, batch)
             configurations_into(ends, interval, shares, batch, scratch.configurations)
-            checks += _samples(scratch, postures, False, batch, scratch.places, scratch.turns, boxes, scratch.found)
+            checks += _samples(scratch, postures, False, batch, scratch.places, scratch.turns, obstacles, scratch.found)
             for n in range(batch):
                 one, i = parts.ends[now, begin + n], parts.sample[now, begin + n]
                 for half in range(2):
@@ -200,7 +202,7 @@ def limb_sweep_in(
     chain: KinematicChain,
     carrier: Carrier,
     ends: Ends,
-    boxes: Floats,
+    obstacles: Nearby,
     wanted: float,
 ) -> tuple[int, int]:
     """`limb_sweep` with room to work in."""
@@ -229,7 +231,7 @@ def limb_sweep_in(
             ways.turns[at],
             ways.sway[at],
         )
-    checks = _samples(scratch, postures, is_waist, count, places, turns, boxes, scratch.coarse)
+    checks = _samples(scratch, postures, is_waist, count, places, turns, obstacles, scratch.coarse)
     least = least_of(scratch.coarse, scratch.checks.apart)
     ways.least[at], ways.proven[at] = least, _UNKNOWN
     if least < wanted:
@@ -237,7 +239,7 @@ def limb_sweep_in(
     key = carrier.waist
     size = (key.shape[0] - 1) // 4
     waist = key[1 : 1 + size], key[1 + size : 1 + 2 * size], key[1 + 2 * size : 1 + 3 * size], key[1 + 3 * size :]
-    ways.proven[at], more = _refined(scratch, postures, levers, chain, carrier, waist, ends, boxes)
+    ways.proven[at], more = _refined(scratch, postures, levers, chain, carrier, waist, ends, obstacles)
     return int(at), checks + more
 
 
@@ -249,7 +251,7 @@ def limb_sweep(
     chain: KinematicChain,
     carrier: Carrier,
     ends: Ends,
-    boxes: Floats,
+    obstacles: Nearby,
     wanted: float,
 ) -> tuple[int, int]:
     """The slot of a limb's way through an interval, and the capsules that had to be checked for it.
@@ -257,6 +259,6 @@ def limb_sweep(
     It goes from posture to posture with the velocities `ends`, on what carries it. Where less than the `wanted`
     clearance is found at the looks, what lies between them is not looked into.
     """
-    scratch = new_scratch(postures, chain.waist, boxes.shape[0])
-    at, checks = limb_sweep_in(scratch, ways, postures, levers, chain, carrier, ends, boxes, wanted)
+    scratch = new_scratch(postures, chain.waist, obstacles)
+    at, checks = limb_sweep_in(scratch, ways, postures, levers, chain, carrier, ends, obstacles, wanted)
     return at, checks

@@ -7,15 +7,17 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
-from elbowroom.planning.exact.sweep.block_clearances import (
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
+from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
+from elbowroom.world.obstacles.blocks import (
     ClearanceScratch,
     capsule_clearances_in,
     clearance_scratch,
     place_capsules,
     spread_balls,
 )
-from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
-from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import shift, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -33,13 +35,13 @@ class Parts(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room for sixteen looks at a limb with C capsules and d components, past B boxes."""
+    """Room for sixteen looks at a limb with C capsules and d components, past B obstacles."""
 
     checks: ClearanceScratch
     limb: LimbScratch
     stem: LimbScratch  # of the limb that carries it
-    near: Floats  # (B, 15) boxes
-    framed: Floats  # (B, 15) boxes in the limb's frame
+    near: Nearby  # some of the B obstacles
+    framed: Nearby  # the same in the limb's frame
     tiles: Floats32  # blocks of all postures, flat
     spread: Floats32  # (5, W) balls around all postures, as `spread_balls` leaves them
     blocks: Floats32  # (W/16, 16) of all postures
@@ -62,19 +64,19 @@ class Scratch(NamedTuple):
 
 
 @exact_kernel
-def new_scratch(postures: Postures, stem: Limb, boxes: int) -> Scratch:
-    """Room for a search among `postures` on the waist's limb `stem`, past so many boxes."""
+def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
+    """Room for a search among `postures` on the waist's limb `stem`, past no more than these obstacles."""
     limb, scratch = postures.limb, SWEEP << HALVINGS
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
-    checks = clearance_scratch(postures.lanes.shape[0] * count, count, boxes)
+    checks = clearance_scratch(postures.lanes.shape[0] * count, count, obstacles)
     spread = np.empty(checks.spread.shape, np.float32)
     spread_balls(postures.balls, spread)
     return Scratch(
         checks,
         limb_scratch(limb, BLOCK),
         limb_scratch(stem, BLOCK),
-        np.empty((boxes, 15)),
-        np.empty((boxes, 15)),
+        unfilled(obstacles),
+        unfilled(obstacles),
         postures.lanes.reshape(postures.lanes.size),
         spread,
         np.empty((postures.lanes.shape[0], BLOCK), np.float32),
@@ -108,7 +110,7 @@ def held_against(
     turns: Floats,
     out: Floats32,
 ) -> int:
-    """Lower `out` (C, 16) to the clearances of the room's first `count` capsules from its first `near` boxes.
+    """Lower `out` (C, 16) to the clearances of the room's first `count` capsules from its first `near` obstacles.
 
     The capsules are in frames at `places` (N, 3), `turns` (N, 4); all is reckoned from `origin`, a place near to them.
     Returns the capsules that were checked.
@@ -117,8 +119,6 @@ def held_against(
     for n in range(count):
         for i in range(3):
             at[n, i] = places[n, i] - origin[i]
-    for b in range(near):
-        for i in range(3):
-            scratch.near[b, i] -= origin[i]
+    shift(scratch.near, near, origin)
     place_capsules(scratch.segments, count, radii, at, turns, scratch.checks.lanes)
     return int(capsule_clearances_in(scratch.checks, scratch.near, near, out))

@@ -1,4 +1,4 @@
-"""Boxes that move on tracks: where they are at any time, and what they sweep in a span of time.
+"""Obstacles that move on tracks: where they are at any time, and what they sweep in a span of time.
 
 A track has key poses; between them place and heading change evenly. Whoever plans ahead asks where things will be:
 motion is known, not guessed. Another avatar is told about in the same way, by what its own plan says.
@@ -12,9 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.geometry import quaternion
-from elbowroom.world.boxes import Boxes
-from elbowroom.world.sweeps import LOOP, ONCE, PINGPONG, Tracks, swept_rows
+from elbowroom.world.obstacles.hulls import NO_HULLS, PackedHulls
+from elbowroom.world.obstacles.layout import Nearby, Spans
+from elbowroom.world.obstacles.rows import rows_of
+from elbowroom.world.obstacles.shapes import Shape, extents_of
+from elbowroom.world.obstacles.sweeps import LOOP, ONCE, PINGPONG, Tracks, swept_rows
 
 Floats = NDArray[np.float64]
 
@@ -34,12 +36,12 @@ _CODES = {Repeat.ONCE: ONCE, Repeat.LOOP: LOOP, Repeat.PINGPONG: PINGPONG}
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One upright box and its motion."""
+    """One shape, its own Y upright, and its motion."""
 
     name: str
-    size: Floats  # (3,) full lengths along its own axes, metres
+    shape: Shape
     times: Floats  # (K,) seconds from the beginning, increasing; the first is 0, unless it is once
-    centers: Floats  # (K, 3) metres
+    centers: Floats  # (K, 3) of the shape's origin, metres
     yaws: Floats  # (K,) radians about Y
     repeat: Repeat = Repeat.ONCE  # a loop's last key pose is its first again
 
@@ -65,7 +67,7 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
-class MovingBoxes:
+class Moving:
     """Some tracks; it never changes."""
 
     tracks: tuple[Track, ...] = field(default=())
@@ -73,19 +75,20 @@ class MovingBoxes:
     def __len__(self) -> int:
         return len(self.tracks)
 
-    def __add__(self, others: "MovingBoxes") -> "MovingBoxes":
+    def __add__(self, others: "Moving") -> "Moving":
         """These and others; the same object, which knows itself by now, where there are no others."""
-        return MovingBoxes(self.tracks + others.tracks) if others.tracks else self
+        return Moving(self.tracks + others.tracks) if others.tracks else self
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The boxes' names."""
+        """The obstacles' names."""
         return tuple(track.name for track in self.tracks)
 
-    @cached_property
+    @property
     def half_sizes(self) -> Floats:
-        """Half lengths (B, 3), metres."""
-        return 0.5 * np.array([track.size for track in self.tracks]).reshape(-1, 3)
+        """Half lengths (B, 3) of boxes about the shapes' origins, along their axes, that hold them."""
+        halves: Floats = np.array([extents_of(track.shape) for track in self.tracks]).reshape(-1, 3)
+        return halves
 
     def poses(self, times: ArrayLike) -> tuple[Floats, Floats]:
         """Centres (M, B, 3) and yaws (M, B) at times (M,)."""
@@ -95,24 +98,20 @@ class MovingBoxes:
         found = [track.poses(np.atleast_1d(times)) for track in self.tracks]
         return np.stack([center for center, _ in found], axis=1), np.stack([yaw for _, yaw in found], axis=1)
 
-    def at(self, time: float) -> Boxes:
-        """The boxes as they stand at a time."""
+    def at(self, time: float, packed: PackedHulls | None = None) -> Nearby:
+        """The obstacles as they stand at a time; `packed` as in `rows_of`."""
         centers, yaws = self.poses(time)
-        return Boxes(centers[0], _turns(yaws[0]), self.half_sizes)
+        return rows_of([track.shape for track in self.tracks], centers[0], _turns(yaws[0]), packed)
 
-    def tables(self, times: ArrayLike) -> Floats:
-        """Rows (M, B, 15) as in `Boxes.table`, at times (M,)."""
-        centers, yaws = self.poses(times)
-        return _rows(centers, yaws, np.broadcast_to(self.half_sizes, centers.shape))
-
-    def swept(self, times: Sequence[float] | Floats) -> Floats:
-        """Rows (n, B, 15) of boxes that hold what each box sweeps from each of the times (n+1,) to the next."""
+    def swept(self, times: Sequence[float] | Floats) -> Spans:
+        """Boxes (n, B) that hold what each obstacle sweeps from each of the times (n+1,) to the next."""
         moments = np.asarray(times, np.float64)
         return self.swept_between(moments[:-1], moments[1:])
 
-    def swept_between(self, first: Floats, last: Floats) -> Floats:
-        """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
-        return swept_rows(self._kernel_tracks, np.ascontiguousarray(first), np.ascontiguousarray(last))
+    def swept_between(self, first: Floats, last: Floats) -> Spans:
+        """Boxes (n, B) that hold what each obstacle sweeps in each span of time, from `first` (n,) to `last`."""
+        rows = swept_rows(self._kernel_tracks, np.ascontiguousarray(first), np.ascontiguousarray(last))
+        return Spans(rows, NO_HULLS)
 
     @cached_property
     def _kernel_tracks(self) -> Tracks:
@@ -127,19 +126,11 @@ def _packed(tracks: tuple[Track, ...]) -> Tracks:
         starts.astype(np.int64),
         np.concatenate([np.empty(0), *(track.times for track in tracks)]),
         np.concatenate([np.empty((0, 4)), *poses]),
-        0.5 * np.array([track.size for track in tracks]).reshape(-1, 3),
+        np.array([extents_of(track.shape) for track in tracks]).reshape(-1, 3),
         np.array([_CODES[track.repeat] for track in tracks], np.int64),
     )
 
 
-def _rows(centers: Floats, yaws: Floats, half_sizes: Floats) -> Floats:
-    """Rows (..., 15) of upright boxes."""
-    sine, cosine = np.sin(yaws), np.cos(yaws)
-    zero, one = np.zeros_like(sine), np.ones_like(sine)
-    to_box = np.stack([cosine, zero, -sine, zero, one, zero, sine, zero, cosine], axis=-1)
-    rows: Floats = np.concatenate([centers, to_box, half_sizes], axis=-1)
-    return rows
-
-
 def _turns(yaws: Floats) -> Floats:
-    return np.array([quaternion.about_axis(1, float(yaw)) for yaw in yaws]).reshape(-1, 4)
+    zero = np.zeros_like(yaws)
+    return np.stack([zero, np.sin(0.5 * yaws), zero, np.cos(0.5 * yaws)], axis=-1)

@@ -18,6 +18,9 @@ A coordinate that the axis does not move along has no span. Its weight is a tiny
 this moves no point of the axis by as much as rounding does. Instead of t, its product with the three weights is
 handled, which saves three divisions. Lengths are in parts of a metre such that products of four weights keep within
 single precision for steps from a micrometre to a kilometre.
+
+Spheres and capsules are boxes with rounded edges: a box without any size, or without width and depth, and a radius to
+every side. Their distance is that from the box less the radius.
 """
 
 import math
@@ -27,14 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import helper, kernel
+from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 
-LANES = 16  # float32 lanes of the widest vector register
-TILE = 7 * LANES  # numbers of a tile
-BOX = 15  # numbers of a box: centre, the three axes, half sizes
-PER_METRE = 32.0  # a power of two: changing units does not round
-
-_LANES, _TILE, _BOX = np.uint64(LANES), np.uint64(TILE), np.uint64(BOX)
-_METRES: Any = np.float32(1.0 / PER_METRE)
+_LANES, _TILE = np.uint64(LANES), np.uint64(TILE)
 _ZERO: Any = np.float32(0.0)  # single precision on purpose: a bare 0.0 would widen the whole loop
 _ONE: Any = np.float32(1.0)
 _TINY: Any = np.float32(1e-9)
@@ -86,13 +84,14 @@ def _turned(m: Matrix, x: float, y: float, z: float) -> Vector:
 
 
 @kernel
-def lower_squares(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
-    """Lower the squared distances of tiles to those from boxes, for the first `count` of `pairs` (P, 2), tile and box.
+def lower_from_boxes(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
+    """Lower the squared distances of tiles to those from boxes, for the first `count` of `pairs` of tile and row.
 
-    `tiles` (T * TILE,), `rows` (B * BOX,) as `box_rows` makes them, `squares` (T * LANES,) in units of their own.
+    `pairs` (P, 2), `tiles` (T * TILE,), `rows` (B * ROW,) as `fill_tile_rows` leaves them, `squares` (T * LANES,) in
+    units of their own.
     """
     for p in range(count):
-        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * BOX
+        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * ROW
         cx, cy, cz = rows[box], rows[box + 1], rows[box + 2]
         matrix = (
             rows[box + 3], rows[box + 4], rows[box + 5],
@@ -113,7 +112,25 @@ def lower_squares(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squ
 
 
 @kernel
-def lower_to_squares(squares: Floats32, radius: float, out: Floats32) -> None:
-    """out[i] = min(out[i], clearance in metres), of capsules of one radius whose axes have these squared distances."""
-    for i in range(np.uint64(out.shape[0])):
-        out[i] = min(out[i], math.sqrt(squares[i]) * _METRES - radius)
+def lower_from_rounded(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
+    """The same from boxes with rounded edges: spheres and capsules."""
+    for p in range(count):
+        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * ROW
+        cx, cy, cz = rows[box], rows[box + 1], rows[box + 2]
+        matrix = (
+            rows[box + 3], rows[box + 4], rows[box + 5],
+            rows[box + 6], rows[box + 7], rows[box + 8],
+            rows[box + 9], rows[box + 10], rows[box + 11],
+        )  # fmt: skip
+        half, rounding = (rows[box + 12], rows[box + 13], rows[box + 14]), rows[box + 15]
+        for i in range(_LANES):
+            at = tile + i
+            ax, ay, az = tiles[at], tiles[at + _LANES], tiles[at + np.uint64(2) * _LANES]
+            bx, by, bz = (
+                tiles[at + np.uint64(3) * _LANES],
+                tiles[at + np.uint64(4) * _LANES],
+                tiles[at + np.uint64(5) * _LANES],
+            )
+            start, step = _turned(matrix, cx - ax, cy - ay, cz - az), _turned(matrix, bx - ax, by - ay, bz - az)
+            distance = max(math.sqrt(_squared_distance(start, step, half)) - rounding, _ZERO)
+            squares[least + i] = min(squares[least + i], distance * distance)

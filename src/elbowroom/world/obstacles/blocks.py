@@ -6,61 +6,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, kernel, plain
-from elbowroom.planning.exact.lattice.postures import BLOCK
-from elbowroom.world.capsule_tiles import BOX, PER_METRE, TILE, lower_squares, lower_to_squares
-from elbowroom.world.clearance import fill_box_rows
+from elbowroom.world.obstacles.layout import HALF, LANES, PER_METRE, ROUNDING, ROW, TILE, Nearby
+from elbowroom.world.obstacles.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
 COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
-_ROUNDING = 1e-5  # metres: balls are held against boxes in single precision
+_ROUNDING = 1e-5  # metres: balls are held against obstacles in single precision
 _NONE = plain(0)
-_PAIRS = 512  # pairs of a tile and a box that are collected before they are checked
+_PAIRS = 512  # pairs of a tile and an obstacle that are collected before they are checked
 _FAR = np.float32(np.inf)
 _ZERO = np.float32(0.0)
 _QUARTER = np.float32(0.25)
-_LAST = BLOCK - 1
-
-
-@exact_kernel
-def boxes_around(boxes: Floats, place: Floats, reach: float, near: Floats) -> int:
-    """Copy the boxes (B, 15) whose ball comes within `reach` of a place (3,) to `near`; their number."""
-    count = 0
-    for b in range(boxes.shape[0]):
-        total, half = 0.0, 0.0
-        for i in range(3):
-            total += (boxes[b, i] - place[i]) ** 2
-            half += boxes[b, 12 + i] ** 2
-        if np.sqrt(total) - np.sqrt(half) < reach:
-            for i in range(boxes.shape[1]):
-                near[count, i] = boxes[b, i]
-            count += 1
-    return count
-
-
-@exact_kernel
-def box_in_frame(box: Floats, place: Floats, turn: Floats, out: Floats) -> None:
-    """The row (15,) of a box as seen from a frame at `place` (3,) with the unit quaternion `turn` (4,)."""
-    x, y, z, w = turn[0], turn[1], turn[2], turn[3]
-    xx, xy, xz = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
-    yx, yy, yz = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
-    zx, zy, zz = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
-    dx, dy, dz = box[0] - place[0], box[1] - place[1], box[2] - place[2]
-    out[0], out[1], out[2] = xx * dx + yx * dy + zx * dz, xy * dx + yy * dy + zy * dz, xz * dx + yz * dy + zz * dz
-    for i in range(3):
-        m = 3 + 3 * i
-        p, q, r = box[m], box[m + 1], box[m + 2]
-        out[m], out[m + 1], out[m + 2] = p * xx + q * yx + r * zx, p * xy + q * yy + r * zy, p * xz + q * yz + r * zz
-        out[12 + i] = box[12 + i]
+_LAST = LANES - 1
 
 
 class ClearanceScratch(NamedTuple):
-    """What checks of T tiles of capsules against B boxes work on, and room for C capsules in sixteen places."""
+    """What checks of T tiles of capsules against B obstacles work on, and C capsules in sixteen places."""
 
-    rows: Floats32  # (B * 15,) boxes as `lower_squares` takes them
-    spread: Floats32  # (5, W) balls by components, W >= T a multiple of `BLOCK`
+    rows: Floats32  # (B * ROW,) obstacles as `lower_squares` takes them
+    spread: Floats32  # (5, W) balls by components, W >= T a multiple of `LANES`
     squares: Floats32  # (T * 16,)
     pairs: Longs  # (_PAIRS + T, 2)
     lanes: Floats32  # (C, 7, 16) capsules with radii
@@ -70,26 +37,26 @@ class ClearanceScratch(NamedTuple):
 
 
 @exact_kernel
-def clearance_scratch(tiles: int, capsules: int, boxes: int) -> ClearanceScratch:
-    """Room for checks of so many tiles, or of single capsules, against so many boxes."""
+def clearance_scratch(tiles: int, capsules: int, near: Nearby) -> ClearanceScratch:
+    """Room for checks of so many tiles, or of single capsules, against no more than what is `near`."""
     flat = np.empty(capsules * TILE, np.float32)
     return ClearanceScratch(
-        np.empty(boxes * BOX, np.float32),
-        np.empty((5, (tiles + BLOCK - 1) // BLOCK * BLOCK), np.float32),
-        np.empty(tiles * BLOCK, np.float32),
+        np.empty(near.rows.shape[0] * ROW, np.float32),
+        np.empty((5, (tiles + LANES - 1) // LANES * LANES), np.float32),
+        np.empty(tiles * LANES, np.float32),
         np.empty((_PAIRS + tiles, 2), np.int64),
-        flat.reshape(capsules, TILE // BLOCK, BLOCK),
+        flat.reshape(capsules, TILE // LANES, LANES),
         flat,
         np.empty((capsules, 1, 4)),
-        np.empty(BLOCK, np.float32),
+        np.empty(LANES, np.float32),
     )
 
 
 @exact_kernel
 def spread_balls(balls: Floats, out: Floats32) -> None:
-    """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of `box_rows`.
+    """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of tiles.
 
-    Those beyond B C, up to a multiple of `BLOCK`, are such that nothing is near them. The last row is left as it is.
+    Those beyond B C, up to a multiple of `LANES`, are such that nothing is near them. The last row is left as it is.
     """
     parts = balls.shape[1]
     total = balls.shape[0] * parts
@@ -99,15 +66,20 @@ def spread_balls(balls: Floats, out: Floats32) -> None:
             reach = (balls[b, c, 3] + COMFORT + _ROUNDING) * PER_METRE
             out[0, t], out[1, t], out[2, t], out[3, t] = balls[b, c, 0], balls[b, c, 1], balls[b, c, 2], reach * reach
             t += 1
-    for t in range(total, (total + BLOCK - 1) // BLOCK * BLOCK):
+    for t in range(total, (total + LANES - 1) // LANES * LANES):
         out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
 
 
 @kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int:
-    """How far (W,) balls as `spread_balls` are out of reach of box b, negative where they are within; how many are."""
-    row = rows[b * BOX : (b + 1) * BOX]
-    cx, cy, cz, hx, hy, hz = row[0], row[1], row[2], row[12], row[13], row[14]
+    """How far (W,) balls as `spread_balls` are out of reach of the box round obstacle b; how many are within.
+
+    Negative where they are within.
+    """
+    row = rows[b * ROW : (b + 1) * ROW]
+    rounding = row[ROUNDING]
+    cx, cy, cz = row[0], row[1], row[2]
+    hx, hy, hz = row[HALF] + rounding, row[HALF + 1] + rounding, row[HALF + 2] + rounding
     m = (row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])
     within = 0
     for t in range(np.uint64(out.shape[0])):
@@ -122,40 +94,43 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int
 
 @exact_kernel
 def lower_blocks_in(
-    scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, boxes: Floats, count: int, out: Floats32
+    scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, near: Nearby, count: int, out: Floats32
 ) -> int:
     """`lower_blocks` with room to work in, for lanes that lie flat and balls as `spread_balls` leaves them."""
     total = tiles.shape[0] // TILE
     rows, squares, pairs, parts = scratch.rows, scratch.squares, scratch.pairs, total // out.shape[0]
-    fill_box_rows(boxes, count, rows)
-    for i in range(np.uint64(total * BLOCK)):
+    fill_tile_rows(near.rows, count, rows)
+    for i in range(np.uint64(total * LANES)):
         squares[i] = _FAR
-    found, checks, beyond = _NONE, 0, spread[4, : (total + BLOCK - 1) // BLOCK * BLOCK]
+    found, checks, beyond = _NONE, 0, spread[4, : (total + LANES - 1) // LANES * LANES]
     for b in range(count):
+        if found > 0 and not same_kind(rows, b, b - 1):
+            lower_squares(tiles, rows, near.hulls, pairs, found, squares)
+            checks, found = checks + found * LANES, _NONE
         if _beyond_reach(spread, rows, b, beyond) > 0:
             for t in range(total):
                 pairs[found, 0], pairs[found, 1] = t, b
                 found += beyond[t] < 0.0
         if found >= _PAIRS or b == count - 1:
-            lower_squares(tiles, rows, pairs, found, squares)
-            checks, found = checks + found * BLOCK, _NONE
+            lower_squares(tiles, rows, near.hulls, pairs, found, squares)
+            checks, found = checks + found * LANES, _NONE
     if checks > 0:
         for t in range(total):
-            if squares[t * BLOCK] < _FAR:
-                radius = tiles[t * TILE + (TILE - BLOCK)]
-                lower_to_squares(squares[t * BLOCK : (t + 1) * BLOCK], radius, out[t // parts])
+            if squares[t * LANES] < _FAR:
+                radius = tiles[t * TILE + (TILE - LANES)]
+                lower_to_squares(squares[t * LANES : (t + 1) * LANES], radius, out[t // parts])
     return checks
 
 
 @exact_kernel
-def lower_blocks(lanes: Floats32, balls: Floats, boxes: Floats, count: int, out: Floats32) -> int:
-    """Lower `out` (B, 16) to the clearance of blocks of postures from `count` boxes, all in one frame.
+def lower_blocks(lanes: Floats32, balls: Floats, near: Nearby, count: int, out: Floats32) -> int:
+    """Lower `out` (B, 16) to the clearance of blocks of postures from the first `count` obstacles, all in one frame.
 
     What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
     """
-    scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], count)
+    scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], near)
     spread_balls(balls, scratch.spread)
-    return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, boxes, count, out))
+    return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, near, count, out))
 
 
 @exact_kernel
@@ -204,35 +179,35 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
 
 
 @exact_kernel
-def capsule_clearances_in(scratch: ClearanceScratch, boxes: Floats, count: int, out: Floats32) -> int:
+def capsule_clearances_in(scratch: ClearanceScratch, near: Nearby, count: int, out: Floats32) -> int:
     """`capsule_clearances` of the capsules in the room."""
     for c in range(scratch.lanes.shape[0]):
         _ball_around(scratch.lanes[c], scratch.apart, scratch.balls[c, 0])
     spread_balls(scratch.balls, scratch.spread)
-    return int(lower_blocks_in(scratch, scratch.tiles, scratch.spread, boxes, count, out))
+    return int(lower_blocks_in(scratch, scratch.tiles, scratch.spread, near, count, out))
 
 
 @exact_kernel
-def capsule_clearances(lanes: Floats32, boxes: Floats, count: int, out: Floats32) -> int:
+def capsule_clearances(lanes: Floats32, near: Nearby, count: int, out: Floats32) -> int:
     """Lower `out` (C, 16) to the clearance of each capsule in each lane (C, 7, 16).
 
-    Boxes farther than `COMFORT` from all of a capsule's lanes may be left out. Returns the capsules that were checked.
+    Obstacles farther than `COMFORT` from all of a capsule's lanes may be left out. Returns how many were checked.
     """
-    scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], count)
+    scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], near)
     scratch.lanes[:] = lanes
-    return int(capsule_clearances_in(scratch, boxes, count, out))
+    return int(capsule_clearances_in(scratch, near, count, out))
 
 
 @exact_kernel
 def least_of(rows: Floats32, scratch: Floats32) -> float:
     """The least number in rows (C, 16) of clearances; `scratch` (16,)."""
-    for i in range(np.uint64(BLOCK)):
+    for i in range(np.uint64(LANES)):
         scratch[i] = rows[0, i]
     for c in range(1, rows.shape[0]):
         row = rows[c]
-        for i in range(np.uint64(BLOCK)):
+        for i in range(np.uint64(LANES)):
             scratch[i] = min(scratch[i], row[i])
     least = scratch[0]
-    for i in range(1, BLOCK):
+    for i in range(1, LANES):
         least = min(least, scratch[i])
     return float(least)

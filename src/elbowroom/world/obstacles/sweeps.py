@@ -1,4 +1,4 @@
-"""What boxes on tracks sweep in spans of time: one compiled call for all boxes and all spans."""
+"""What obstacles on tracks sweep in spans of time, as boxes that hold it: one compiled call for all of both."""
 
 import math
 from typing import NamedTuple
@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.boxes import BOX_ROW
+from elbowroom.world.obstacles.layout import ROW, Kind
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 ONCE, LOOP, PINGPONG = range(3)  # what follows the last key pose
+_BOX = float(Kind.BOX)
 _PARTS = 4  # of a span of time in which a sweep is looked at
 
 
@@ -22,7 +23,7 @@ class Tracks(NamedTuple):
     starts: Longs  # (B+1,) where the key poses of each begin and end
     times: Floats  # (K,) seconds
     poses: Floats  # (K, 4) centre and yaw
-    halves: Floats  # (B, 3) half lengths, metres
+    halves: Floats  # (B, 3) half lengths of a box about each that holds it, metres
     repeats: Longs  # (B,)
 
 
@@ -87,7 +88,7 @@ def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
 
 @helper
 def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
-    """The row (15,) of a box, turned as the track is in the middle of a span, round its corners at all its times."""
+    """The row of a box, turned as the track is in the middle of a span, round its corners at all its times."""
     looks, pose = _looks(times, repeat, first, last), np.empty(4)
     _pose_at(times, poses, repeat, 0.5 * (first + last), pose)
     yaw, reach = pose[3], math.hypot(half[0], half[2])
@@ -113,12 +114,13 @@ def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float
     out[9], out[10], out[11] = sine, 0.0, cosine
     for i in range(3):
         out[12 + i] = 0.5 * (high[i] - low[i]) + (0.0 if i == 1 else bulge)
+    out[15], out[16], out[17] = 0.0, _BOX, 0.0
 
 
 @exact_kernel
 def swept_rows(tracks: Tracks, first: Floats, last: Floats) -> Floats:
-    """Rows (n, B, 15) of boxes that hold what each box sweeps in each span of time, from `first` (n,) to `last`."""
-    out = np.empty((first.shape[0], tracks.halves.shape[0], BOX_ROW))
+    """Rows (n, B, ROW) of boxes that hold what each sweeps in each span of time, from `first` (n,) to `last`."""
+    out = np.empty((first.shape[0], tracks.halves.shape[0], ROW))
     for b in range(tracks.halves.shape[0]):
         begin, end = tracks.starts[b], tracks.starts[b + 1]
         times, poses, half = tracks.times[begin:end], tracks.poses[begin:end], tracks.halves[b]

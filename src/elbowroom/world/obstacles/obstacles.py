@@ -1,0 +1,202 @@
+"""`Obstacles`: all that stands or moves in the way, and whatever anybody may ask about it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.along import Along, Place, along
+from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
+from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
+from elbowroom.world.obstacles.closest_points import closest_points
+from elbowroom.world.obstacles.hulls import PackedHulls, pack_hulls
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.rows import about, bounds_of, corners_of, joined, one_of, rows_of
+from elbowroom.world.obstacles.shapes import Box, Hull, Shape, extents_of
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+
+_NEAR, _WIDER, _FAR = 2.0, 4.0, 1e6  # metres: where the nearest is looked for first, by how much farther, and at most
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """Obstacles that stand, B of them, and those that move; they never change.
+
+    Where obstacles are told by number, those that stand come first.
+    """
+
+    shapes: tuple[Shape, ...] = ()
+    centers: Floats = field(default_factory=lambda: np.empty((0, 3)))  # (B, 3) of the shapes' origins, metres
+    rotations: Floats = field(default_factory=lambda: np.empty((0, 4)))  # (B, 4) shape-to-world quaternions, xyzw
+    standing_names: tuple[str, ...] = ()
+    moving: Moving = field(default_factory=Moving)
+
+    @classmethod
+    def boxes(
+        cls, centers: ArrayLike, rotations: ArrayLike, half_sizes: ArrayLike, names: Sequence[str] | None = None
+    ) -> "Obstacles":
+        """Oriented boxes: centres (B, 3), quaternions (B, 4), half lengths (B, 3)."""
+        sizes = 2.0 * np.asarray(half_sizes, np.float64).reshape(-1, 3)
+        shapes = tuple(Box((float(x), float(y), float(z))) for x, y, z in sizes)
+        called = tuple(names) if names is not None else tuple(f"box {i + 1}" for i in range(len(shapes)))
+        places = np.asarray(centers, np.float64).reshape(-1, 3)
+        return cls(shapes, places, np.asarray(rotations, np.float64).reshape(-1, 4), called)
+
+    def __len__(self) -> int:
+        return len(self.shapes) + len(self.moving)
+
+    def __iter__(self) -> Iterator[tuple[str, Shape, Floats, Floats]]:
+        """Name, shape, centre and rotation of each that stands."""
+        return zip(self.standing_names, self.shapes, self.centers, self.rotations, strict=True)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What they are called, all of them."""
+        return self.standing_names + self.moving.names
+
+    @property
+    def half_sizes(self) -> Floats:
+        """Half lengths (B, 3) of boxes about the origins of those that stand, along their axes, that hold them."""
+        halves: Floats = np.array([extents_of(shape) for shape in self.shapes]).reshape(-1, 3)
+        return halves
+
+    @cached_property
+    def standing(self) -> Nearby:
+        """Those that stand."""
+        return rows_of(self.shapes, self.centers, self.rotations, self._packed)
+
+    @cached_property
+    def _packed(self) -> PackedHulls:
+        shapes = (*self.shapes, *(track.shape for track in self.moving.tracks))
+        return pack_hulls(shape for shape in shapes if isinstance(shape, Hull))
+
+    @cached_property
+    def _grids(self) -> Grids:
+        least, most = bounds_of(self.standing)
+        return grids_of(least[:, [0, 2]], most[:, [0, 2]])
+
+    @cached_property
+    def corners(self) -> Floats:
+        """The corners (B, 8, 3) of boxes round those that stand."""
+        return corners_of(self.standing)
+
+    @property
+    def outlines(self) -> Iterator[Floats]:
+        """Points (P, 3) in the convex hull of which each of those that stand lies: corners of a hull or of a box."""
+        for (_, shape, center, rotation), corners in zip(self, self.corners, strict=True):
+            if isinstance(shape, Hull):
+                yield np.asarray(center + quaternion.rotate(rotation, shape.array))
+            else:
+                yield corners
+
+    def numbers_near(self, least: Sequence[float] | Floats, most: Sequence[float] | Floats) -> Longs:
+        """The numbers, in order, of those that stand over a rectangle on the ground, or nearly: corners x and z."""
+        return meeting(self._grids, (float(least[0]), float(least[1])), (float(most[0]), float(most[1])))
+
+    def near(self, least: Sequence[float] | Floats, most: Sequence[float] | Floats) -> Nearby:
+        """Those that stand over a rectangle on the ground, or nearly: corners x and z."""
+        return self.picked(self.numbers_near(least, most))
+
+    def picked(self, numbers: Longs) -> Nearby:
+        """Those that stand, by their numbers."""
+        if len(numbers) == len(self.shapes):
+            return self.standing
+        return Nearby(self.standing.rows[numbers], self.standing.hulls)
+
+    def along(self, times: Floats, ground: tuple[Place, Place], others: Moving | None = None) -> Along:
+        """What is in the way between `times` (n+1,) over a rectangle on the ground, `others` that move included."""
+        moving = self.moving + others if others else self.moving
+        numbers = self.numbers_near(*ground)
+        return along(self.picked(numbers), numbers, len(self.shapes), moving, times, ground)
+
+    def at(self, time: float) -> Nearby:
+        """All of them, as they stand at a time."""
+        return joined(self.standing, self.moving.at(time, self._packed)) if len(self.moving) else self.standing
+
+    def clearance(self, segments: Floats32, radii: ArrayLike, origin: Sequence[float] | Floats, time: float) -> float:
+        """The least clearance, metres, of capsules (C, 6, N) about a place on the ground (x, z), at a time.
+
+        The capsules' coordinates are relative to that place, so that single precision holds anywhere. Infinite where
+        there is nothing.
+        """
+        x, z = float(origin[0]), float(origin[1])
+        found = np.inf
+        if len(self.moving):
+            found = _least(segments, radii, about(self.moving.at(time, self._packed), x, z))
+        for reach, numbers in self._wider_and_wider(segments, radii, x, z):
+            if len(numbers):
+                found = min(found, _least(segments, radii, about(self.picked(numbers), x, z)))
+            if found <= reach:
+                break
+        return float(found)
+
+    def nearest(
+        self, segments: ArrayLike, radii: ArrayLike, origin: Sequence[float] | Floats, time: float
+    ) -> "Nearest | None":
+        """The closest pair of a capsule (C, 6), about a place as in `clearance`, and an obstacle; None without any."""
+        x, z = float(origin[0]), float(origin[1])
+        axes, best = np.asarray(segments, np.float64), None
+        if len(self.moving):
+            best = _nearest(axes, radii, about(self.moving.at(time, self._packed), x, z))
+            best = best._replace(obstacle=best.obstacle + len(self.shapes))
+        for reach, numbers in self._wider_and_wider(axes, radii, x, z):
+            if len(numbers):
+                found = _nearest(axes, radii, about(self.picked(numbers), x, z))
+                if best is None or found.distance < best.distance:
+                    best = found._replace(obstacle=int(numbers[found.obstacle]))
+            if best is not None and best.distance <= reach:
+                break
+        if best is None:
+            return None
+        shift = np.array([x, 0.0, z])
+        return best._replace(on_axis=best.on_axis + shift, on_obstacle=best.on_obstacle + shift)
+
+    def _wider_and_wider(
+        self, segments: ArrayLike, radii: ArrayLike, x: float, z: float
+    ) -> Iterator[tuple[float, Longs]]:
+        """The numbers of those that stand within so many metres of capsules (C, 6, ...), and at last all."""
+        axes = np.asarray(segments, np.float64)
+        ends = np.moveaxis(axes.reshape(len(axes), 2, 3, -1), 2, -1).reshape(-1, 3)
+        widest = float(np.max(radii, initial=0.0))
+        least, most = ends.min(axis=0) - widest, ends.max(axis=0) + widest
+        reach, many = _NEAR, len(self.shapes)
+        while many and reach < _FAR:
+            low, high = (x + least[0] - reach, z + least[2] - reach), (x + most[0] + reach, z + most[2] + reach)
+            numbers = self.numbers_near(low, high)
+            yield reach, numbers
+            if len(numbers) == many:
+                return
+            reach *= _WIDER
+
+
+class Nearest(NamedTuple):
+    """A capsule and the obstacle that is closest to it."""
+
+    capsule: int
+    obstacle: int
+    distance: float  # metres; negative where they overlap
+    on_axis: Floats  # (3,) the point of the capsule's axis
+    on_obstacle: Floats  # (3,)
+
+
+def _least(segments: Floats32, radii: ArrayLike, near: Nearby) -> float:
+    """The least clearance of capsules (C, 6, N)."""
+    if segments.shape[2] == 1:
+        return clearance_of(segments[:, :, 0], radii, near)
+    return float(clearance(segments, radii, near).min(initial=np.inf))
+
+
+def _nearest(axes: Floats, radii: ArrayLike, near: Nearby) -> Nearest:
+    """The closest pair of capsules and obstacles, of each at least one."""
+    gaps = pairwise_clearance(axes[:, :, None], radii, near)[:, :, 0]
+    capsule, obstacle = (int(i) for i in np.unravel_index(int(np.argmin(gaps)), gaps.shape))
+    on_axis, on_obstacle = closest_points(axes[capsule], one_of(near, obstacle))
+    return Nearest(capsule, obstacle, float(gaps[capsule, obstacle]), on_axis[0], on_obstacle[0])
