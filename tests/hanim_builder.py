@@ -105,6 +105,7 @@ class HanimRecipe:
     packed: bool = False
     displaced: bool = False  # a displacer on the head of a skin
     extras: tuple[Made, ...] = ()  # shapes on the head
+    listed: str = ""  # joints that `skeleton` lists once more by USE: "after" the figure, or "before", as DEFs
 
 
 def build_hanim(recipe: HanimRecipe) -> bytes:
@@ -164,7 +165,7 @@ def _humanoid(recipe: HanimRecipe) -> Made:
         "name": "made",
         "version": recipe.version,
         "scale": np.full(3, recipe.scale),
-        "humanoidBody" if old else "skeleton": made[:1],
+        "humanoidBody" if old else "skeleton": _listed(made, recipe.listed),
         "joints": [("USE", {"name": node[1]["DEF"], "kind": node[0]}) for node in made],
     }
     if recipe.skinned:
@@ -172,6 +173,22 @@ def _humanoid(recipe: HanimRecipe) -> Made:
         fields["skin"] = [_shape({"DEF": "SkinCoord", "point": everything}, len(everything))]
         fields["skinCoord"] = [("USE", {"name": "SkinCoord", "kind": "Coordinate"})]
     return ("Humanoid" if old else "HAnimHumanoid", fields)
+
+
+def _listed(made: list[Made], where: str) -> list[Made]:
+    """The root joint, and beside it joints that hang below it already."""
+    if where == "after":
+        return made[:1] + [("USE", {"name": node[1]["DEF"], "kind": node[0]}) for node in made[1:]]
+    if where == "before":  # the elbows are defined here and used in place
+        elbows = [node for node in made if node[1]["DEF"].endswith("elbow")]
+        for node in made:
+            children = node[1]["children"]
+            children[:] = [
+                ("USE", {"name": child[1]["DEF"], "kind": child[0]}) if any(child is e for e in elbows) else child
+                for child in children
+            ]
+        return [*elbows, *made[:1]]
+    return made[:1]
 
 
 def _displacer(point: int) -> Made:

@@ -239,6 +239,41 @@ def _rehang(content: dict[str, list[dict[str, list[int]]]], node: int, parent: i
     content["nodes"][parent]["children"].append(node)
 
 
+def _trunk_first(names: dict[str, str]) -> bytes:
+    """A figure whose pelvis, with the legs on it, hangs on the first bone of the trunk."""
+    glb = build(Recipe(names=names))
+    content = json_of(glb)
+    numbers = {node["name"]: number for number, node in enumerate(content["nodes"])}
+    hips, spine, root = numbers[names["hips"]], numbers[names["spine"]], numbers["root"]
+    _rehang(content, spine, root)
+    _rehang(content, hips, spine)
+    place = {number: content["nodes"][number]["translation"] for number in (hips, spine)}
+    content["nodes"][spine]["translation"] = [a + b for a, b in zip(place[hips], place[spine], strict=True)]
+    content["nodes"][hips]["translation"] = [-value for value in place[spine]]
+    size = int.from_bytes(glb[12:16], "little")
+    return write_glb(content, glb[28 + size :])
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_a_pelvis_below_the_trunk_changes_places_with_it(tmp_path: Path, told: bool) -> None:
+    names = UNREAL if not told else UNREAL | {"hips": "a", "spine": "b", "chest": "c", "upperChest": "d"}
+    path = tmp_path / "odd.glb"
+    path.write_bytes(_trunk_first(names))
+    if told:
+        (tmp_path / "odd.glb.bones.json").write_text('{"hips": "a", "spine": "b", "chest": "c", "upperChest": "d"}')
+    humanoid = Humanoid.load(path)
+    assert any("above the hips" in note for note in humanoid.meta.notes)
+    found, places = humanoid.skeleton, SKELETON.positions
+    assert {"hips", "spine", "chest", "upperChest"} <= set(found.names)
+    for bone in found.names:
+        ours = found.positions[found.index(bone)] - found.positions[0]
+        assert np.allclose(ours, places[SKELETON.index(bone)] - places[0], atol=1e-5), bone
+    assert humanoid.rig is not None
+    content = json_of(humanoid.glb or b"")
+    hips, spine = (int(humanoid.rig.nodes[found.index(bone)]) for bone in ("hips", "spine"))
+    assert spine in content["nodes"][hips]["children"]
+
+
 @pytest.mark.parametrize("height", [0.5, 1.2, 2.5])
 def test_an_avatar_as_tall_as_asked(tmp_path: Path, height: float) -> None:
     (tmp_path / "a.glb").write_bytes(build(Recipe(names=UNREAL)))

@@ -12,6 +12,7 @@ from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.triangles import triangle_mesh
 from hanim_builder import HanimRecipe, build_hanim
 from odd_bodies import SKELETON
 from shared_data import SHARED, needs_shared
@@ -88,6 +89,24 @@ def test_a_name_that_two_joints_have_gives_way_to_the_def_name() -> None:
     wrong = text.replace('name="l_knee"', 'name="l_hip"')
     how = {source.bone: source.how for source in load_humanoid_bytes(wrong.encode(), "a.x3d").meta.bones}
     assert (how["leftUpperLeg"], how["leftLowerLeg"], how["leftFoot"]) == (BY_DEF, BY_DEF, BY_NAME)
+
+
+@pytest.mark.parametrize("encoding", ["xml", "classic", "vrml"])
+@pytest.mark.parametrize("listed", ["after", "before"])
+def test_joints_that_are_listed_once_more_are_one_joint(encoding: str, listed: str) -> None:
+    """As many files do: the skeleton lists all its joints by USE, or defines some there that hang elsewhere."""
+    recipes = [HanimRecipe(encoding, skinned=True, points=4, listed=where) for where in ("", listed)]
+    once, twice = (load_humanoid_bytes(build_hanim(recipe), "made.x3d") for recipe in recipes)
+    assert twice.meta.notes == once.meta.notes
+    assert twice.meta.notes[0].startswith(f"{len(SKELETON.names)} joints")
+    assert np.allclose(twice.skeleton.positions, once.skeleton.positions, atol=1e-6)
+    assert twice.glb is not None
+    gltf = parse_gltf(twice.glb, "made.glb")
+    mesh = triangle_mesh(gltf, read_nodes(gltf))
+    assert np.allclose(mesh.weights[:, 0], 1.0)
+    skin = mesh.nodes[:, 0]
+    assert twice.rig is not None
+    assert set(skin) <= set(twice.rig.nodes.tolist())
 
 
 def test_level_of_articulation_zero_is_refused_for_what_it_is() -> None:

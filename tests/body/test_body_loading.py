@@ -8,10 +8,12 @@ import pytest
 
 from avatar_builder import MIXAMO, UNREAL, Recipe, build, json_of
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.load_settings import LoadSettings
 from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
 from elbowroom.body.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
+from odd_bodies import box_body
 from shared_data import SHARED, needs_shared
 
 
@@ -111,6 +113,53 @@ def test_swapped_sides_are_noticed() -> None:
                for bone in UNREAL}  # fmt: skip
     with pytest.raises(InputError, match="swapped"):
         load_humanoid_bytes(build(Recipe(names=swapped)), "mirror.glb")
+
+
+def _turned(recipe: Recipe, degrees: float, axis: int = 0) -> bytes:
+    """The file with everything turned about an axis."""
+    turn = [0.0, 0.0, 0.0, float(np.cos(np.deg2rad(0.5 * degrees)))]
+    turn[axis] = float(np.sin(np.deg2rad(0.5 * degrees)))
+    return _changed(recipe, lambda content: content["nodes"][0].update(rotation=turn))
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_figure_that_leans_is_stood_up(axis: int) -> None:
+    upright = load_humanoid_bytes(build(Recipe(names=MIXAMO, mesh=False)), "a.glb").skeleton
+    humanoid = load_humanoid_bytes(_turned(Recipe(names=MIXAMO, mesh=False), 48.0, axis), "a.glb")
+    found, expected = (skeleton.positions - skeleton.positions[0] for skeleton in (humanoid.skeleton, upright))
+    assert np.allclose(found, expected, atol=0.01)
+    assert any("leans by 4" in note for note in humanoid.meta.notes)
+
+
+@pytest.mark.parametrize(("vrm", "degrees"), [("1", 48.0), ("0", 48.0), ("1", 90.0), ("", 75.0), ("", 180.0)])
+def test_a_figure_that_lies_is_refused_as_not_upright(vrm: str, degrees: float) -> None:
+    recipe = Recipe(vrm=vrm, heading=np.pi if vrm == "0" else 0.0)
+    with pytest.raises(InputError, match=r"does not stand upright, it leans by \d+ degrees"):
+        load_humanoid_bytes(_turned(recipe, degrees), "lies.vrm")
+
+
+@pytest.mark.parametrize("unit", [0.18, 0.36, 0.7, 1.0, 1.5])
+@pytest.mark.parametrize("head", [0.26, 0.5])
+def test_a_vrm_is_in_metres(unit: float, head: float, tmp_path: Path) -> None:
+    path = tmp_path / "box.vrm"
+    path.write_bytes(build(Recipe(vrm="1", body=box_body(head), unit=unit)))
+    humanoid, surface = load_with_surface(path)
+    assert humanoid.rig is not None
+    assert humanoid.rig.scale == 1.0
+    assert crown_of(humanoid, surface) == pytest.approx(unit * box_body(head).points[:, 1].max(), abs=0.01 * unit)
+    true = crown_of(humanoid, surface)
+    again, surface = load_with_surface(path, LoadSettings(height=true))
+    assert crown_of(again, surface) == pytest.approx(true)
+
+
+@pytest.mark.parametrize("unit", [0.1, 2.2, 100.0])
+def test_a_vrm_of_no_walkers_size_is_refused_and_can_be_scaled(unit: float, tmp_path: Path) -> None:
+    path = tmp_path / "box.vrm"
+    path.write_bytes(build(Recipe(vrm="1", body=box_body(), unit=unit)))
+    with pytest.raises(InputError, match=r"m tall \(a VRM is in metres\): avatars of 0.3 to 3 m can walk; --height"):
+        load_with_surface(path)
+    humanoid, surface = load_with_surface(path, LoadSettings(height=1.7))
+    assert crown_of(humanoid, surface) == pytest.approx(1.7)
 
 
 def test_misplaced_optional_bones_are_left_out_with_a_note() -> None:

@@ -1,7 +1,7 @@
 """The humanoid in its file: T-posed, its facing, unit and ground found; from it come the rig and the skeleton."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.body_parts import BodyPoints
 from elbowroom.body.bone_mapping.structure import parent_bone
-from elbowroom.body.rest_pose import facing_of, t_pose
+from elbowroom.body.rest_pose import facing_of, lean_of, stood_up, t_pose
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.errors import InputError
@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 
 _TALLEST, _SMALLEST = 3.0, 0.3  # metres from the lowest joint to the head joint
 _TYPICAL = 1.5
+_LEAST = 1e-6  # units: nothing can be measured by less
 _UNITS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)  # metres per unit, where the file is not in metres
 _BARE_SOLE = 0.026  # height of the lowest joint above the ground where no mesh shows it, of the head joint's height
 _THICKEST_SOLE = 0.35  # of the head joint's height; what hangs lower is not a foot
@@ -37,6 +38,8 @@ class Figure:
     rotations: Floats  # (n, 4) local, T-pose
     matrices: Floats  # (n, 4, 4) world, T-pose
     facing: float  # radians
+    metric: bool  # the format counts in metres and says so for humanoids (VRM)
+    notes: tuple[str, ...] = ()  # on how it was posed
 
     def position(self, bone: str) -> Floats:
         """World position of a bone's node."""
@@ -55,11 +58,17 @@ def figure_of(place: str, tree: NodeTree, bones: Mapping[str, int], vrm_facing: 
     rest = tree.world_matrices(tree.rotations)
     if not np.isfinite(rest[list(bones.values())]).all():
         raise InputError(f"{place}: the positions of the bones are not finite numbers")
+    at = {bone: rest[node, :3, 3] for bone, node in bones.items()}
+    lean = lean_of(at, place, t_posed=vrm_facing is not None)
     if vrm_facing is not None:
-        return Figure(place, tree, bones, tree.rotations, rest, vrm_facing)
-    facing = facing_of({bone: rest[node, :3, 3] for bone, node in bones.items()}, place)
-    rotations = t_pose(tree, bones, facing)
-    return Figure(place, tree, bones, rotations, tree.world_matrices(rotations), facing)
+        return Figure(place, tree, bones, tree.rotations, rest, vrm_facing, metric=True)
+    stood = replace(tree, rotations=stood_up(tree, bones, lean))
+    turned = stood.world_matrices(stood.rotations)
+    facing = facing_of({bone: turned[node, :3, 3] for bone, node in bones.items()}, place)
+    rotations = t_pose(stood, bones, facing)
+    was = f"its trunk leans by {np.rad2deg(lean):.0f} degrees in the file; it was stood up"
+    notes = () if np.array_equal(stood.rotations, tree.rotations) else (was,)
+    return Figure(place, tree, bones, rotations, tree.world_matrices(rotations), facing, metric=False, notes=notes)
 
 
 def rig_of(figure: Figure, points: BodyPoints) -> Rig:
@@ -96,7 +105,14 @@ def skeleton_of(figure: Figure, rig: Rig) -> Skeleton:
 
 
 def unit_of(figure: Figure) -> float:
-    """Metres per unit of the file, from the height of the head joint above the feet."""
+    """Metres per unit of the file, from the height of the head joint above the feet; a VRM is in metres.
+
+    Raises `InputError` where the head is not above the feet, or no unit makes a humanoid of it.
+    """
+    if not figure.height > _LEAST:
+        raise InputError(f"{figure.place}: the head is {figure.height:.3g} units above the feet: it must be higher up")
+    if figure.metric:
+        return 1.0
     if _SMALLEST <= figure.height <= _TALLEST:
         return 1.0
     fitting = [unit for unit in _UNITS if _SMALLEST <= unit * figure.height <= _TALLEST]

@@ -92,13 +92,13 @@ def _humanoid(
     told = hanim.meta if hanim else _meta(gltf, vrm)
     meta = replace(
         told,
-        notes=told.notes + bones.notes + unit + left_out_note(bones.tree, body) + capsule_notes,
+        notes=told.notes + bones.notes + figure.notes + unit + left_out_note(bones.tree, body) + capsule_notes,
         bones=bones.sources,
         has_body=_NO_BODY not in capsule_notes,
     )
     read_with = replace(settings, bones=bones.told)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, pack_glb(bones.gltf))
-    return sized(humanoid, surface, settings.height)
+    return sized(humanoid, surface, settings.height, metric=figure.metric, place=gltf.name)
 
 
 def _meta(gltf: Gltf, vrm: Vrm | None) -> AvatarMeta:

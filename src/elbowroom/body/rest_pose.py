@@ -12,7 +12,33 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 _SNAP = np.deg2rad(15.0)  # a heading this near to a quarter turn is meant to be it
+_LEANS = np.deg2rad(20.0)  # a trunk that leans more is stood up
+_LIES = np.deg2rad(60.0)  # one that leans more lies: another axis of the file may be up
+_T_POSED = np.deg2rad(30.0)  # no trunk leans more in a pose that is the T-pose by a format's rule
 _KNUCKLES = ("IndexProximal", "MiddleProximal", "RingProximal", "LittleProximal")
+
+
+def lean_of(positions: Mapping[str, Floats], place: str, *, t_posed: bool = False) -> float:
+    """How far the trunk is from upright, radians, by joint positions (bone -> (3,), Y up).
+
+    Raises `InputError` for a figure that lies, or, where its pose is the T-pose by the format's rule, leans.
+    """
+    up = positions["head"] - positions["hips"]
+    lean = float(np.arctan2(np.linalg.norm(up[[0, 2]]), up[1]))
+    if not lean <= (_T_POSED if t_posed else _LIES):
+        rule = "a VRM rests in T-pose" if t_posed else "glTF needs +Y up"
+        raise InputError(
+            f"{place}: the figure does not stand upright, it leans by {np.rad2deg(lean):.0f} degrees: {rule}"
+        )
+    return lean
+
+
+def stood_up(tree: NodeTree, bones: Mapping[str, int], lean: float) -> Floats:
+    """Local rotations (n, 4) of all nodes, with the hips turned so that a trunk that leans is upright."""
+    swinger = _Swinger(tree, bones)
+    if lean > _LEANS:
+        swinger.swing("hips", ["head"], np.array([0.0, 1.0, 0.0]))
+    return swinger.rotations
 
 
 def facing_of(positions: Mapping[str, Floats], place: str) -> float:
@@ -21,8 +47,8 @@ def facing_of(positions: Mapping[str, Floats], place: str) -> float:
     Raises `InputError` if it does not stand upright, or if its toes point backwards.
     """
     across = sum((positions[f"left{b}"] - positions[f"right{b}"] for b in ("UpperArm", "UpperLeg")), np.zeros(3))
-    up = positions["head"] - positions["hips"]
-    if up[1] < 0.5 * np.linalg.norm(up) or float(np.linalg.norm(across[[0, 2]])) < 1e-6:
+    lean_of(positions, place)
+    if float(np.linalg.norm(across[[0, 2]])) < max(1e-6, 0.5 * float(np.linalg.norm(across))):
         raise InputError(f"{place}: the figure does not stand upright: glTF needs +Y up")
     heading = float(np.arctan2(-across[2], across[0]))
     quarter = 0.5 * np.pi * round(heading / (0.5 * np.pi))

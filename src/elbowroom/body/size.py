@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.body_parts import part_of_points
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.load_settings import SHORTEST, TALLEST
 from elbowroom.body.proportions import proportional_capsules
 from elbowroom.body.surface import Surface
+from elbowroom.errors import InputError
 
 LARGEST_HEAD = 0.45  # metres from chin to crown: of a person 3.4 m tall
 _ASKED = 1e-3  # relative difference of heights that is none
@@ -41,23 +43,34 @@ def _head(humanoid: Humanoid, surface: Surface) -> NDArray[np.float64]:
     return heights
 
 
-def sized(humanoid: Humanoid, surface: Surface, height: float | None) -> tuple[Humanoid, Surface]:
+def sized(
+    humanoid: Humanoid, surface: Surface, height: float | None, *, metric: bool, place: str
+) -> tuple[Humanoid, Surface]:
     """The avatar and its surface as tall as was asked for, or, where nothing was, no larger than its head allows.
 
-    Without a mesh that is its body the head says nothing.
+    Without a mesh that is its body the head says nothing, nor does it in a file that is `metric` (VRM). Raises
+    `InputError` for an avatar too small or too tall to walk.
     """
     crown = crown_of(humanoid, surface)
     if height is not None:
         return _scaled(humanoid, surface, height / crown, f"scaled to a height of {height:g} m")
-    head = head_height(humanoid, surface) if humanoid.meta.has_body else 0.0
-    if head <= LARGEST_HEAD:
-        return humanoid, surface
-    factor = LARGEST_HEAD / head
-    note = (
-        f"its head is {head:.2f} m high, so the file is taken to have a unit of its own: scaled by {factor:.2f} to "
-        f"{factor * crown:.2f} m (--height {crown:.2f} keeps its size)"
-    )
-    return _scaled(humanoid, surface, factor, note)
+    head = head_height(humanoid, surface) if humanoid.meta.has_body and not metric else 0.0
+    if head > LARGEST_HEAD:
+        factor = LARGEST_HEAD / head
+        keeps = f" (--height {crown:.2f} keeps its size)" if crown <= TALLEST else ""
+        note = (
+            f"its head is {head:.2f} m high, so the file is taken to have a unit of its own: scaled by {factor:.2f} to "
+            f"{factor * crown:.2f} m{keeps}"
+        )
+        humanoid, surface = _scaled(humanoid, surface, factor, note)
+        crown *= factor
+    if not SHORTEST <= round(crown, 3) <= TALLEST:
+        why = " (a VRM is in metres)" if metric else ""
+        raise InputError(
+            f"{place}: the avatar is {crown:.3g} m tall{why}: avatars of {SHORTEST:g} to {TALLEST:g} m can "
+            "walk; --height sets another height"
+        )
+    return humanoid, surface
 
 
 def _scaled(humanoid: Humanoid, surface: Surface, factor: float, note: str) -> tuple[Humanoid, Surface]:

@@ -24,7 +24,7 @@ class NewNode:
 
 
 def grafted(gltf: Gltf, tree: NodeTree, moved: Mapping[int, int], added: Sequence[NewNode]) -> Gltf:
-    """The asset with the nodes `moved` (node -> new parent) and `added` (numbered after the last).
+    """The asset with the nodes `moved` (node -> new parent, -1 for none) and `added` (numbered after the last).
 
     Every node keeps its place in the world; scales above the nodes concerned must be the same along all axes.
     """
@@ -32,14 +32,19 @@ def grafted(gltf: Gltf, tree: NodeTree, moved: Mapping[int, int], added: Sequenc
     nodes = content["nodes"]
     matrices, turns = tree.world_matrices(tree.rotations), tree.world_rotations(tree.rotations)
     for node, parent in moved.items():
+        root = next(iter(tree.ancestors(node)[::-1]), node)
+        showing = [scene for scene in content.get("scenes", []) if root in scene.get("nodes", [])]
         _unhang(content, node, int(tree.parents[node]))
-        nodes[parent].setdefault("children", []).append(node)
-        local = quaternion.multiply(quaternion.conjugate(turns[parent]), turns[node])
+        for children in [nodes[parent].setdefault("children", [])] if parent >= 0 else [s["nodes"] for s in showing]:
+            children.append(node)
+        above = matrices[parent] if parent >= 0 else np.eye(4)
+        turn = turns[parent] if parent >= 0 else quaternion.IDENTITY
+        scale = tree.world_scale(parent) if parent >= 0 else 1.0
         nodes[node].pop("matrix", None)
         nodes[node] |= {
-            "translation": _inside(matrices[parent], matrices[node, :3, 3]),
-            "rotation": quaternion.normalize(local).tolist(),
-            "scale": [tree.world_scale(node) / tree.world_scale(parent)] * 3,
+            "translation": _inside(above, matrices[node, :3, 3]),
+            "rotation": quaternion.normalize(quaternion.multiply(quaternion.conjugate(turn), turns[node])).tolist(),
+            "scale": [tree.world_scale(node) / scale] * 3,
         }
     for new in added:
         nodes.append({"name": new.name, "translation": _inside(matrices[new.parent], new.position)})

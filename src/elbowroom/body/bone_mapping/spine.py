@@ -19,11 +19,16 @@ def spine_bones(nodes: FileNodes, bones: Mapping[str, int], named: frozenset[int
     if top is None or "hips" not in bones:
         return {}
     above = nodes.ancestors(top)
-    if bones["hips"] not in above:
-        return {}
-    between = above[: above.index(bones["hips"])][::-1]
+    if bones["hips"] in above:
+        between = above[: above.index(bones["hips"])][::-1]
+        shared = -1
+    else:  # the hips may hang on the first bone of the trunk
+        shared = next((node for node in nodes.ancestors(bones["hips"]) if node in above), -1)
+        between = above[: above.index(shared) + 1][::-1] if shared >= 0 else []
     spine = [node for node in between if node in named or _WORD.fullmatch(simplified(nodes.names[node]))]
-    if not spine:
+    if shared >= 0 and shared not in spine:
+        return {}
+    if not spine and between:
         body = [node for node in between if not names_no_body(nodes.names[node])]
         spine = _up_to_the_shoulders(nodes, bones, body)
     if len(spine) > len(SPINE):

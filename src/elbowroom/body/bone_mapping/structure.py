@@ -17,7 +17,7 @@ class CheckedBones:
 
     nodes: dict[str, int]
     notes: tuple[str, ...] = ()  # on optional bones left out because they hang elsewhere
-    detached: dict[str, int] = field(default_factory=dict)  # arm beside the spine -> node to hang it on
+    detached: dict[str, int] = field(default_factory=dict)  # arm or spine beside or above its place -> node to hang on
     absent: tuple[str, ...] = ()  # hands and feet that the file has no node for
 
 
@@ -38,6 +38,8 @@ def checked_bones(bones: Mapping[str, int], nodes: FileNodes, place: str, strict
         above = nodes.ancestors(bones[bone])
         if parent is None or kept[parent] in above:
             kept[bone] = bones[bone]
+        elif bone == "spine" and not strict and bones[bone] in nodes.ancestors(kept["hips"]):
+            kept[bone], detached[bone] = bones[bone], kept["hips"]
         elif bone in _ARMS and not strict and bones[bone] not in nodes.ancestors(kept[parent]):
             kept[bone], detached[bone] = bones[bone], kept[parent]
         elif bone in REQUIRED:

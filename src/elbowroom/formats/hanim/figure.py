@@ -15,7 +15,15 @@ from elbowroom.errors import InputError
 from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.displacers import Displacer, displacers_in
-from elbowroom.formats.hanim.humanoid_node import coord_of, info_of, is_centred, loa_of, path_to_humanoid, shapes_in
+from elbowroom.formats.hanim.humanoid_node import (
+    coord_of,
+    info_of,
+    is_centred,
+    loa_of,
+    path_to_humanoid,
+    shapes_in,
+    skeleton_roots,
+)
 from elbowroom.formats.hanim.skin import skin_weights
 from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
 from elbowroom.formats.x3d.expand import expand
@@ -84,6 +92,7 @@ class _Maker:
         self._looks = Looks(self._draft, library, notes)
         self._meshes: dict[int, tuple[int, Mesh] | None] = {}
         self._joints: list[tuple[Joint, Node]] = []
+        self._placed: set[int] = set()  # joints; each has one place, wherever else the file repeats it
         self._displacers: dict[int, tuple[Displacer, ...]] = {}  # by the Coordinate node whose points they move
         self._vertices = self._shapes = 0
         self._default_pose = default_pose
@@ -122,13 +131,17 @@ class _Maker:
             if node.kind == "Shape":
                 self._shape(node, parent, offset)
                 continue
+            if node.kind == "HAnimJoint":
+                if id(node) in self._placed:
+                    continue
+                self._placed.add(id(node))
             if node.kind in TRANSFORMS:
                 parent, offset = self._transform(node, parent, offset)
             if node.kind == "HAnimSegment":
                 self._displace(node.node("coord"), [node])
             if node.kind == "HAnimHumanoid":
                 before = len(self._joints)
-                self._walk(node.nodes("skeleton") or node.nodes("humanoidBody"), parent, offset)
+                self._walk(skeleton_roots(node), parent, offset)
                 self._skin(node, self._joints[before:], parent, offset)
                 continue
             waiting += [(part, parent, offset) for part in reversed(shown_parts(node))]

@@ -22,6 +22,29 @@ def path_to_humanoid(roots: Nodes) -> Nodes:
     return []
 
 
+def skeleton_roots(humanoid: Node) -> Nodes:
+    """What the skeleton of a humanoid begins with.
+
+    Many files list every joint in `skeleton` once more, or instead of in `joints`: what hangs on another of the roots
+    is no root.
+    """
+    roots = humanoid.nodes("skeleton") or humanoid.nodes("humanoidBody")
+    inner: set[int] = set()
+    waiting = [part for root in roots for part in shown_parts(root)]
+    while waiting:
+        node = waiting.pop()
+        if id(node) not in inner:
+            inner.add(id(node))
+            waiting += shown_parts(node)
+    seen: set[int] = set()
+    found = []
+    for root in roots:
+        if id(root) not in inner | seen:
+            seen.add(id(root))
+            found.append(root)
+    return found
+
+
 def shapes_in(nodes: Nodes) -> Iterator[Node]:
     """All shapes that are shown of `nodes`; raises `InputError` for too many nodes."""
     waiting, visited = list(reversed(nodes)), 0
