@@ -33,6 +33,7 @@ from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
@@ -81,11 +82,14 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
-    """Plan root paths round a low box, aside of it and turning on the spot."""
+    """Plan root paths round a low box, aside of it, with others about, and turning on the spot."""
     planner = RootPlanner(humanoid, _scene_with(*_LOW))
     start, horizon = RootState(0.0, 0.0, 0.0), 2 * _HORIZON
     planner.plan(start, Command(turn=1.0), horizon, _INTERVAL)
     list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
+    planner.others = Scene.load("traffic").obstacles.moving
+    list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
+    planner.others = Moving()
     return planner.plan(start, Command(forward=1.0), horizon, _INTERVAL)
 
 

@@ -20,9 +20,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.root.grid_search import Prices, cheapest, pulled_taut
 from elbowroom.planning.root.line import TravelLine
-from elbowroom.planning.root.line_rooms import Grid, LineRooms
 from elbowroom.planning.root.profile import Profile
-from elbowroom.planning.root.room import Room
+from elbowroom.planning.root.room import Grid, Room
 from elbowroom.planning.root.turned_body import TurnedBody
 from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.moving import Moving
@@ -34,6 +33,7 @@ Indices = NDArray[np.int64]
 
 _SLOW = 0.1  # m/s along the line
 _GAIN = 2.0  # m/s^2, of speeding up
+_ROUNDS = 8  # paths through narrow cells that may turn out to be closed
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,11 @@ class EvasionSettings:
     slack: float = 0.03  # clearance beyond which a way is free to be pulled taut
 
     @property
+    def columns(self) -> int:
+        """Columns of the grid; the middle one is the line."""
+        return 2 * round(self.widest / self.aside) + 1
+
+    @property
     def angles(self) -> Floats:
         """The turns (T,) of the body from the line's facing."""
         return np.linspace(-self.most, self.most, 2 * self.turns + 1)
@@ -88,12 +93,11 @@ class Evasion(NamedTuple):
 
 
 class EvasionFinder:
-    """Finds evasions for one humanoid among some obstacles. What it keeps is what it would find again."""
+    """Finds evasions for one humanoid among what stands. What it remembers is what it would find again."""
 
     def __init__(self, humanoid: Humanoid, obstacles: Obstacles, settings: EvasionSettings | None = None) -> None:
         self.settings = s = settings or EvasionSettings()
-        grid = Grid(s.step, s.aside, 2 * round(s.widest / s.aside) + 1, s.comfort)
-        self._rooms = LineRooms(TurnedBody(humanoid), obstacles, s.angles, grid)
+        self._obstacles, self._body = obstacles, TurnedBody(humanoid, s.angles)
 
     def ahead_of(
         self,
@@ -106,20 +110,32 @@ class EvasionFinder:
     ) -> "EvasionGrid":
         """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
 
-        The first row is that next to the start, of rows at whole steps from the line's first point: so they are found
-        again from plan to plan. Where something moves it is at the start itself. What moves is where it will be about
-        when a row is reached, by who speeds up at once.
+        The first row is that next to the start, of rows at whole steps from the line's first point: so cells stay where
+        they are from plan to plan. Where something moves it is at the start itself. What moves is where it will be
+        about when a row is reached, by who speeds up at once.
         """
         s, ahead = self.settings, line.coordinates(start.x, start.z)[0]
-        first, rows = ahead / s.step if len(moving) else float(round(ahead / s.step)), math.ceil(sight / s.step) + 1
+        first, rows = ahead if len(moving) else s.step * round(ahead / s.step), math.ceil(sight / s.step) + 1
         passing = self._passing(moving, time, s.step * np.arange(float(rows)), start, speeds[0])
-        room, slowness = self._rooms.ahead(line, speeds, first, rows, passing)
-        return EvasionGrid(s, line, start, slowness, first * s.step, room, len(moving) > 0)
+        turned = self._body.going(line.heading - line.facing, speeds)
+        grid = Grid(first, s.step, s.aside, rows, s.columns, s.comfort, s.margin, s.margin + s.swerving + max(s.cares))
+        low, high = _corners(line, grid, turned.discs.reach)
+        window, near = self._obstacles.free_map.window(low, high), self._obstacles.near(low, high)
+        room = Room(self._body, turned, line, grid, window, near, passing)
+        return EvasionGrid(s, line, start, turned.slowness, grid, room, len(moving) > 0)
 
     def _passing(self, moving: Moving, time: float, ahead: Floats, start: RootState, speed: float) -> Spans:
         """What moves about when places `ahead` (n,) metres are reached, a little larger."""
         s, then = self.settings, time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)
         return grown_aside(moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual), s.polite)
+
+
+def _corners(line: TravelLine, grid: Grid, reach: float) -> tuple[Floats, Floats]:
+    """The corners (2,) on the ground, x and z, of what holds a grid and `reach` metres around it."""
+    wide = grid.aside * (grid.columns // 2)
+    ends = (line.point(grid.first + i * grid.step * (grid.rows - 1), j * wide) for i in (0, 1) for j in (-1, 1))
+    places = np.array(list(ends))
+    return places.min(axis=0) - reach, places.max(axis=0) + reach
 
 
 def _arrival(ahead: Floats, now: float, speed: float) -> Floats:
@@ -138,7 +154,7 @@ class EvasionGrid(NamedTuple):
     line: TravelLine
     start: RootState
     slowness: Floats  # (T,) seconds for each metre, in each turn
-    first: float  # metres: the first row's place on the line
+    grid: Grid
     room: Room
     passing: bool  # whether something moves
 
@@ -160,15 +176,21 @@ class EvasionGrid(NamedTuple):
             s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, leftward, s.shifting, s.turning,
             s.spot, (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip
-        favoured = np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.first, s.step, rows))
+        favoured = (
+            np.full((rows, 2), -9) if kept is None else self._cells(*_rows_at(kept, self.grid.first, s.step, rows))
+        )
         left, turned = self._at_first_row()
         begin = self._cells(np.array([left]), np.array([turned]))[0]
-        cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
-        places = pulled_taut(self.room, cells, left, s.aside, s.slack)
+        self.room.look_into(begin[None])
+        for _ in range(_ROUNDS):
+            cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
+            if not self.room.look_into(cells):
+                break
+        places = pulled_taut(self.room.clear, self.room.shift, cells, left, s.aside, s.slack)
         way = np.stack([places, s.angles[cells[:, 1]]], axis=1)
         if cells[0, 1] == begin[1]:
             way[0, 1] = turned
-        return Evasion(Profile(self.first, s.step, way), len(way) == rows, cost)
+        return Evasion(Profile(self.grid.first, s.step, way), len(way) == rows, cost)
 
     def _at_first_row(self) -> tuple[float, float]:
         """Distance from the line and turn at the first row's place, of who moves on as the start does.
@@ -182,7 +204,7 @@ class EvasionGrid(NamedTuple):
         along, across = start.forward * cosine - start.lateral * sine, start.forward * sine + start.lateral * cosine
         if along < _SLOW:
             return left, turned
-        steps, swing = (self.first - ahead) / s.step, s.most / s.turns
+        steps, swing = (self.grid.first - ahead) / s.step, s.most / s.turns
         aside = min(max(across / along * s.step, -s.aside), s.aside)
         swung = min(max(start.turn / along * s.step, -swing), swing)
         return left + steps * aside, turned + steps * swung

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.root.room import Room
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -36,14 +35,17 @@ class Prices(NamedTuple):
 
 
 @exact_kernel
-def pulled_taut(room: Room, way: Indices, begin: float, aside: float, slack: float) -> Floats:
-    """The distances (m,) from the line of a way through cells, evened out as far as there is room beyond `slack`."""
+def pulled_taut(clear: Floats32, shift: Floats32, way: Indices, begin: float, aside: float, slack: float) -> Floats:
+    """The distances (m,) from the line of a path through cells, evened out as far as there is room beyond `slack`.
+
+    `clear` (3, rows, columns, turns) and `shift` (rows, columns, turns) as in `Room`.
+    """
     count = way.shape[0]
     middle, free, out = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
         j, t = way[i, 0], way[i, 1]
-        middle[i] = aside * (j - room.shift.shape[1] // 2) + room.shift[i, j, t]
-        free[i] = max(min(room.clear[0, i, j, t], room.clear[1, i, j, t]) - slack, 0.0)
+        middle[i] = aside * (j - shift.shape[1] // 2) + shift[i, j, t]
+        free[i] = max(min(clear[0, i, j, t], clear[1, i, j, t]) - slack, 0.0)
         out[i] = middle[i]
     out[0] = begin
     for _ in range(_SWEEPS):

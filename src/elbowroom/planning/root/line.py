@@ -33,8 +33,8 @@ class TravelLine(NamedTuple):
         dx, dz = x - self.x, z - self.z
         return dx * sine + dz * cosine, dx * cosine - dz * sine
 
-    def point(self, ahead: float, left: float = 0.0) -> tuple[float, float]:
-        """The place on the ground with these coordinates."""
+    def point(self, ahead: Number, left: Number) -> tuple[Number, Number]:
+        """The place on the ground with these coordinates, or the places."""
         sine, cosine = math.sin(self.heading), math.cos(self.heading)
         return self.x + ahead * sine + left * cosine, self.z + ahead * cosine - left * sine
 

@@ -1,123 +1,278 @@
-"""The room that a body has on a grid of places, at each of them for several turns of the body.
+"""The room that a body has on a grid of places along a line, at each of them in several turns.
 
-The capsules are only moved to the places, not posed anew: one batch for each row, box, turn and part of the body.
+It is read from the map of free distances, for discs that stand for the body, and is a guess, good to some 2 cm. Where
+that decides, in narrow cells that a path leads through, the capsules themselves are held against what stands, and the
+best place of the cell is found.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
+from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.turned_body import Discs, Turned, TurnedBody
 from elbowroom.world.obstacles.clearance import clearance_into
-from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
-from elbowroom.world.obstacles.layout import Spans
-from elbowroom.world.obstacles.rows import at_span, how_many, shifted_into, single, spans_in
+from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
+from elbowroom.world.obstacles.from_above import away_of, ball_radius, heights_of, place_of
+from elbowroom.world.obstacles.layout import Nearby, Spans
+from elbowroom.world.obstacles.rows import any_in, at_span, how_many, row_of, shifted_into, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
-_TALL = 2.0  # metres: height of the axis round which a body is looked for
+_NARROW = 0.06  # metres of clearance of legs or trunk below which a cell is looked into
+_PLACES = 9  # within such a cell, from one side to the other
+_DOUBT = 0.005  # metres by which the map may say too little
 
 
-class Room(NamedTuple):
-    """The room on a grid, with each cell's best place: not more than half a column from its middle."""
+class Grid(NamedTuple):
+    """Places along a line. Metres."""
 
-    clear: Floats32  # (3, rows, columns, turns) of legs, trunk, hanging arms; no more than the comfort
-    shift: Floats32  # (rows, columns, turns) metres from the middle to the best place, to the left
+    first: float  # place of the first row on the line
+    step: float  # between rows
+    aside: float  # between columns
+    rows: int
+    columns: int  # odd: the middle one is the line
+    comfort: float  # more clearance than this counts as this
+    margin: float  # clearance that legs must have
+    ample: float  # clearance of legs that is enough for everything: cells that may be free are taken to have it
+
+
+class Room:
+    """The room of a body on a grid, among what stands and what passes each row when it is reached."""
+
+    def __init__(
+        self,
+        body: TurnedBody,
+        turned: Turned,
+        line: TravelLine,
+        grid: Grid,
+        window: Window,
+        near: Nearby,
+        passing: Spans,
+    ) -> None:
+        """What is `near` stands, as on the map's `window`; what is `passing` moves, a span for each row."""
+        shape = grid.rows, grid.columns, len(turned.slowness)
+        self.clear: Floats32 = np.empty((3, *shape), np.float32)  # of legs, trunk, hanging arms
+        self.shift: Floats32 = np.zeros(shape, np.float32)  # metres to the left, from a cell's middle to its best place
+        left: Floats = grid.aside * (np.arange(float(grid.columns)) - grid.columns // 2)
+        ahead: Floats = grid.first + grid.step * np.arange(float(grid.rows))[:, None]
+        places = np.stack(np.broadcast_arrays(*line.point(ahead, left)), axis=-1)
+        aside = math.cos(line.heading), -math.sin(line.heading)
+        known, capsules = np.zeros(shape, np.bool_), _turned_to(line.facing, turned.capsules)
+        self._near, self._passing = near, passing
+        self._cells = _Cells(
+            self.clear, self.shift, known, places, aside, grid, capsules, body.groups, body.radii, turned.discs.reach
+        )
+        discs = _shape(turned.discs, line.facing)
+        _read(self.clear, window, discs, places, grid)
+        if any_in(passing):
+            _pass(self.clear, discs, places, passing, LEVELS, grid)
+
+    def look_into(self, cells: Indices) -> bool:
+        """Look into those narrow cells of a path, column and turn (m, 2) in each row; whether any was not known."""
+        return _look_into(self._cells, cells, self._near, self._passing)
+
+
+class _Cells(NamedTuple):
+    """What is known of the cells, and what it takes to know more."""
+
+    clear: Floats32  # as in `Room`
+    shift: Floats32
+    known: Bools  # (rows, columns, T) cells that were looked into
+    places: Floats  # (rows, columns, 2) of their middles
+    left: tuple[float, float]  # a metre to the left of the line, x and z
+    grid: Grid
+    capsules: Floats32  # (T, C, 6) facing along the line
+    groups: Indices  # (4,) where legs, trunk and arms begin among them; the end
+    radii: Floats32  # (C,)
+    reach: float  # of them
 
 
 @exact_kernel
-def lower_rows(
-    clear: Floats32, bodies: Floats32, groups: Indices, radii: Floats32, obstacles: Spans, place: Floats, first: float
-) -> None:
-    """Lower the clearance of rows (n, 3, T, columns) of places on a line, from row `first` on, to what boxes leave.
+def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans) -> bool:
+    """`Room.look_into` among what stands near and passes.
 
-    `bodies` (T, C, 6, columns) are the capsules in each turn at the places of a row, seen from its middle, `groups`
-    (4,) where legs, trunk and arms begin among them. `obstacles` (n, B) are those of each row, or (1, B) those of all.
-    `place`: where the line begins, sine and cosine of its heading, the distance of rows and of columns, and the
-    comfort, beyond which nothing is looked at.
-
-    Each row is looked at by itself: it is the same to the last bit, whatever rows are asked for with it.
+    Where legs turn out to lack room, the cells beside that one are looked into too: paths would lead there next.
     """
-    sine, cosine, step, most = place[2], place[3], place[4], place[6]
-    turns, columns = clear.shape[2], clear.shape[3]
-    wide = place[5] * (columns // 2) + most
-    axis = np.empty((1, 6, columns), np.float32)
-    for j in range(columns):
-        left = place[5] * (j - columns // 2)
-        for e in (0, 3):
-            axis[0, e, j], axis[0, e + 2, j] = left * cosine, -left * sine
-        axis[0, 1, j], axis[0, 4, j] = 0.0, _TALL
-    extents, farthest = _extents(bodies, groups, radii, axis)
-    none, one = np.empty(1, np.float32), single(obstacles)
-    away, found = np.empty(columns, np.float32), np.empty(columns, np.float32)
-    none[0] = 0.0
-    for i in range(clear.shape[0]):
-        ahead = (first + i) * step
-        middle_x, middle_z = place[0] + ahead * sine, place[1] + ahead * cosine
-        own = at_span(obstacles, min(i, spans_in(obstacles) - 1))
-        for b in range(how_many(own)):
-            x, z = place_of(own, b)
-            dx, dz, size = x - middle_x, z - middle_z, ball_radius(own, b)
-            if np.sqrt(dx * dx + dz * dz) > size + wide + farthest:
-                continue
-            shifted_into(own, b, middle_x, middle_z, one)
-            bottom, top = heights_of(own, b)
-            clearance_into(axis, none, one, away)
-            nearest = np.inf
-            for j in range(columns):
-                nearest = min(nearest, away[j])
-            for t in range(turns):
-                for g in range(3):
-                    reach, low, high = extents[t, g, 0], extents[t, g, 1], extents[t, g, 2]
-                    if nearest >= reach + most or bottom > high + most or top < low - most:
-                        continue
-                    clearance_into(bodies[t, groups[g] : groups[g + 1]], radii[groups[g] : groups[g + 1]], one, found)
-                    for j in range(columns):
-                        clear[i, g, t, j] = min(clear[i, g, t, j], found[j])
+    fresh, columns, turns = False, room.clear.shape[2], room.clear.shape[3]
+    for i in range(cells.shape[0]):
+        j, t = cells[i, 0], cells[i, 1]
+        if not _in_doubt(room, i, j, t):
+            continue
+        fresh = True
+        _measure(room, i, j, t, near, passing)
+        if room.clear[0, i, j, t] < room.grid.margin:
+            for m in range(max(j - 1, 0), min(j + 2, columns)):
+                for n in range(max(t - 1, 0), min(t + 2, turns)):
+                    if _in_doubt(room, i, m, n):
+                        _measure(room, i, m, n, near, passing)
+    return fresh
 
 
 @exact_kernel
-def _extents(bodies: Floats32, groups: Indices, radii: Floats32, axis: Floats32) -> tuple[Floats, float]:
-    """How far the parts of a body reach from its axis, seen from above, their lowest and highest point, (T, 3, 3).
+def _in_doubt(room: _Cells, i: int, j: int, t: int) -> bool:
+    """Whether a cell is narrow, by the map alone."""
+    return not room.known[i, j, t] and min(room.clear[0, i, j, t], room.clear[1, i, j, t]) < _NARROW
 
-    And how far any of them reaches.
-    """
-    out, farthest = np.empty((bodies.shape[0], 3, 3)), 0.0
-    for t in range(bodies.shape[0]):
+
+@exact_kernel
+def _lower(found: Floats32, room: _Cells, segments: Floats32, place: Floats, own: Nearby) -> None:
+    """Lower what was found (3, places) to the clearance of capsules about a place (2,) from obstacles."""
+    least, reach = np.empty(found.shape[1], np.float32), room.reach + room.grid.comfort + room.grid.aside
+    one = row_of(unfilled(own), 0)
+    for b in range(how_many(own)):
+        x, z = place_of(own, b)
+        if np.hypot(x - place[0], z - place[1]) >= ball_radius(own, b) + reach:
+            continue
+        shifted_into(own, b, place[0], place[1], one)
         for g in range(3):
-            most, low, high = 0.0, np.inf, -np.inf
-            for c in range(groups[g], groups[g + 1]):
-                for e in (0, 3):
-                    x, z = bodies[t, c, e, 0] - axis[0, 0, 0], bodies[t, c, e + 2, 0] - axis[0, 2, 0]
-                    most = max(most, np.sqrt(x * x + z * z) + radii[c])
-                    low, high = (
-                        min(low, bodies[t, c, e + 1, 0] - radii[c]),
-                        max(high, bodies[t, c, e + 1, 0] + radii[c]),
-                    )
-            out[t, g, 0], out[t, g, 1], out[t, g, 2] = most, low, high
-            farthest = max(farthest, most)
-    return out, farthest
+            part = slice(room.groups[g], room.groups[g + 1])
+            clearance_into(segments[part], room.radii[part], one, least)
+            for n in range(least.shape[0]):
+                found[g, n] = min(found[g, n], least[n])
 
 
 @exact_kernel
-def room_at_best(rows: Floats32, comfort: float, aside: float) -> Room:
-    """The room at every cell's best place, of rows (n, 3, T, columns) as in `lower_rows`.
+def _best_of(own: Floats32, comfort: float, fine: float) -> float:
+    """At which of some places (n,), `fine` metres apart, there is most room, or between which."""
+    middle = own.shape[0] // 2
+    best = middle
+    for n in range(own.shape[0]):
+        if own[n] > own[best] or (own[n] == own[best] and abs(n - middle) < abs(best - middle)):
+            best = n
+    if own[best] >= comfort or best == 0 or best == own.shape[0] - 1:
+        return float(best)
+    return float(best + min(max(0.5 * (own[best + 1] - own[best - 1]) / fine, -0.5), 0.5))
 
-    Clearance changes by no more than one walks: so neighbours bound it, and between parallel walls it is the bound.
+
+@exact_kernel
+def _measure(room: _Cells, i: int, j: int, t: int, near: Nearby, passing: Spans) -> None:
+    """The clearance of the capsules in a cell at its best place, and where that is.
+
+    Best is where legs, if they lack room, else the trunk, else the arms have most. Clearance changes by no more than
+    one walks, so neighbours bound it, and between parallel walls it is the bound.
     """
-    count, turns, columns = rows.shape[0], rows.shape[2], rows.shape[3]
-    best, shift = np.empty((3, count, columns, turns), np.float32), np.empty((count, columns, turns), np.float32)
-    for i in range(count):
-        for j in range(columns):
-            for t in range(turns):
-                for g in range(2, -1, -1):
-                    own = rows[i, g, t, j]
-                    best[g, i, j, t], shift[i, j, t] = own, 0.0
-                    if own < comfort and 0 < j < columns - 1:
-                        right, left = rows[i, g, t, j - 1], rows[i, g, t, j + 1]
-                        best[g, i, j, t] = min(own + 0.5 * aside, max(0.5 * (left + right) + aside, own), comfort)
-                        shift[i, j, t] = min(max(0.5 * (left - right), -0.5 * aside), 0.5 * aside)
-    return Room(best, shift)
+    fine, comfort, middle = room.grid.aside / (_PLACES - 1), room.grid.comfort, _PLACES // 2
+    room.known[i, j, t] = True
+    segments, capsules = np.empty((room.radii.shape[0], 6, _PLACES), np.float32), room.capsules[t]
+    for c in range(segments.shape[0]):
+        for k in range(6):
+            along = room.left[0] if k % 3 == 0 else room.left[1] if k % 3 == 2 else 0.0
+            for n in range(_PLACES):
+                segments[c, k, n] = capsules[c, k] + fine * (n - middle) * along
+    found = np.full((3, _PLACES), np.float32(comfort))
+    _lower(found, room, segments, room.places[i, j], near)
+    _lower(found, room, segments, room.places[i, j], at_span(passing, i))
+    at = float(middle)
+    for g in range(3):
+        if found[g, middle] < comfort:
+            at = _best_of(found[g], comfort, fine)
+            break
+    room.shift[i, j, t] = fine * (at - middle)
+    n = min(int(at), _PLACES - 2)
+    for g in range(3):
+        room.clear[g, i, j, t] = found[g, n] + (at - n) * (found[g, n + 1] - found[g, n])
+
+
+class _Shape(NamedTuple):
+    """Discs of a body that means to face along a line, in points of the map."""
+
+    discs: Discs
+    offsets: Floats  # (K, 2) from the root, along x and z
+    reaches: Floats  # (K,) metres from the root
+
+
+def _turned_to(facing: float, capsules: Floats32) -> Floats32:
+    """Capsules (T, C, 6) of a body that means to face ahead, when that is `facing`."""
+    sine, cosine = np.sin(facing), np.cos(facing)
+    ends = capsules.reshape(-1, 3).astype(np.float64)
+    x, y, z = ends.T
+    turned = np.stack([x * cosine + z * sine, y, z * cosine - x * sine], axis=1)
+    return turned.reshape(capsules.shape).astype(np.float32)
+
+
+@exact_kernel
+def _shape(discs: Discs, facing: float) -> _Shape:
+    offsets, reaches = np.empty(discs.places.shape), np.empty(discs.radii.shape[0])
+    sine, cosine = np.sin(facing), np.cos(facing)
+    for k in range(reaches.shape[0]):
+        left, ahead = discs.places[k, 0], discs.places[k, 1]
+        offsets[k, 0], offsets[k, 1] = (ahead * sine + left * cosine) / CELL, (ahead * cosine - left * sine) / CELL
+        reaches[k] = np.hypot(left, ahead) + discs.radii[k]
+    return _Shape(discs, offsets, reaches)
+
+
+@helper
+def free_distance(distances: Floats32, level: int, a: float, b: float) -> float:
+    """What a window says at a level, at grid coordinates along x and z, bilinear; the nearest edge holds outside."""
+    p, q = min(max(a, 0.0), distances.shape[1] - 1.0), min(max(b, 0.0), distances.shape[2] - 1.0)
+    i, k = min(int(p), distances.shape[1] - 2), min(int(q), distances.shape[2] - 2)
+    u, v = p - i, q - k
+    low = distances[level, i, k] * (1.0 - v) + distances[level, i, k + 1] * v
+    high = distances[level, i + 1, k] * (1.0 - v) + distances[level, i + 1, k + 1] * v
+    return float(low * (1.0 - u) + high * u)
+
+
+@helper
+def _open_from(grid: Grid) -> float:
+    """The clearance of legs in the middle of a cell from which on there may be a place in it where they are free."""
+    return grid.margin - 0.5 * grid.aside - _DOUBT
+
+
+@exact_kernel
+def _read(clear: Floats32, window: Window, shape: _Shape, places: Floats, grid: Grid) -> None:
+    """Fill `clear` (3, rows, columns, T) with what the map says at `places` (rows, columns, 2)."""
+    distances, discs, comfort, open_from = window.distances, shape.discs, grid.comfort, _open_from(grid)
+    roots, starts, all_levels, radii = np.empty(distances.shape[0]), discs.starts, discs.levels, discs.radii
+    offsets, reaches = shape.offsets, shape.reaches
+    for i in range(clear.shape[1]):
+        for j in range(clear.shape[2]):
+            a, b, around = (places[i, j, 0] - window.x) / CELL, (places[i, j, 1] - window.z) / CELL, np.inf
+            for level in range(roots.shape[0]):
+                roots[level] = free_distance(distances, level, a, b)
+                around = min(around, roots[level])
+            clear[:, i, j] = comfort
+            for t in range(clear.shape[3] if around < discs.reach + comfort else 0):
+                for g in range(3):
+                    least, enough = comfort, open_from if g == 0 else -np.inf
+                    for k in range(starts[t, g], starts[t, g + 1]):
+                        level = all_levels[k]
+                        if roots[level] - reaches[k] < least:  # else it is no nearer
+                            away = free_distance(distances, level, a + offsets[k, 0], b + offsets[k, 1])
+                            least = min(least, away - radii[k])
+                            if least < enough:
+                                break
+                    clear[g, i, j, t] = max(least, grid.ample) if g == 0 and least >= enough else least
+                    if least < enough:
+                        break
+
+
+@exact_kernel
+def _pass(clear: Floats32, shape: _Shape, places: Floats, passing: Spans, heights: Floats, grid: Grid) -> None:
+    """Lower `clear` to what upright boxes that pass leave, a span for each row."""
+    discs, offsets, reaches = shape.discs, shape.offsets, shape.reaches
+    starts, levels, radii = discs.starts, discs.levels, discs.radii
+    for i in range(clear.shape[1]):
+        own = at_span(passing, i)
+        for m in range(how_many(own)):
+            bottom, top = heights_of(own, m)
+            for j in range(clear.shape[2]):
+                x, z = places[i, j, 0], places[i, j, 1]
+                away = away_of(own, m, x, z)
+                for t in range(clear.shape[3] if away < discs.reach + grid.comfort else 0):
+                    if clear[0, i, j, t] < _open_from(grid):
+                        continue
+                    for g in range(3):
+                        least = clear[g, i, j, t]
+                        for k in range(starts[t, g], starts[t, g + 1]):
+                            height, radius = heights[levels[k]], radii[k]
+                            if bottom - radius < height < top + radius and away - reaches[k] < least:
+                                p, q = x + CELL * offsets[k, 0], z + CELL * offsets[k, 1]
+                                least = min(least, away_of(own, m, p, q) - radius)
+                        clear[g, i, j, t] = least

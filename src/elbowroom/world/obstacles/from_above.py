@@ -30,6 +30,16 @@ def heights_of(near: Nearby, b: int) -> tuple[float, float]:
     return own[1] - up - own[ROUNDING], own[1] + up + own[ROUNDING]
 
 
+@exact_kernel
+def away_of(near: Nearby, b: int, x: float, z: float) -> float:
+    """Metres from a place on the ground to an upright box, seen from above; 0 inside."""
+    own = near.rows[b]
+    dx, dz = x - own[0], z - own[2]
+    across = abs(dx * own[TURN] + dz * own[TURN + 2]) - own[HALF]
+    along = abs(dx * own[TURN + 6] + dz * own[TURN + 8]) - own[HALF + 2]
+    return float(np.hypot(max(across, 0.0), max(along, 0.0)))
+
+
 def places_of(spans: Spans) -> Floats:
     """Where the middles of the obstacles are in each span, (n, B, 2), x and z."""
     places: Floats = spans.rows[..., [0, 2]]

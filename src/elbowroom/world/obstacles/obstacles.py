@@ -13,6 +13,7 @@ from elbowroom.world.obstacles.along import Along, Place, along
 from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.closest_points import closest_points
+from elbowroom.world.obstacles.free_map import FreeMap
 from elbowroom.world.obstacles.hulls import PackedHulls, pack_hulls
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.moving import Moving
@@ -110,6 +111,11 @@ class Obstacles:
         if len(numbers) == len(self.shapes):
             return self.standing
         return Nearby(self.standing.rows[numbers], self.standing.hulls)
+
+    @cached_property
+    def free_map(self) -> FreeMap:
+        """How far away those that stand are, over the ground: one map for all who walk here."""
+        return FreeMap(self.near)
 
     def along(self, times: Floats, ground: tuple[Place, Place], others: Moving | None = None) -> Along:
         """What is in the way between `times` (n+1,) over a rectangle on the ground, `others` that move included."""

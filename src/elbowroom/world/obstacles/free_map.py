@@ -1,0 +1,85 @@
+"""The free distance over the ground: how far away what stands is, at every place and at several heights.
+
+It lies in the world's frame and depends on no command, no path and no body: all planners in a place share one map.
+Tiles are filled where somebody comes near and stay, since what stands never moves. What is in a tile does not depend
+on who filled it or when. Moving things are not in it.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import about, is_empty
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+CELL = 0.04  # metres between neighbouring points
+TILE = 16  # points on a tile's side
+LEVELS: Floats = 0.1 + 0.2 * np.arange(10.0)  # metres above the ground
+FARTHEST = 0.7  # metres: greater distances are not told apart
+_TALL = 0.06  # metres: half the height of the upright line that stands for a level
+_MOST = 4096  # tiles that are remembered: 40 MB
+
+
+class Window(NamedTuple):
+    """A part of the map, for kernels."""
+
+    distances: Floats32  # (levels, X, Z) metres, at most `FARTHEST`
+    x: float  # of the first point, metres
+    z: float
+
+
+class FreeMap:
+    """The map of one place; threads may share it."""
+
+    def __init__(self, near: Callable[[Floats, Floats], Nearby]) -> None:
+        """`near` tells what stands over a rectangle on the ground, of which it is given the corners (2,), x and z."""
+        self._near = near
+        self._tiles: dict[tuple[int, int], Floats32] = {}
+
+    def window(self, low: Floats, high: Floats) -> Window:
+        """The part between two corners (2,) on the ground, x and z; it may reach a little farther."""
+        side = CELL * TILE
+        first = [int(np.floor(edge / side)) for edge in low]
+        last = [int(np.floor(edge / side)) for edge in high]
+        columns = [
+            np.concatenate([self._tile(i, k) for k in range(first[1], last[1] + 1)], axis=2)
+            for i in range(first[0], last[0] + 1)
+        ]
+        return Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
+
+    def _tile(self, i: int, k: int) -> Floats32:
+        """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z."""
+        tile = self._tiles.get((i, k))
+        if tile is None:
+            tile = self._filled(i, k)
+            if len(self._tiles) >= _MOST:
+                self._tiles.clear()
+            self._tiles[i, k] = tile
+        return tile
+
+    def _filled(self, i: int, k: int) -> Floats32:
+        """A tile, reckoned from its middle: so it is as exact far from the world's origin as near to it."""
+        half = 0.5 * CELL * TILE
+        middle = half * np.array([2.0 * i + 1.0, 2.0 * k + 1.0])
+        near = self._near(middle - half - FARTHEST, middle + half + FARTHEST)
+        if is_empty(near):
+            return _OPEN
+        found = clearance(_POINTS, _THIN, about(near, float(middle[0]), float(middle[1])))
+        return np.minimum(found, np.float32(FARTHEST)).reshape(_OPEN.shape)
+
+
+def _points() -> Floats32:
+    """Upright lines (1, 6, levels TILE TILE) at all points of a tile, seen from its middle."""
+    along = CELL * (np.arange(TILE) - 0.5 * TILE)
+    y, x, z = (part.ravel() for part in np.meshgrid(LEVELS, along, along, indexing="ij"))
+    return np.stack([x, y - _TALL, z, x, y + _TALL, z])[None].astype(np.float32)
+
+
+_POINTS, _THIN = _points(), np.zeros(1, np.float32)
+_OPEN: Floats32 = np.full((len(LEVELS), TILE, TILE), FARTHEST, np.float32)  # the tile where nothing is near
