@@ -58,3 +58,32 @@ def test_nothing_below_the_experiment_reads_a_clock_to_decide() -> None:
                     assert node.attr == "perf_counter_ns", f"{path}: time.{node.attr}"
                 if isinstance(node, ast.Attribute) and node.attr in {"now", "utcnow"}:
                     raise AssertionError(f"{path}: {node.attr}")
+
+
+def _opaque_names(function: ast.FunctionDef) -> set[str]:
+    """The parameters of a function that hold obstacles: `Nearby` or `Spans`."""
+    return {
+        argument.arg
+        for argument in [*function.args.args, *function.args.kwonlyargs]
+        if isinstance(argument.annotation, ast.Name) and argument.annotation.id in {"Nearby", "Spans"}
+    }
+
+
+def test_only_the_door_knows_how_obstacles_are_written_down() -> None:
+    """Elsewhere rows of obstacles are handed on as they are: not taken apart, and their layout is not imported."""
+    door = PACKAGE / "world" / "obstacles"
+    for path in PACKAGE.rglob("*.py"):
+        if path.is_relative_to(door):
+            continue
+        tree = ast.parse(path.read_text())
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module == "elbowroom.world.obstacles.layout":
+                assert {alias.name for alias in node.names} <= {"Nearby", "Spans"}, path
+            if isinstance(node, ast.Attribute) and node.attr in {"rows", "hulls"}:
+                inner = node.value
+                assert not (isinstance(inner, ast.Attribute) and inner.attr in {"standing", "obstacles", "near"}), path
+            if isinstance(node, ast.FunctionDef):
+                opaque = _opaque_names(node)
+                for part in ast.walk(node):
+                    taken = part.value if isinstance(part, ast.Attribute | ast.Subscript) else None
+                    assert not (isinstance(taken, ast.Name) and taken.id in opaque), f"{path}: {node.name}"

@@ -139,7 +139,7 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoi
     assert checks[0] > 0
     assert checks[-10:] == [0] * 10
     assert local.blockade is not None
-    assert local.blockade.boxes == (0,)
+    assert local.blockade.obstacles == (0,)
     assert query.time - T < local.blockade.time < query.time + 3.0
     back = planner.plan_motion(roots, query._replace(command=Command(forward=-1.0)))
     assert back.root.path.states[-1, 1] < query.root.z - 0.1

@@ -152,7 +152,7 @@ def test_the_named_obstacles_close_the_slice_and_each_is_needed(humanoid: Humano
     assert found.kind is BlockadeKind.NO_POSTURE
     assert np.isclose(found.ahead, 1.1 * found.time)
     assert found.place[1] == pytest.approx(path.states[depth, 1])
-    named = tuple(rows[box] for box in found.boxes)
+    named = tuple(rows[box] for box in found.obstacles)
     assert named
     assert AWAY not in named
     assert not any_triple(humanoid, (*named, AWAY), path, depth)

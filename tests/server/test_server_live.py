@@ -140,11 +140,11 @@ def test_settings_change_while_walking(client: Client) -> None:
     assert client.wait_for(Loading, lambda loading: not loading.active and loading.name == "a").what == "scene"
     scene = client.wait_for(SceneMessage)
     assert scene.name == "a"
-    assert len(scene.boxes) >= 4
+    assert len(scene.obstacles) >= 4
     assert client.wait_for(Settings).queue_size == 7
     status = client.wait_for(Status, lambda status: status.nearest is not None)
     assert status.nearest is not None
-    assert status.nearest.box in {box.name for box in scene.boxes}
+    assert status.nearest.obstacle in {one.name for one in scene.obstacles}
     assert status.clearance == pytest.approx(status.nearest.distance, abs=1e-3)
     client.send(Configure(assist=False, walk_speed=0.5))
     assert client.wait_for(Settings, lambda settings: not settings.assist).walk_speed == 0.5

@@ -39,9 +39,9 @@ def test_points_and_distance_agree_with_many_samples(seed: int) -> None:
             beyond = inside - np.clip(inside, -boxes.half_sizes[b], boxes.half_sizes[b])
             gaps[c, b] = np.linalg.norm(beyond, axis=1).min() - radii[c]
     assert found.distance == pytest.approx(gaps.min(), abs=0.01)
-    c, b = "abcd".index(found.capsule), int(found.box[-1])
+    c, b = "abcd".index(found.capsule), int(found.obstacle[-1])
     assert gaps[c, b] == pytest.approx(gaps.min(), abs=0.01)
-    between = float(np.linalg.norm(np.subtract(found.on_body, found.on_box)))
+    between = float(np.linalg.norm(np.subtract(found.on_body, found.on_obstacle)))
     assert between == pytest.approx(max(found.distance, 0.0), abs=1e-3)
 
 

@@ -3,6 +3,7 @@
 import copy
 import json
 import math
+import re
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -287,6 +288,15 @@ def test_what_is_no_scene_is_called_what_it_is(tmp_path: Path, name: str, conten
 def test_a_missing_file_is_missing(name: str) -> None:
     with pytest.raises(InputError, match=f"{name}: cannot be read: No such file"):
         Scene.load(name)
+
+
+def test_the_shapes_in_the_guide_are_read() -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text("utf-8")
+    told = [json.loads(text) for text in re.findall(r'`({"type": .*?})`', guide)]
+    assert {one["type"] for one in told} == {"box", "sphere", "capsule", "cylinder", "hull"}
+    scene = Scene.from_dict({**document([], []), "obstacles": told, "moving": []})
+    VALIDATOR.validate(scene.to_dict())
+    assert len(scene.obstacles) == len(told)
 
 
 def test_stock_scenes_by_name() -> None:

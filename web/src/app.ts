@@ -132,7 +132,7 @@ export class App implements SessionListener, MenuListener {
   }
 
   status(status: Status): void {
-    this.picture.world.markBlocking(status.blocked?.boxes ?? []);
+    this.picture.world.markBlocking(status.blocked?.obstacles ?? []);
     const { stats } = this;
     const page = {
       fps: stats.fps, frameMsP50: stats.percentileMs(0.5), frameMsP95: stats.percentileMs(0.95),

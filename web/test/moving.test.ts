@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
-import type { MovingBox } from "../src/generated/messages";
+import type { MovingObstacle } from "../src/generated/messages";
 import { boxAt } from "../src/stage/moving";
 
-const box = (repeat: MovingBox["repeat"]): MovingBox => ({
-  name: "box", size: [1, 2, 3], times: [0, 2, 3], centers: [[0, 1, 0], [2, 1, 0], [2, 1, 1]], yaws: [0, 0.4, -0.3], repeat,
+const box = (repeat: MovingObstacle["repeat"]): MovingObstacle => ({
+  name: "box", form: { shape: "box", size: [1, 2, 3], corners: [], triangles: [] }, times: [0, 2, 3], centers: [[0, 1, 0], [2, 1, 0], [2, 1, 1]], yaws: [0, 0.4, -0.3], repeat,
 });
 
 describe("boxAt", () => {

@@ -44,6 +44,7 @@ def as_json(report: "CollisionReport", seed: int) -> dict[str, Any]:
 
 def show(report: "CollisionReport") -> None:
     """The figures as a table."""
+    from elbowroom.experiment.bench.frame_check import FEW, MANY
     from elbowroom.experiment.machine import machine_kind
 
     bits = f"{report.vector_bits}-bit vectors" if report.vector_bits else "scalar or unknown machine code"
@@ -53,7 +54,13 @@ def show(report: "CollisionReport") -> None:
         for rival in report.rivals
     }
     rows |= dict.fromkeys(report.missing, "not installed")
-    print_row(f"Capsule-box checks a second on one core ({machine_kind()})", rows)
+    shaped = {f"{report.own.name}: {speed.name}": _millions(speed) for speed in report.shapes}
+    frame = report.frame
+    shaped["the check of a frame"] = (
+        f"{1e3 * frame.few_ms:.0f} µs among {FEW} boxes, {1e3 * frame.many_ms:.0f} µs among {MANY}: "
+        f"{frame.ratio:.2f} times"
+    )
+    print_row(f"Capsule-box checks a second on one core ({machine_kind()})", rows | shaped)
 
 
 def _millions(speed: "Speed") -> str:

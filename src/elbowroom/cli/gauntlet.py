@@ -41,6 +41,9 @@ def gauntlet(
     judge: Annotated[
         bool, typer.Option("--judge", help="Have every walk judged by another library, coal: capsules and mesh.")
     ] = False,
+    shapes: Annotated[
+        bool, typer.Option("--shapes", help="Cut most boxes down to spheres, capsules, cylinders and hulls.")
+    ] = False,
     avatar: Avatar = None,
     bones: Bones = None,
     height: Height = None,
@@ -65,7 +68,7 @@ def gauntlet(
     from elbowroom.experiment.parallel import usable_cores
 
     walker = _Walker(avatar, bones, height, include_hair)
-    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference())
+    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference(), shapes)
     if save is not None:
         _save(_course(settings, walker, save[0], quiet), save[1])
         return
@@ -108,11 +111,13 @@ class _Walker(NamedTuple):
 
 def _course(settings: "GauntletSettings", walker: _Walker, k: int, quiet: bool) -> "Course":
     from elbowroom.experiment.gauntlet.course import CourseMaker
+    from elbowroom.experiment.gauntlet.shapes import in_shapes
 
     if k < 0:
         raise InputError(f"course {k}: courses are counted from 0")
     with progress_bar("Making the course", None, quiet):
-        return CourseMaker.of(walker.load()).course(settings.level, settings.seed + k)
+        course = CourseMaker.of(walker.load()).course(settings.level, settings.seed + k)
+        return in_shapes(course) if settings.shapes else course
 
 
 def _save(course: "Course", path: Path) -> None:

@@ -74,7 +74,7 @@ class Blockade:
     time: float  # seconds, the key time
     place: tuple[float, float]  # x and z of the root then, metres
     ahead: float  # metres that the root walks until there
-    boxes: tuple[int, ...]  # numbers of obstacles in the scene; none for MOTION
+    obstacles: tuple[int, ...]  # their numbers in the scene; none for MOTION
 
 
 class LocalPlan(NamedTuple):

@@ -23,9 +23,9 @@ def nearest(
     on_body = found.on_axis + away * min(1.0, radii[found.capsule] / distance) if distance > 0.0 else found.on_axis
     return Nearest(
         capsule=names[found.capsule],
-        box=scene.obstacles.names[found.obstacle],
+        obstacle=scene.obstacles.names[found.obstacle],
         on_body=_vector(on_body),
-        on_box=_vector(found.on_obstacle),
+        on_obstacle=_vector(found.on_obstacle),
         distance=found.distance,
     )
 

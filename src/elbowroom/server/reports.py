@@ -1,6 +1,7 @@
 """What a session tells its client, made from what it knows. No state."""
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,22 +18,31 @@ from elbowroom.server.schema.picture import (
     AvatarCapsule,
     AvatarMessage,
     Bone,
-    Box,
     ClipMessage,
+    Form,
     Gate,
     Ground,
-    MovingBox,
+    MovingObstacle,
+    Obstacle,
     Place,
     SceneMessage,
 )
 from elbowroom.server.schema.progress import Blocked, GroupReport, Plan
+from elbowroom.world.obstacles.hulls import surface_of
 from elbowroom.world.obstacles.moving import Track
-from elbowroom.world.obstacles.shapes import Shape, extents_of
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere, extents_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
 _MOST_FACTS = 20
+_SHAPES: dict[type[Shape], Literal["box", "sphere", "capsule", "cylinder", "hull"]] = {
+    Box: "box",
+    Sphere: "sphere",
+    Capsule: "capsule",
+    Cylinder: "cylinder",
+    Hull: "hull",
+}
 _REASONS: dict[BlockadeKind, Reason] = {
     BlockadeKind.NO_POSTURE: "noPosture",
     BlockadeKind.OUT_OF_REACH: "outOfReach",
@@ -47,21 +57,31 @@ def scene_message(scene: Scene) -> SceneMessage:
         title=scene.title,
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
-        boxes=[_box(*obstacle) for obstacle in scene.obstacles],
-        moving=[_moving_box(track) for track in scene.obstacles.moving.tracks],
+        obstacles=[_obstacle(*obstacle) for obstacle in scene.obstacles],
+        moving=[_moving(track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
     )
 
 
-def _box(name: str, shape: Shape, center: Floats, turn: Floats) -> Box:
-    return Box(name, tuple(center.tolist()), tuple((2.0 * extents_of(shape)).tolist()), tuple(turn.tolist()))
+def _obstacle(name: str, shape: Shape, center: Floats, turn: Floats) -> Obstacle:
+    return Obstacle(name, _form(shape), tuple(center.tolist()), tuple(turn.tolist()))
 
 
-def _moving_box(track: Track) -> MovingBox:
-    x, y, z = (2.0 * extents_of(track.shape)).tolist()
+def _moving(track: Track) -> MovingObstacle:
     centers = [(a, b, c) for a, b, c in track.centers.tolist()]
-    return MovingBox(track.name, (x, y, z), track.times.tolist(), centers, track.yaws.tolist(), track.repeat.value)
+    form = _form(track.shape)
+    return MovingObstacle(track.name, form, track.times.tolist(), centers, track.yaws.tolist(), track.repeat.value)
+
+
+def _form(shape: Shape) -> Form:
+    corners, triangles = surface_of(shape) if isinstance(shape, Hull) else (np.empty((0, 3)), np.empty((0, 3)))
+    return Form(
+        _SHAPES[type(shape)],
+        tuple((2.0 * extents_of(shape)).tolist()),
+        [(x, y, z) for x, y, z in corners.tolist()],
+        [(int(a), int(b), int(c)) for a, b, c in triangles.tolist()],
+    )
 
 
 def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
@@ -128,7 +148,7 @@ def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
     if blockade is None:
         return None
     known = scene.obstacles.names
-    names = [known[box] for box in blockade.boxes if box < len(known)]
+    names = [known[number] for number in blockade.obstacles if number < len(known)]
     return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 
 

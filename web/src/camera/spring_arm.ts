@@ -2,24 +2,29 @@
  * The geometry of the camera's spring arm: how far a sphere may travel from the pivot before it touches a box.
  *
  * The distance from a point to a convex body is 1-Lipschitz along a line, so stepping by "distance minus radius" never
- * passes the first contact (conservative advancement). No engine, no approximation of the boxes.
+ * passes the first contact (conservative advancement). No engine, no approximation of the obstacles.
  */
+
+import type { ConvexBody } from "./convex_body";
 
 export type Vec3 = readonly [number, number, number];
 export type Quat = readonly [number, number, number, number];
 
-/** An oriented box: centre and half sizes in metres, box-to-world rotation as a quaternion xyzw. */
+/** A convex body in an oriented box: centre and half sizes in metres, box-to-world rotation as a quaternion xyzw. */
 export interface OrientedBox {
   readonly center: Vec3;
   readonly rotation: Quat;
   readonly halfSize: Vec3;
+  /** What is in the box; it is full where this is absent. */
+  readonly body?: ConvexBody;
 }
 
-/** An oriented box with its world-to-box rotation as a row-major matrix, ready for many distance queries. */
+/** The same with its world-to-box rotation as a row-major matrix, ready for many distance queries. */
 export interface PreparedBox {
   readonly center: Vec3;
   readonly toBox: readonly [number, number, number, number, number, number, number, number, number];
   readonly halfSize: Vec3;
+  readonly body?: ConvexBody;
 }
 
 const CONTACT_TOLERANCE = 1e-4;
@@ -34,6 +39,7 @@ export function prepareBox(box: OrientedBox): PreparedBox {
   return {
     center: box.center,
     halfSize: box.halfSize,
+    ...(box.body ? { body: box.body } : {}),
     toBox: [
       1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
       2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
@@ -42,8 +48,15 @@ export function prepareBox(box: OrientedBox): PreparedBox {
   };
 }
 
-/** Distance in metres from a point to a box; 0 inside. */
+/** Distance in metres from a point to what is in a box; 0 inside. */
 export function distanceToBox(box: PreparedBox, px: number, py: number, pz: number): number {
+  if (!box.body) return distanceToBounds(box, px, py, pz);
+  const [x, y, z] = nearestOnBox(box, px, py, pz);
+  return Math.hypot(px - x, py - y, pz - z);
+}
+
+/** Distance in metres from a point to the box itself: no more than that to what is in it. */
+export function distanceToBounds(box: PreparedBox, px: number, py: number, pz: number): number {
   const m = box.toBox;
   const dx = px - box.center[0];
   const dy = py - box.center[1];
@@ -54,16 +67,19 @@ export function distanceToBox(box: PreparedBox, px: number, py: number, pz: numb
   return Math.sqrt(ex * ex + ey * ey + ez * ez);
 }
 
-/** The point of the box (surface or inside) that is nearest to a point. */
+/** The point of what is in the box (surface or inside) that is nearest to a point. */
 export function nearestOnBox(box: PreparedBox, px: number, py: number, pz: number): Vec3 {
   const m = box.toBox;
   const dx = px - box.center[0];
   const dy = py - box.center[1];
   const dz = pz - box.center[2];
   const clamp = (value: number, half: number) => Math.min(half, Math.max(-half, value));
-  const x = clamp(m[0] * dx + m[1] * dy + m[2] * dz, box.halfSize[0]);
-  const y = clamp(m[3] * dx + m[4] * dy + m[5] * dz, box.halfSize[1]);
-  const z = clamp(m[6] * dx + m[7] * dy + m[8] * dz, box.halfSize[2]);
+  const inside: Vec3 = [
+    m[0] * dx + m[1] * dy + m[2] * dz, m[3] * dx + m[4] * dy + m[5] * dz, m[6] * dx + m[7] * dy + m[8] * dz,
+  ];
+  const [x, y, z] = box.body
+    ? box.body.nearest(inside)
+    : [clamp(inside[0], box.halfSize[0]), clamp(inside[1], box.halfSize[1]), clamp(inside[2], box.halfSize[2])];
   return [
     box.center[0] + m[0] * x + m[3] * y + m[6] * z,
     box.center[1] + m[1] * x + m[4] * y + m[7] * z,

@@ -1,6 +1,6 @@
-/** Which capsules of the body are inside an obstacle: exact distances between segments and oriented boxes. */
+/** Which capsules of the body are inside an obstacle: exact distances between segments and convex bodies. */
 
-import { distanceToBox, type PreparedBox } from "../camera/spring_arm";
+import { distanceToBounds, distanceToBox, type PreparedBox } from "../camera/spring_arm";
 
 const GOLDEN = (Math.sqrt(5) - 1) / 2;
 const ROUNDS = 18;
@@ -43,7 +43,7 @@ export function nearestOnSegment(
   return candidates.reduce((best, next) => (next.distance < best.distance ? next : best));
 }
 
-/** Whether capsule `i` touches any box. */
+/** Whether capsule `i` touches anything. */
 export function capsuleTouches(
   boxes: readonly PreparedBox[], segments: ArrayLike<number>, i: number, radius: number,
 ): boolean {
@@ -53,6 +53,6 @@ export function capsuleTouches(
   const mz = ((segments[at + 2] ?? 0) + (segments[at + 5] ?? 0)) / 2;
   const half = Math.hypot((segments[at + 3] ?? 0) - mx, (segments[at + 4] ?? 0) - my, (segments[at + 5] ?? 0) - mz);
   return boxes.some(
-    (box) => distanceToBox(box, mx, my, mz) < radius + half && segmentBoxDistance(box, segments, at) < radius,
+    (box) => distanceToBounds(box, mx, my, mz) < radius + half && segmentBoxDistance(box, segments, at) < radius,
   );
 }

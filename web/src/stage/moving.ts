@@ -1,11 +1,11 @@
-/** Where boxes on tracks are at a time; the same rule as in elbowroom/world/moving.py. */
+/** Where obstacles on tracks are at a time; the same rule as in elbowroom/world/obstacles/moving.py. */
 
 import type { OrientedBox } from "../camera/spring_arm";
-import type { MovingBox } from "../generated/messages";
+import type { MovingObstacle } from "../generated/messages";
 
-/** The box as it stands at the scene's `time`, seconds. */
-export function boxAt(box: MovingBox, time: number): OrientedBox {
-  const { times, centers, yaws, size } = box;
+/** The box round it as it stands at the scene's `time`, seconds. */
+export function boxAt(box: MovingObstacle, time: number): OrientedBox {
+  const { times, centers, yaws, form: { size } } = box;
   const at = within(box, time);
   let k = 0;
   while (k < times.length - 2 && (times[k + 1] ?? 0) <= at) k++;
@@ -22,7 +22,7 @@ export function boxAt(box: MovingBox, time: number): OrientedBox {
 }
 
 /** The time between the first key pose and the last that `time` stands for. */
-function within({ times, repeat }: MovingBox, time: number): number {
+function within({ times, repeat }: MovingObstacle, time: number): number {
   const span = times[times.length - 1] ?? 0;
   if (span === 0 || repeat === "once") return Math.min(Math.max(time, times[0] ?? 0), span);
   if (repeat === "loop") return remainder(time, span);

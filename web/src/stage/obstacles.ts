@@ -1,9 +1,13 @@
-/** The scene's boxes as things to look at: softly bevelled, each kind of size in its own calm colour. */
+/** The scene's obstacles as things to look at: boxes softly bevelled, each in its own calm colour. */
 
-import { Group, Mesh, MeshLambertMaterial, MeshStandardMaterial, Quaternion } from "three";
+import {
+  BufferGeometry, CapsuleGeometry, CylinderGeometry, Float32BufferAttribute, Group, Mesh, MeshLambertMaterial,
+  MeshStandardMaterial, Quaternion, SphereGeometry,
+} from "three";
 import { RoundedBoxGeometry } from "three/addons/geometries/RoundedBoxGeometry.js";
 import { damp } from "../camera/damping";
 import type { OrientedBox } from "../camera/spring_arm";
+import type { Form } from "../generated/messages";
 import type { Palette } from "./palette";
 
 const BEVEL = 0.022;
@@ -12,50 +16,58 @@ const SEE_THROUGH = 0.2;
 const FADE_HALFLIFE = 0.09;
 const GLOW = 0.5;
 
-type BoxMesh = Mesh<RoundedBoxGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+const ROUND = 48;
+
+type ObstacleMesh = Mesh<BufferGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+
+/** What is drawn, and the box round it. */
+export interface DrawnObstacle {
+  readonly form: Form;
+  readonly box: OrientedBox;
+}
 
 export class Obstacles {
   readonly group = new Group();
   private marked: ReadonlySet<number> = new Set();
   private glow = 0;
 
-  /** Replaces all boxes; `rich` ones have physically based surfaces. */
-  build(boxes: readonly OrientedBox[], palette: Palette, rich: boolean): void {
+  /** Replaces all obstacles; `rich` ones have physically based surfaces. */
+  build(obstacles: readonly DrawnObstacle[], palette: Palette, rich: boolean): void {
     this.clear();
     this.glow = palette.touching;
-    boxes.forEach((box, i) => {
+    obstacles.forEach((obstacle, i) => {
       const colour = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
-      this.group.add(boxMesh(box, colour, rich));
+      this.group.add(obstacleMesh(obstacle, colour, rich));
     });
     this.glowMarked();
   }
 
-  /** Puts a box to another place, by number. */
+  /** Puts an obstacle to another place, by number. */
   place(i: number, { center, rotation }: OrientedBox): void {
     const mesh = this.group.children[i];
     mesh?.position.set(...center);
     mesh?.quaternion.set(...rotation);
   }
 
-  /** Lets some boxes glow, by number: those that close the way. */
-  mark(boxes: ReadonlySet<number>): void {
-    if (boxes.size === this.marked.size && [...boxes].every((i) => this.marked.has(i))) return;
-    this.marked = boxes;
+  /** Lets some obstacles glow, by number: those that close the way. */
+  mark(numbers: ReadonlySet<number>): void {
+    if (numbers.size === this.marked.size && [...numbers].every((i) => this.marked.has(i))) return;
+    this.marked = numbers;
     this.glowMarked();
   }
 
   private glowMarked(): void {
     this.group.children.forEach((child, i) => {
-      const { material } = child as BoxMesh;
+      const { material } = child as ObstacleMesh;
       material.emissive.setHex(this.marked.has(i) ? this.glow : 0x000000);
       material.emissiveIntensity = GLOW;
     });
   }
 
-  /** Moves each box towards see-through or solid; `hides` tells which box is in the way. */
+  /** Moves each obstacle towards see-through or solid; `hides` tells which is in the way. */
   fade(hides: (i: number) => boolean, dt: number): void {
     this.group.children.forEach((child, i) => {
-      const { material } = child as BoxMesh;
+      const { material } = child as ObstacleMesh;
       const wanted = hides(i) ? SEE_THROUGH : 1;
       const opacity = Math.abs(material.opacity - wanted) < 0.01 ? wanted : damp(material.opacity, wanted, FADE_HALFLIFE, dt);
       if (opacity === material.opacity) return;
@@ -68,7 +80,7 @@ export class Obstacles {
 
   private clear(): void {
     for (const child of [...this.group.children]) {
-      const mesh = child as BoxMesh;
+      const mesh = child as ObstacleMesh;
       mesh.geometry.dispose();
       mesh.material.dispose();
       this.group.remove(mesh);
@@ -76,14 +88,35 @@ export class Obstacles {
   }
 }
 
-function boxMesh(box: OrientedBox, color: number, rich: boolean): Mesh {
-  const [hx, hy, hz] = box.halfSize;
-  const bevel = Math.min(BEVEL, 0.35 * Math.min(hx, hy, hz));
-  const geometry = new RoundedBoxGeometry(2 * hx, 2 * hy, 2 * hz, BEVEL_SEGMENTS, bevel);
+function obstacleMesh({ form, box }: DrawnObstacle, color: number, rich: boolean): Mesh {
   const material = rich ? new MeshStandardMaterial({ color, roughness: 0.78 }) : new MeshLambertMaterial({ color });
-  const mesh = new Mesh(geometry, material);
+  const mesh = new Mesh(geometryOf(form), material);
   mesh.position.set(...box.center);
   mesh.quaternion.copy(new Quaternion(...box.rotation));
   mesh.castShadow = mesh.receiveShadow = true;
   return mesh;
+}
+
+function geometryOf({ shape, size, corners, triangles }: Form): BufferGeometry {
+  const [wide, high, deep] = size, radius = wide / 2;
+  switch (shape) {
+    case "box":
+      return new RoundedBoxGeometry(wide, high, deep, BEVEL_SEGMENTS, Math.min(BEVEL, 0.175 * Math.min(wide, high, deep)));
+    case "sphere":
+      return new SphereGeometry(radius, ROUND, ROUND / 2);
+    case "capsule":
+      return new CapsuleGeometry(radius, high - wide, ROUND / 4, ROUND);
+    case "cylinder":
+      return new CylinderGeometry(radius, radius, high, ROUND);
+    case "hull":
+      return faceted(triangles.flatMap((triangle) => triangle.flatMap((i) => corners[i] ?? [0, 0, 0])));
+  }
+}
+
+/** Triangles, nine numbers each, with a sharp edge between any two. */
+function faceted(positions: readonly number[]): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
+  geometry.computeVertexNormals();
+  return geometry;
 }

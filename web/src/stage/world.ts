@@ -1,12 +1,13 @@
-/** The scene on the stage: floor, boxes, start and gate, kept so that a change of colours can build it anew. */
+/** The scene on the stage: floor, obstacles, start and gate, kept so that a change of colours can build it anew. */
 
 import { Group } from "three";
+import { convexBody } from "../camera/convex_body";
 import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type PreparedBox, type Vec3 } from "../camera/spring_arm";
-import type { Box, SceneMessage } from "../generated/messages";
+import type { Form, MovingObstacle, Obstacle, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";
 import { boxAt } from "./moving";
-import { Obstacles } from "./obstacles";
+import { Obstacles, type DrawnObstacle } from "./obstacles";
 import { nearestOnSegment } from "../overlays/touching";
 import type { Palette } from "./palette";
 
@@ -29,30 +30,30 @@ export class World {
 
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
-    this.boxes = allBoxes(message).map(prepareBox);
+    this.boxes = allObstacles(message).map(({ form, box }) => prepareBox(inBox(form, box)));
     this.cameraObstacles = { all: this.boxes, walls: this.boxes.filter((box) => isWall(box)) };
     this.repaint(palette, rich);
   }
 
-  /** Lets the boxes of these names glow: they close the way. */
+  /** Lets the obstacles of these names glow: they close the way. */
   markBlocking(names: readonly string[]): void {
     const wanted = new Set(names);
     const numbers = this.names.flatMap((name, i) => (wanted.has(name) ? [i] : []));
     this.obstacles.mark(new Set(numbers));
   }
 
-  /** The names of all boxes, in the order of `boxes`. */
+  /** The names of all obstacles, in the order of `boxes`. */
   get names(): string[] {
-    return this.message ? [...this.message.boxes, ...this.message.moving].map((box) => box.name) : [];
+    return this.message ? [...this.message.obstacles, ...this.message.moving].map((one) => one.name) : [];
   }
 
   /** Puts what moves to where it is at the scene's time. */
   move(time: number): void {
     const { message } = this;
     message?.moving.forEach((track, i) => {
-      const at = message.boxes.length + i, box = boxAt(track, time);
+      const at = message.obstacles.length + i, box = boxAt(track, time), body = this.boxes[at]?.body;
       this.obstacles.place(at, box);
-      this.boxes[at] = prepareBox(box);
+      this.boxes[at] = prepareBox(body ? { ...box, body } : box);
     });
   }
 
@@ -61,7 +62,7 @@ export class World {
     this.ground.follow(x, z);
   }
 
-  /** Makes boxes see-through that stand between the camera and the avatar. */
+  /** Makes obstacles see-through that stand between the camera and the avatar. */
   clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
   }
@@ -71,8 +72,8 @@ export class World {
     const { message } = this;
     if (!message) return;
     const { ground, start, finish } = message;
-    this.obstacles.build(allBoxes(message), palette, rich);
-    const standing = this.boxes.slice(0, message.boxes.length);
+    this.obstacles.build(allObstacles(message), palette, rich);
+    const standing = this.boxes.slice(0, message.obstacles.length);
     this.ground.lay(ground.size[0], ground.size[1], ground.center, standing, palette, rich);
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
     this.gate.build(gate, [start.x, start.z], palette);
@@ -87,11 +88,17 @@ function hides(box: PreparedBox | undefined, camera: Vec3, body: readonly Vec3[]
   });
 }
 
-/** The boxes that stand, then those that move, where they begin. */
-function allBoxes({ boxes, moving }: SceneMessage): OrientedBox[] {
-  return [...boxes.map(orientedBox), ...moving.map((track) => boxAt(track, 0))];
+/** The obstacles that stand, then those that move, where they begin. */
+function allObstacles({ obstacles, moving }: SceneMessage): DrawnObstacle[] {
+  const standing = obstacles.map((one: Obstacle) => ({ form: one.form, box: orientedBox(one) }));
+  return [...standing, ...moving.map((one: MovingObstacle) => ({ form: one.form, box: boxAt(one, 0) }))];
 }
 
-function orientedBox({ center, rotation, size }: Box): OrientedBox {
+function orientedBox({ center, rotation, form: { size } }: Obstacle): OrientedBox {
   return { center, rotation, halfSize: [size[0] / 2, size[1] / 2, size[2] / 2] };
+}
+
+function inBox(form: Form, box: OrientedBox): OrientedBox {
+  const body = convexBody(form);
+  return body ? { ...box, body } : box;
 }

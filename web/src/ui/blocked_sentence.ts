@@ -5,12 +5,12 @@ import type { Blocked } from "../generated/messages";
 const MOST_NAMES = 3;
 
 /** "No way on: beam 2 and crate 3 leave no posture at 0.8 m ahead". */
-export function blockedSentence({ reason, boxes, ahead }: Blocked): string {
+export function blockedSentence({ reason, obstacles, ahead }: Blocked): string {
   const where = ahead < 0.05 ? "here" : `${ahead.toFixed(1)} m ahead`;
-  if (boxes.length === 0 || reason === "motion") return `No way on: every motion that was tried touches ${where}`;
-  const verb = boxes.length === 1 ? "leaves" : "leave";
+  if (obstacles.length === 0 || reason === "motion") return `No way on: every motion that was tried touches ${where}`;
+  const verb = obstacles.length === 1 ? "leaves" : "leave";
   const what = reason === "noPosture" ? "no posture" : "no posture in reach";
-  return `No way on: ${listed(boxes)} ${verb} ${what} ${where === "here" ? "here" : `at ${where}`}`;
+  return `No way on: ${listed(obstacles)} ${verb} ${what} ${where === "here" ? "here" : `at ${where}`}`;
 }
 
 function listed(names: readonly string[]): string {

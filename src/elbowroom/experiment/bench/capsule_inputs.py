@@ -1,5 +1,6 @@
 """The inputs of the collision benchmark: an arm in many postures among a few boxes, the same for every library."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,10 @@ from elbowroom.body.dof import DofGroup, clamp, limits
 from elbowroom.body.kinematics import arm_capsules, body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.rows import rows_of
+from elbowroom.world.obstacles.shapes import Capsule, Cylinder, Hull, Shape, Sphere
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -47,6 +51,30 @@ class CapsuleInputs(NamedTuple):
         flat = axes.reshape(-1, 3)
         turns = quaternion.between(np.tile(_Z, (len(flat), 1)), flat)
         return 0.5 * (ends[..., :3] + ends[..., 3:]), turns.reshape(*axes.shape[:2], 4)
+
+
+def shaped_obstacles(inputs: CapsuleInputs, seed: int) -> dict[str, Nearby]:
+    """Random obstacles of the other shapes, as large as the boxes and in their places."""
+    rng = np.random.default_rng(seed)
+
+    def hull(size: Floats, points: int) -> Hull:
+        rows = rng.normal(size=(points, 3))
+        rows *= size / np.linalg.norm(rows, axis=1, keepdims=True)
+        return Hull(tuple((x, y, z) for x, y, z in rows.tolist()))
+
+    made: dict[str, Callable[[Floats], Shape]] = {
+        "spheres": lambda half: Sphere(float(half.min())),
+        "capsules": lambda half: Capsule(float(half[0]), 2.0 * float(half[1])),
+        "cylinders": lambda half: Cylinder(float(half[0]), 2.0 * float(half[1])),
+        "hulls of 8 points": lambda half: hull(half, 8),
+        "hulls of 20 points": lambda half: hull(half, 20),
+        "hulls of 60 points": lambda half: hull(half, 60),
+    }
+    boxes = inputs.boxes
+    return {
+        name: rows_of([make(half) for half in boxes.half_sizes], boxes.centers, boxes.rotations)
+        for name, make in made.items()
+    }
 
 
 def capsule_inputs(postures: int, boxes: int, seed: int) -> CapsuleInputs:

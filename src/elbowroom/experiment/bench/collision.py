@@ -1,14 +1,19 @@
-"""How many capsule-box checks a second, on one core, beside the libraries that a user could take instead."""
+"""How many capsule-box checks a second, on one core, beside the libraries that a user could take instead.
+
+The other shapes are timed in turns with the boxes; so is the check of a frame among few and many obstacles.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.bench.capsule_inputs import capsule_inputs
+from elbowroom.experiment.bench.capsule_inputs import capsule_inputs, shaped_obstacles
+from elbowroom.experiment.bench.frame_check import FrameCosts, frame_costs
 from elbowroom.experiment.bench.rivals import Rival, rivals
 from elbowroom.experiment.bench.vector_code import vector_bits
 from elbowroom.world.obstacles.clearance import clearance, clearance_into
@@ -17,7 +22,7 @@ Bools = NDArray[np.bool_]
 
 _CLOSE = 1e-6  # metres: nearer to touching than this, single precision may say either
 _MOST = 1_000_000  # postures
-_CALLS = 5  # in a round; the best counts
+_CALLS, _FEW_CALLS = 5, 2  # in a round; the best counts
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,8 @@ class CollisionReport:
     rivals: tuple[Speed, ...]
     missing: tuple[str, ...]  # rivals that are not installed
     touching_share: float
+    shapes: tuple[Speed, ...]  # ours against other shapes; `ratio` is that of boxes to them
+    frame: FrameCosts
 
 
 def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: None) -> CollisionReport:
@@ -70,9 +77,17 @@ def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: Non
     answers = [other.touching() for other in others]
     near, out = inputs.boxes.standing, np.empty(inputs.segments.shape[2], np.float32)
     own_rates: list[float] = []
+    shaped = shaped_obstacles(inputs, settings.seed)
+    shape_rates: dict[str, list[float]] = {name: [] for name in shaped}
     rates: list[list[float]] = [[] for _ in others]
     for number in range(settings.rounds):
         own_rates.append(_rate(inputs.checks, lambda: clearance_into(inputs.segments, inputs.radii, near, out)))
+        for name, other_near in shaped.items():
+            shape_rates[name].append(
+                _rate(
+                    inputs.checks, partial(clearance_into, inputs.segments, inputs.radii, other_near, out), _FEW_CALLS
+                )
+            )
         for i, other in enumerate(others):
             rates[i].append(_rate(other.checks, other.touching))
         tick(number + 1)
@@ -85,13 +100,18 @@ def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: Non
         ),
         missing=tuple(missing),
         touching_share=float(np.mean(clear < 0.0)),
+        shapes=tuple(
+            Speed(name, "clearance_into", float(np.median(own)), ratio=float(np.median(own_rates) / np.median(own)))
+            for name, own in shape_rates.items()
+        ),
+        frame=frame_costs(),
     )
 
 
-def _rate(checks: int, call: Callable[[], object]) -> float:
+def _rate(checks: int, call: Callable[[], object], calls: int = _CALLS) -> float:
     """Checks a second of processor time, the same for all: other work on the machine counts little."""
     best = np.inf
-    for _ in range(_CALLS):
+    for _ in range(calls):
         began = process_time()
         call()
         best = min(best, process_time() - began)

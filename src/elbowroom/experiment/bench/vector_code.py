@@ -8,9 +8,9 @@ import numba
 import numpy as np
 
 from elbowroom.world.obstacles import capsule_box
-from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 
 _ARITHMETIC = r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%"
+_ENOUGH = 256  # numbers of a tile, of a row, of sixteen lanes
 _BITS = {"zmm": 512, "ymm": 256, "xmm": 128}
 
 
@@ -20,8 +20,8 @@ def clearance_loop_code() -> str:
     kernel = cast(Any, capsule_box.lower_from_boxes)
     options = {key: value for key, value in kernel.targetoptions.items() if key != "nopython"}
     fresh = numba.njit(**options)(kernel.py_func)
-    tile, box = np.zeros(TILE, np.float32), np.zeros(ROW, np.float32)
-    fresh(tile, box, np.zeros((1, 2), np.int64), 0, np.zeros(LANES, np.float32))
+    tile, box = np.zeros(_ENOUGH, np.float32), np.zeros(_ENOUGH, np.float32)
+    fresh(tile, box, np.zeros((1, 2), np.int64), 0, np.zeros(_ENOUGH, np.float32))
     return "\n".join(fresh.inspect_asm().values())
 
 

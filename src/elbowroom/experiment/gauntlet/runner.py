@@ -36,6 +36,7 @@ class GauntletSettings:
     trial: TrialSettings = field(default_factory=TrialSettings)
     judge: bool = False  # whether another library judges every walk
     avatar: AvatarReference | None = None  # who walks courses made for its body; None: the stock avatar
+    shapes: bool = False  # whether boxes are cut down to spheres, capsules, cylinders and hulls
 
     def __post_init__(self) -> None:
         level_of(self.level)
@@ -49,7 +50,7 @@ class GauntletSettings:
     def tasks(self) -> list[CourseTask]:
         """A task for every course."""
         seeds = range(self.seed, self.seed + self.courses)
-        return [CourseTask(self.level, seed, self.trial, self.judge, self.avatar) for seed in seeds]
+        return [CourseTask(self.level, seed, self.trial, self.judge, self.avatar, self.shapes) for seed in seeds]
 
 
 def identity(settings: GauntletSettings) -> dict[str, Any]:
@@ -62,6 +63,7 @@ def identity(settings: GauntletSettings) -> dict[str, Any]:
         **asdict(settings.trial),
         "interval": ControlSettings.interval,
         "judge": settings.judge,
+        "shapes": settings.shapes,
         "avatar": "stock" if settings.avatar is None else asdict(replace(settings.avatar, path="")),
         "machine": this_machine() | {"kind": machine_kind()},
     }

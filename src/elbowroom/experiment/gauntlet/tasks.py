@@ -13,6 +13,7 @@ from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT, warm_up
 from elbowroom.experiment.gauntlet.course import Course, CourseMaker
+from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.planning.command import Command
 
@@ -28,6 +29,7 @@ class CourseTask:
     settings: TrialSettings
     judge: bool = False
     avatar: AvatarReference | None = None  # None: the stock one
+    shapes: bool = False  # whether boxes are cut down to other shapes
 
     @property
     def key(self) -> str:
@@ -38,6 +40,7 @@ class CourseTask:
         """The result as a plain record, see `result_of`."""
         humanoid, maker = _opened(self.avatar)
         course = maker.course(self.level, self.seed)
+        course = in_shapes(course) if self.shapes else course
         controller = controller_on(humanoid, course, self.settings)
         warm_up(controller)
         shown: list[Frame] = []

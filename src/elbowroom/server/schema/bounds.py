@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from elbowroom.control import settings
 
-PROTOCOL = 1  # raised with every change that an older client would misread
+PROTOCOL = 2  # raised with every change that an older client would misread
 MAX_MESSAGE = 64 * 1024  # bytes in a client's text message
 MAX_UPLOAD = 64 * 1024 * 1024  # bytes in an avatar file dropped on the page
 QUEUE_SIZES = tuple(settings.QUEUE_SIZES)

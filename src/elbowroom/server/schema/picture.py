@@ -33,12 +33,22 @@ class Ground:
 
 
 @dataclass(frozen=True)
-class Box:
-    """An obstacle."""
+class Form:
+    """The shape of an obstacle, about its own origin and along its own axes; capsules and cylinders are about Y."""
+
+    shape: Literal["box", "sphere", "capsule", "cylinder", "hull"]
+    size: Vector  # whole edge lengths of the box about the origin that holds it
+    corners: list[Vector]  # of a hull; else none
+    triangles: list[tuple[int, int, int]]  # of a hull's surface, counter-clockwise seen from outside; else none
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """What stands in the way."""
 
     name: str
-    center: Vector
-    size: Vector  # whole edge lengths
+    form: Form
+    center: Vector  # of its origin
     rotation: Quaternion
 
 
@@ -62,11 +72,11 @@ class Place:
 
 
 @dataclass(frozen=True)
-class MovingBox:
-    """An upright box on a track: its place and its turn about Y change evenly from key pose to key pose."""
+class MovingObstacle:
+    """A shape on a track, its Y upright: its place and its turn about Y change evenly from key pose to key pose."""
 
     name: str
-    size: Vector  # whole edge lengths
+    form: Form
     times: list[float]  # of the key poses, in simulated seconds since the last reset
     centers: list[Vector]
     yaws: list[float]  # radians
@@ -81,8 +91,8 @@ class SceneMessage:
     title: str
     description: str
     ground: Ground
-    boxes: list[Box]
-    moving: list[MovingBox]
+    obstacles: list[Obstacle]
+    moving: list[MovingObstacle]
     start: Place
     finish: Gate | None
 

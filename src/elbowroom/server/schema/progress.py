@@ -20,12 +20,12 @@ class GroupReport:
 
 @dataclass(frozen=True)
 class Nearest:
-    """The nearest obstacle: which capsule, which box, and the two points."""
+    """The nearest obstacle: which capsule, which obstacle, and the two points."""
 
     capsule: str
-    box: str
+    obstacle: str
     on_body: Vector
-    on_box: Vector
+    on_obstacle: Vector
     distance: float  # negative: touching
 
 
@@ -34,7 +34,7 @@ class Blocked:
     """Why the upper body has no way on, proved by the planner."""
 
     reason: Reason
-    boxes: list[str]  # names of the obstacles that together close it, each of them needed
+    obstacles: list[str]  # names of the obstacles that together close it, each of them needed
     ahead: float  # metres along the way
     place: tuple[float, float]  # x, z
 
