@@ -41,6 +41,7 @@ def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer
     boxes: Any = live_server.get_json("/api/scenes/a")["boxes"]
     live = open_page("scene=a")
     live.wait("s.scene === 'a'")
+    start = live.state()["root"]
     keyboard = live.page.keyboard
     nearest = np.inf
     for _ in range(6):
@@ -61,6 +62,15 @@ def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer
     assert state["crossed"] == 1, state
     assert nearest > 0.05, "the camera went into a wall"
     live.page.wait_for_selector("#status:has-text('Through in')")
+    assert "Least clearance" in live.page.inner_text("#finish")
+    live.page.click("#finish-again")
+    live.page.wait_for_selector("#finish", state="hidden")
+    live.wait(f"Math.hypot(s.root.x - {start['x']}, s.root.z - {start['z']}) < 0.1")
+    live.page.select_option("#course-level", "1")
+    live.page.fill("#course-seed", "7")
+    live.page.keyboard.press("Enter")
+    live.wait("s.scene === 'gauntlet:1:7' && s.crossed === 0")
+    assert live.page.input_value("#scene") == "gauntlet:1:7"
 
 
 def test_keys_are_released_on_blur(open_page: Open) -> None:

@@ -16,10 +16,12 @@ import { Session, type SessionListener } from "./net/session";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import { Picture } from "./picture";
 import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
+import { BestTimes, nextScene } from "./results";
 import { showAvatarAbout } from "./ui/avatar_about";
 import { byId } from "./ui/dom";
 import { listenForFiles } from "./ui/file_drop";
 import { keepKeysOnView } from "./ui/focus";
+import { FinishCard, type FinishDeed } from "./ui/finish_card";
 import { Help } from "./ui/help";
 import { Hud } from "./ui/hud";
 import { Menu, type MenuListener } from "./ui/menu";
@@ -52,6 +54,8 @@ export class App implements SessionListener, MenuListener {
   private readonly pointer: PointerInput;
   private readonly hud = new Hud();
   private readonly help = new Help();
+  private readonly finishCard = new FinishCard((deed) => this.goOn(deed));
+  private readonly best = new BestTimes(localStore());
   private readonly notices = new Notices();
   private readonly statusLine = new StatusLine();
   private readonly veil = new Veil();
@@ -105,6 +109,8 @@ export class App implements SessionListener, MenuListener {
     this.sceneMessage = scene;
     this.picture.showScene(scene);
     this.statusLine.restart();
+    this.finishCard.hide();
+    this.menu.addScene(scene.name, scene.title);
     byId("place", HTMLElement).textContent = scene.title;
     document.title = `${scene.title} · Elbowroom`;
   }
@@ -152,6 +158,9 @@ export class App implements SessionListener, MenuListener {
 
   crossed(crossed: Crossed): void {
     this.statusLine.crossed(crossed, performance.now() / 1000);
+    const { assist = true, planner = "" } = this.session.settings ?? {};
+    const best = assist ? this.best.note(this.sceneMessage?.name ?? "", planner, crossed.seconds) : null;
+    this.finishCard.show({ crossed, clearance: this.session.leastClearance.value, assist, best });
     this.picture.world.gate.flash();
   }
 
@@ -241,6 +250,7 @@ export class App implements SessionListener, MenuListener {
   private readonly actions: Readonly<Record<Deed, () => void>> = {
     reset: () => {
       this.statusLine.restart();
+      this.finishCard.hide();
       this.session.send({ type: "reset" });
     },
     pause: () => this.session.send({ type: "clock", paused: !this.session.settings?.paused }),
@@ -258,10 +268,22 @@ export class App implements SessionListener, MenuListener {
     share: () => this.share(),
     help: () => this.help.toggle(),
     escape: () => {
+      this.finishCard.hide();
       this.setBare(false);
       this.view.focus();
     },
   };
+
+  /** After the finish. */
+  private goOn(deed: FinishDeed): void {
+    const { scene, assist } = this.session.settings ?? {};
+    if (deed === "next" && scene) {
+      this.configure({ scene: nextScene(scene, this.menu.offered) });
+      return;
+    }
+    if (deed === "compare") this.configure({ assist: !assist });
+    this.action("reset");
+  }
 
   private controlsHost(): ConstructorParameters<typeof Controls>[0] {
     return {
@@ -350,6 +372,14 @@ export class App implements SessionListener, MenuListener {
       markTouching: settings?.assist === false,
     }, dt);
     this.framesDrawn++;
+  }
+}
+
+function localStore(): Storage | null {
+  try {
+    return window.localStorage;
+  } catch {
+    return null;
   }
 }
 

@@ -5,6 +5,7 @@ import {
   type Loading, type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
 } from "../generated/messages";
 import type { SessionWishes } from "../preferences";
+import { LeastClearance } from "../results";
 import { Connection, type ConnectionState } from "./connection";
 import { PoseTimeline, type ShownPose } from "./pose_timeline";
 import { ServerClock } from "./server_clock";
@@ -39,6 +40,9 @@ export class Session {
   status: Status | null = null;
   framesReceived = 0;
   timesOpened = 0;
+  /** On the way since the start. */
+  readonly leastClearance = new LeastClearance();
+  private start: readonly [number, number] = [0, 0];
   private readonly timeline = new PoseTimeline();
   private readonly clock = new ServerClock();
   private readonly connection: Connection;
@@ -101,6 +105,7 @@ export class Session {
 
   private receivePose(frame: PoseFrame): void {
     this.framesReceived++;
+    this.leastClearance.add(frame, this.start);
     this.clock.arrived(frame.time, performance.now() / 1000);
     this.timeline.push(frame);
   }
@@ -137,6 +142,7 @@ export class Session {
         listener.status(message);
         break;
       case "scene":
+        this.start = [message.start.x, message.start.z];
         listener.scene(message);
         break;
       case "avatar":

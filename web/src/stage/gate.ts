@@ -6,7 +6,7 @@ import {
 } from "three";
 import type { Palette } from "./palette";
 
-const HEIGHT = 2.72;
+const HEIGHT = 3.05; // the camera from behind passes under the banner
 const BANNER = 0.42;
 const POST = 0.035;
 const SQUARE = 0.14; // of the chequered band, metres

@@ -26,6 +26,9 @@ const ROWS = [
   ["stuck", "Stuck", ""],
 ] as const;
 
+/** A longer queue is told in figures alone. */
+const MOST_PIPS = 10;
+
 type RowName = (typeof ROWS)[number][0];
 
 export class Hud {
@@ -70,9 +73,8 @@ export class Hud {
   }
 
   private showQueue(fill: number, size: number): void {
-    if (this.pips.children.length !== size) {
-      this.pips.replaceChildren(...Array.from({ length: size }, () => make("i")));
-    }
+    const pips = size <= MOST_PIPS ? size : 0;
+    if (this.pips.children.length !== pips) this.pips.replaceChildren(...Array.from({ length: pips }, () => make("i")));
     [...this.pips.children].forEach((pip, i) => pip.classList.toggle("full", i < fill));
     this.queueText.data = `${Math.min(fill, size)}/${size}`;
   }

@@ -6,6 +6,7 @@ import type { Action } from "../input/keyboard";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
 import type { Preferences } from "../preferences";
 import { ClipPanel } from "./clip_panel";
+import { CoursePanel } from "./course_panel";
 import { byId, make, setOptions } from "./dom";
 
 /** What the user does with the menu. */
@@ -23,6 +24,9 @@ const NARROW = "(max-width: 900px), (max-height: 540px)";
 
 export class Menu {
   readonly clips: ClipPanel;
+  /** The names of the scenes in the list, in its order. */
+  offered: readonly string[] = [];
+  private readonly courses: CoursePanel;
   private readonly panel = byId("menu", HTMLElement);
   private readonly button = byId("menu-button", HTMLButtonElement);
   private readonly scene = byId("scene", HTMLSelectElement);
@@ -38,6 +42,7 @@ export class Menu {
 
   constructor(private readonly listener: MenuListener, preferences: Preferences) {
     this.clips = new ClipPanel((change) => listener.configure(change));
+    this.courses = new CoursePanel((scene) => listener.configure({ scene }));
     this.listenToLists();
     this.listenToSliders();
     this.listenToFile();
@@ -64,6 +69,8 @@ export class Menu {
   }
 
   showCatalog(catalog: Catalog): void {
+    this.offered = catalog.scenes.map(({ name }) => name);
+    this.courses.showCatalog(catalog);
     setOptions(this.scene, catalog.scenes.map((s) => [s.name, s.title]));
     setOptions(this.avatar, catalog.avatars.map((a) => [a.id, a.title]));
     this.clips.add(catalog.clips);
@@ -75,6 +82,7 @@ export class Menu {
   }
 
   showSettings(settings: Settings): void {
+    this.courses.showScene(settings.scene);
     this.scene.value = settings.scene;
     this.avatar.value = settings.avatar;
     this.planner.value = settings.planner;
@@ -92,6 +100,16 @@ export class Menu {
     for (const slow of document.querySelectorAll("[data-action=slow]")) {
       slow.setAttribute("aria-pressed", String(settings.speed < 1));
     }
+  }
+
+  /** Adds a scene that the list does not offer: a course by its seed. */
+  addScene(name: string, title: string): void {
+    if ([...this.scene.options].some((option) => option.value === name)) return;
+    this.scene.querySelector("[data-passing]")?.remove();
+    const option = new Option(title, name);
+    option.dataset["passing"] = "";
+    this.scene.add(option);
+    this.scene.value = name;
   }
 
   /** Adds an avatar that came as a file, unless the list has it. */
