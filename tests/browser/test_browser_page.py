@@ -124,6 +124,7 @@ def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     mine.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
     avatar = mine.wait("s.settings.avatar !== 'stock'", 60)["settings"]["avatar"]
     assert avatar not in open_page("scene=empty").page.evaluate(titles)
+    open_page(f"scene=empty&avatar={avatar}").wait(f"s.settings.avatar === '{avatar}'")  # whoever is told may use it
     mine.page.reload()
     mine.wait("s.settings && s.connected")
     assert avatar in mine.page.evaluate(titles)

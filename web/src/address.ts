@@ -33,9 +33,16 @@ export function queryOf({ settings, camera, overlays }: Place, before: string): 
   return `?${query}`.replaceAll("%3A", ":").replaceAll("%2C", ",");
 }
 
-/** Whether the avatar is a file of this page's own, which nobody else has. */
+/** Whether the avatar was dropped on a page: nobody else is told of it. */
 export function isPrivate(avatar: string): boolean {
   return DROPPED.test(avatar);
+}
+
+/** An address that names this page's own avatar too: handing it on is what shares the file. */
+export function withOwnAvatar(address: string, avatar: string): string {
+  const url = new URL(address);
+  if (isPrivate(avatar)) url.searchParams.set("avatar", avatar);
+  return url.href.replaceAll("%3A", ":").replaceAll("%2C", ",");
 }
 
 /** Whether the way from one query to another is a step to go back by. */

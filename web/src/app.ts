@@ -1,6 +1,6 @@
 /** The page: brings session, picture, controls and panels together, a frame at a time. */
 
-import { AddressLine, isPrivate } from "./address";
+import { AddressLine, isPrivate, withOwnAvatar } from "./address";
 import { uploadFile } from "./avatar/upload";
 import { nextView, viewNamed, type ViewName } from "./camera/views";
 import { FrameStats } from "./frame_stats";
@@ -132,9 +132,11 @@ export class App implements SessionListener, MenuListener {
     this.menu.clips.show(message);
   }
 
-  avatarLost(id: string): void {
+  avatarLost(id: string): boolean {
     if (this.lastFile) this.file(this.lastFile);
+    else if (isPrivate(id)) return false;
     else this.notices.show("warning", `The server has no avatar "${id}"; the stock one stands in.`);
+    return true;
   }
 
   status(status: Status): void {
@@ -192,8 +194,8 @@ export class App implements SessionListener, MenuListener {
   }
 
   private share(): void {
-    const own = isPrivate(this.session.settings?.avatar ?? "");
-    void shareAddress(document.title, own).then((said) => said && this.notices.show("info", said));
+    const avatar = this.session.settings?.avatar ?? "";
+    void shareAddress(document.title, withOwnAvatar(location.href, avatar), isPrivate(avatar)).then((said) => said && this.notices.show("info", said));
   }
 
   prefer(change: Partial<Preferences>): void {

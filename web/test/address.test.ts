@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { isPrivate, isStep, queryOf } from "../src/address";
+import { isPrivate, isStep, queryOf, withOwnAvatar } from "../src/address";
 import type { Settings } from "../src/generated/messages";
 import { readWishes } from "../src/preferences";
 
@@ -29,6 +29,12 @@ describe("the address line", () => {
     const own = { ...settings, avatar: "0123456789abcdef" };
     expect(isPrivate(own.avatar)).toBe(true);
     expect(queryOf({ ...place, settings: own }, "?avatar=alice")).not.toContain("avatar");
+  });
+
+  it("names the page's own avatar only where it is handed on", () => {
+    const own = withOwnAvatar("http://here/?scene=gauntlet:3:17&overlays=path,ghosts", "0123456789abcdef");
+    expect(own).toBe("http://here/?scene=gauntlet:3:17&overlays=path,ghosts&avatar=0123456789abcdef");
+    expect(withOwnAvatar("http://here/?avatar=alice", "alice")).toBe("http://here/?avatar=alice");
   });
 
   it("goes a step further when scene, avatar or planner change, not with camera or speed", () => {

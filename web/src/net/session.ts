@@ -21,8 +21,8 @@ export interface SessionListener {
   clip(clip: ClipMessage): void;
   status(status: Status): void;
   plan(plan: Plan): void;
-  /** The server no longer has the chosen avatar. */
-  avatarLost(id: string): void;
+  /** The server does not offer the chosen avatar (any more); false to ask for it all the same: someone has shared it. */
+  avatarLost(id: string): boolean;
   loading(loading: Loading): void;
   crossed(crossed: Crossed): void;
   notice(level: Notice["level"], message: string): void;
@@ -113,10 +113,8 @@ export class Session {
   /** Asks a new connection for what the last one had; an avatar that the server has lost is left out. */
   private greet({ protocol, catalog }: Hello): void {
     const { avatar } = this.choices;
-    if (avatar && !catalog.avatars.some((known) => known.id === avatar)) {
-      this.choices = { ...this.choices, avatar: null };
-      this.listener.avatarLost(avatar);
-    }
+    const offered = catalog.avatars.some((known) => known.id === avatar);
+    if (avatar && !offered && this.listener.avatarLost(avatar)) this.choices = { ...this.choices, avatar: null };
     const { clip } = this.choices;
     if (clip && !catalog.clips.some((known) => known.id === clip)) this.choices = { ...this.choices, clip: "" };
     if (protocol !== PROTOCOL) {

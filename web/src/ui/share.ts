@@ -1,9 +1,8 @@
 /** Hands the page's address to someone: by the system's own dialog on a phone, else into the clipboard. */
 
 /** What became of it, in one sentence for the user; "" where the system's dialog says it. */
-export async function shareAddress(title: string, ownAvatar: boolean): Promise<string> {
-  const url = location.href;
-  const remark = ownAvatar ? " Your own avatar stays here: whoever opens it sees the stock one." : "";
+export async function shareAddress(title: string, url: string, ownAvatar: boolean): Promise<string> {
+  const remark = ownAvatar ? " It names your own avatar too, for as long as this server keeps the file." : "";
   if (window.matchMedia("(pointer: coarse)").matches && "share" in navigator) {
     try {
       await navigator.share({ title, url });
