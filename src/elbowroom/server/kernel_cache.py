@@ -1,7 +1,7 @@
 """Which kernels there are, and which of them are compiled and kept on disk."""
 
 import contextlib
-import hashlib
+import json
 import os
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,11 @@ import numba
 from llvmlite.binding import get_host_cpu_name
 
 from elbowroom.jit import kernels_made
-from elbowroom.kernel_cache import cache_folder
+from elbowroom.kernel_cache import cache_folder, digest_of
 
 _PACKAGE = Path(__file__).parents[1]
 _ROOMS = ("geometry", "body", "clips", "world", "planning", "control")  # whose kernels a live session may use
+_FEW = 10  # files that may have changed and are compiled where they are needed: who develops waits for no more
 
 
 def kernels() -> list[Any]:
@@ -48,25 +49,39 @@ def _is_kept(kernel: Any) -> bool:
 
 
 def is_warm() -> bool:
-    """Whether `mark_warm` was called for the present sources and compiler."""
+    """Whether all that a session needs was compiled, but for a few files that have changed since (`mark_warm`)."""
     try:
-        return _stamp_file().read_text("ascii") == _stamp()
-    except OSError:
+        marked = json.loads(_mark_file().read_text("utf-8"))
+    except (OSError, ValueError):
         return False
+    return is_nearly(marked, _mark())
+
+
+def is_nearly(marked: Any, present: dict[str, Any]) -> bool:
+    """Whether what was marked is what there is now, a few sources aside; the mark may hold anything."""
+    if not isinstance(marked, dict) or marked.get("compiler") != present["compiler"]:
+        return False
+    known = marked.get("sources")
+    if not isinstance(known, dict):
+        return False
+    changed = [file for file, digest in present["sources"].items() if known.get(file) != digest]
+    return len(changed) <= _FEW
 
 
 def mark_warm() -> None:
     """Remember that all that a session needs is compiled and kept."""
     with contextlib.suppress(OSError):
-        _stamp_file().write_text(_stamp(), "ascii")
+        _mark_file().write_text(json.dumps(_mark()), "utf-8")
 
 
-def _stamp_file() -> Path:
-    return (cache_folder(_PACKAGE / "jit.py") or Path(os.devnull)) / "elbowroom-sessions.warm"
+def _mark_file() -> Path:
+    return (cache_folder(_PACKAGE / "errors.py") or Path(os.devnull)) / "elbowroom-sessions.warm"
 
 
-def _stamp() -> str:
-    """What compiled kernels depend on: the sources of the rooms that hold any, the compiler, the processor."""
-    files = sorted(file for room in _ROOMS for file in (_PACKAGE / room).rglob("*.py"))
-    seen = [f"{file.relative_to(_PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files]
-    return hashlib.sha256("\n".join([numba.__version__, get_host_cpu_name(), *seen]).encode()).hexdigest()
+def _mark() -> dict[str, Any]:
+    """What compiled kernels depend on: the sources that hold any, with all that these import; compiler and processor."""
+    files = (file for room in _ROOMS for file in sorted((_PACKAGE / room).rglob("*.py")))
+    sources = {
+        str(file.relative_to(_PACKAGE)): digest_of(file) for file in files if "elbowroom.jit" in file.read_text("utf-8")
+    }
+    return {"compiler": [numba.__version__, get_host_cpu_name()], "sources": sources}
