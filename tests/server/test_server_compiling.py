@@ -53,6 +53,18 @@ def test_nothing_to_compile_starts_no_process(monkeypatch: pytest.MonkeyPatch) -
     compile_apart(lambda kernel, number: None)
 
 
+def test_a_few_changed_files_are_compiled_where_they_are_needed_and_many_ahead() -> None:
+    def mark(changed: int, compiler: str = "1.0") -> dict[str, Any]:
+        return {"compiler": [compiler], "sources": {f"{n}.py": "new" if n < changed else "old" for n in range(60)}}
+
+    assert kernel_cache.is_nearly(mark(0), mark(0))
+    assert kernel_cache.is_nearly(mark(0), mark(5))
+    assert not kernel_cache.is_nearly(mark(0), mark(40))
+    assert not kernel_cache.is_nearly(mark(0), mark(0, "2.0"))
+    for nonsense in ({}, [], None, 3, {"compiler": ["1.0"], "sources": 3}):
+        assert not kernel_cache.is_nearly(nonsense, mark(0))
+
+
 def test_the_parts_process_gets_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     _printing(monkeypatch, dict.fromkeys(PARTS, "import os; print(os.environ['NUMBA_CACHE_DIR'])"))
     heard: list[str] = []

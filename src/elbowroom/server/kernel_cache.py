@@ -79,7 +79,7 @@ def _mark_file() -> Path:
 
 
 def _mark() -> dict[str, Any]:
-    """What compiled kernels depend on: the sources that hold any, with all that these import; compiler and processor."""
+    """What compiled kernels depend on: the sources that hold any, with what these import; compiler and processor."""
     files = (file for room in _ROOMS for file in sorted((_PACKAGE / room).rglob("*.py")))
     sources = {
         str(file.relative_to(_PACKAGE)): digest_of(file) for file in files if "elbowroom.jit" in file.read_text("utf-8")
