@@ -5,6 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from avatar_builder import Recipe, build
+from elbowroom.body.loading import load_humanoid_bytes
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import CourseMaker, make_course
@@ -15,6 +17,7 @@ from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.placing import Placed
 from elbowroom.world.scene import Scene
 from gauntlet_courses import SAMPLE, course, stock
+from odd_bodies import Body, box_body, ring_body
 
 # A body of average proportions: these change only with the generator itself, and then the gauntlet is another one.
 PINNED = {
@@ -161,3 +164,16 @@ def test_a_walk_moves_as_its_states_say() -> None:
     assert walk.states[0, 3] == 0.0
     assert walk.way[-1] >= 6.0
     assert np.all(np.diff(walk.states[:, 6]) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "unit"),
+    [(ring_body(), 1.0), (ring_body(head=0.24), 1.0), (ring_body(), 0.36), (box_body(0.4), 0.6)],
+    ids=["low-poly", "with a big head", "as small as a doll", "a small one of boxes"],
+)
+def test_bodies_of_other_builds_get_courses(body: Body, unit: float) -> None:
+    humanoid = load_humanoid_bytes(build(Recipe(vrm="1", body=body, unit=unit)), "odd.vrm")
+    made = CourseMaker.of(humanoid).course(3, 0)
+    assert len(made.groups) == len(made.passages)
+    assert all(made.groups)
+    assert made.certificate.margin == pytest.approx(0.04 * min(1.0, humanoid.skeleton.height / 1.51), abs=0.01)

@@ -1,15 +1,19 @@
 """Walks through courses: legs are never hindered, who follows the certificate gets through, results add up."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from elbowroom.cli.main import app
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.course import Course, NoCourseError
 from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
 from elbowroom.experiment.gauntlet.summary import GauntletSummary
 from elbowroom.experiment.gauntlet.sweep import STEERING
@@ -131,9 +135,35 @@ def test_an_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     settings, told = GauntletSettings(level=1, courses=4, seed=10), []
     with pytest.raises(KeyboardInterrupt):
         run_gauntlet(settings, folder=tmp_path)
-    results = run_gauntlet(settings, folder=tmp_path, progress=lambda done, total: told.append((done, total)))
+    results, _ = run_gauntlet(settings, folder=tmp_path, progress=lambda done, total: told.append((done, total)))
     assert walked == [10, 11, 12, 12, 13]
     assert told == [(2, 4), (3, 4), (4, 4)]
     assert [each.seed for each in results] == [10, 11, 12, 13]
-    assert len(run_gauntlet(replace(settings, judge=True), folder=tmp_path)) == 4
+    assert len(run_gauntlet(replace(settings, judge=True), folder=tmp_path).results) == 4
     assert walked[5:] == [10, 11, 12, 13]  # other settings, other results
+
+
+def test_a_seed_without_a_course_is_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Maker:
+        def course(self, level: int, seed: int) -> Course:
+            if seed == 11:
+                raise NoCourseError("none")
+            return replace(course(level, 0), seed=seed, limit=0.2)
+
+    def run_here(tasks: list[CourseTask], jobs: int):  # type: ignore[no-untyped-def]
+        yield from ((place, json.loads(json.dumps(task.run()))) for place, task in enumerate(tasks))
+
+    monkeypatch.setattr("elbowroom.experiment.gauntlet.tasks._opened", lambda avatar: (stock()[0], Maker()))
+    monkeypatch.setattr("elbowroom.experiment.gauntlet.runner.run_all", run_here)
+    settings = GauntletSettings(level=1, courses=3, seed=10)
+    for _ in range(2):  # the second time from the log
+        results, without = run_gauntlet(settings, folder=tmp_path)
+        assert [each.seed for each in results] == [10, 12]
+        assert without == (11,)
+    outcome = CliRunner().invoke(
+        app, ["gauntlet", "--level", "1", "--courses", "3", "--seed", "10", "--out", str(tmp_path), "--json", "-q"]
+    )
+    assert outcome.exit_code == 1  # 0.2 s are too short
+    report = json.loads(outcome.stdout)
+    assert (report["courses"], report["without_course"]) == (2, [11])
+    assert "seed 11" in outcome.stderr

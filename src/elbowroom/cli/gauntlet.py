@@ -27,6 +27,8 @@ EXAMPLES = (
     "elbowroom gauntlet --level 4 --save 7 course.json  |  elbowroom gauntlet --level 3 --avatar alice.vrm --judge"
 )
 FELL_SHORT = 1
+_NO_COURSE = "no course for this body from {}: its arms stand out too little beside its trunk and legs"
+_LISTED = 12  # seeds that are named
 
 
 def gauntlet(
@@ -58,7 +60,8 @@ def gauntlet(
     """Walk random courses, each with a proof that this avatar's body can cross it, and count.
 
     Crossed: through in time; straight: and never stuck; stuck: at least once; stopped: not through, but never touching.
-    Exit code 0: all crossed and nothing touched, 1: not.
+    A seed that gives this body no course is passed over and named.
+    Exit code 0: all crossed and nothing touched, 1: not, 2: no seed gives a course.
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones])
     compile_first(quiet=quiet)
@@ -77,18 +80,27 @@ def gauntlet(
         return
     processes = min(courses, usable_cores()) if jobs is None else jobs
     with time_left_bar("Courses", quiet) as move:
-        results = run_gauntlet(settings, processes, out, move)
+        results, without = run_gauntlet(settings, processes, out, move)
+    if not results:
+        raise InputError(f"level {level}: {_NO_COURSE.format(_listed(without))}; try another level or other seeds")
     summary = GauntletSummary.of(results)
-    document = _document(settings, processes, summary)
+    document = _document(settings, processes, summary) | {"without_course": list(without)}
     if out is not None:
         _write(out / f"gauntlet-{level}.json", json_text(document | _trials(results)) + "\n")
     if json:
         print_json(document | _trials(results))
     else:
         _print(settings, summary)
+    if without:
+        typer.echo(f"elbowroom: {_NO_COURSE.format(_listed(without))}; the figures are of the others", err=True)
     touching = summary.touching_frames or summary.judged_touching or summary.mesh_touching
     good = summary.crossed == summary.courses and not touching
     raise typer.Exit(0 if good else FELL_SHORT)
+
+
+def _listed(seeds: tuple[int, ...]) -> str:
+    more = f" and {len(seeds) - _LISTED} more" if len(seeds) > _LISTED else ""
+    return f"seed{'s' if len(seeds) > 1 else ''} {', '.join(map(str, seeds[:_LISTED]))}{more}"
 
 
 class _Walker(NamedTuple):

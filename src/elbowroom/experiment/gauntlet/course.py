@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
@@ -36,6 +36,10 @@ _SHARPEST = 6.0  # metres, the least radius of a turn
 _GROUND = 2.5  # metres of ground around everything
 _TIME, _PACE = 30.0, 0.5  # seconds that a user has for any course, and metres per second beyond
 _TITLES = {1: "roomy", 2: "easy", 3: "winding", 4: "narrow", 5: "hardly any room"}
+
+
+class NoCourseError(InputError):
+    """A seed gives no course to a body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,16 +78,17 @@ class CourseMaker:
     def course(self, level: int, seed: int) -> Course:
         """The course of this level and seed, the same whenever and wherever it is asked for.
 
-        Raises `InputError` if there is no such level or seed.
+        Raises `InputError` if there is no such level or seed, `NoCourseError` where this body gets none.
         """
         settings = level_of(level)
+        settings = replace(settings, margin=round(min(self.body.scale, 1.0) * settings.margin, GRAIN))
         if not 0 <= seed <= LARGEST_SEED:
             raise InputError(f"seed: {seed} is not a whole number from 0 to {LARGEST_SEED}")
         for attempt in range(_ATTEMPTS):
             course = self._attempt(settings, seed, attempt)
             if course is not None:
                 return course
-        raise InputError(f"seed: {seed} gives no course of level {level} in {_ATTEMPTS} attempts; take another")
+        raise NoCourseError(f"seed: {seed} gives no course of level {level} in {_ATTEMPTS} attempts; take another")
 
     def _attempt(self, level: Level, seed: int, attempt: int) -> Course | None:
         winding = level.turn > 0.0 and Draw(level.number, seed).chance(_WINDING)  # the same in every attempt

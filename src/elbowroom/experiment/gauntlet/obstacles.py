@@ -1,13 +1,13 @@
 """What stands in the way: shapes that are pushed towards the line of a course until they nearly touch."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.experiment.gauntlet import levels
-from elbowroom.experiment.gauntlet.draw import Draw
+from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.motion import Passage
 
 Floats = NDArray[np.float64]
@@ -32,6 +32,14 @@ class Proposal:
     turn: Offset  # about the box's own X, Y and Z, in the order "YXZ", beyond the line's heading
     begin: Offset  # centre
     push: Offset  # unit vector
+
+    def scaled(self, scale: float, long: bool) -> "Proposal":
+        """The same for a body so many times as tall; what accompanies a long passage stays as long."""
+        if scale == 1.0:  # exactly so for bodies of usual size
+            return self
+        x, y, z = (round(scale * side, GRAIN) for side in self.size)
+        begin = tuple(round(scale * component, GRAIN) for component in self.begin)
+        return replace(self, size=(x, y, self.size[2] if long else z), begin=(begin[0], begin[1], begin[2]))
 
 
 def propose(draw: Draw, passage: Passage, first: bool) -> tuple[Proposal, ...]:

@@ -26,6 +26,7 @@ _TOUCHES = 0.005  # metres that the natural walk must get into an obstacle
 _PROPOSALS = 60  # for one passage
 _PUSHES = 30
 _NEAR = 1e-3  # metres: pushing ends at such a slack, which rounding may use up
+_HIPS = 0.9  # metres above the ground of a body of usual size: what comes from above goes little lower
 _PAST = 0.25  # metres: what is pushed this far past the line has missed the body
 
 
@@ -59,10 +60,11 @@ class Keepout(NamedTuple):
     certificate: BodyRows
     stances: BodyRows
     margin: float  # metres from the certificate's rows
+    leg_room: float  # metres from the stances
 
     def slack(self, box: Floats) -> float:
         """How much nearer a box (15,) may come, metres."""
-        return min(self.certificate.gap(box) - self.margin, self.stances.gap(box) - _LEG_ROOM)
+        return min(self.certificate.gap(box) - self.margin, self.stances.gap(box) - self.leg_room)
 
     def pushed(self, box: Floats, push: Floats, done: float, most: float) -> float | None:
         """How far in all the box can be pushed, from `done` metres on; None if not at all, or farther than `most`.
@@ -90,10 +92,11 @@ class Surroundings:
     rough: Keepout  # some of the rows of `fine`: finds quickly what will never do
     fine: Keepout
     natural: list[BodyRows]  # the natural walk, once for each of eight phases in which it may come
+    scale: float  # of the body, for obstacles of its size
 
     def touched(self, box: Floats) -> bool:
         """Whether every one of the natural walks runs into the box."""
-        return all(rows.gap(box) < -_TOUCHES for rows in self.natural)
+        return all(rows.gap(box) < -_TOUCHES * min(self.scale, 1.0) for rows in self.natural)
 
 
 def surroundings(
@@ -101,10 +104,11 @@ def surroundings(
 ) -> Surroundings:
     """What matters near a passage."""
     first, last = passage.begin - _REACH, passage.end + _REACH
-    fine = Keepout(certificate.between(first, last), stances.between(first - _SIGHT, last), margin)
-    rough = Keepout(fine.certificate.every(_ROUGHLY), fine.stances.every(3), margin)
+    leg_room = _LEG_ROOM * min(body.scale, 1.0)
+    fine = Keepout(certificate.between(first, last), stances.between(first - _SIGHT, last), margin, leg_room)
+    rough = Keepout(fine.certificate.every(_ROUGHLY), fine.stances.every(3), margin, leg_room)
     natural = body.natural_walks(line, max(0.0, passage.begin - _BESIDE), passage.end + _BESIDE)
-    return Surroundings(line, rough, fine, natural)
+    return Surroundings(line, rough, fine, natural, body.scale)
 
 
 def fill_passage(draw: Draw, level: Level, passage: Passage, around: Surroundings) -> list[Placed] | None:
@@ -113,7 +117,10 @@ def fill_passage(draw: Draw, level: Level, passage: Passage, around: Surrounding
     placed: list[Placed] = []
     found = 0
     for _ in range(_PROPOSALS):
-        group = propose(draw, passage, first=found == 0)
+        group = [
+            proposal.scaled(around.scale, passage.long and found == 0)
+            for proposal in propose(draw, passage, first=found == 0)
+        ]
         new = [_pushed(proposal, around) for proposal in group if not _is_known(proposal.name, placed)]
         whole = [obstacle for obstacle in new if obstacle is not None and not _overlaps(obstacle, placed)]
         if len(whole) == len(group):
@@ -148,7 +155,7 @@ def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     push = around.line.local(proposal.way, np.add(proposal.begin, proposal.push)) - begin
     box = Placed(proposal.name, (0.0, 0.0, 0.0), turn, proposal.size).row()
     box[:3] = begin
-    most = _way_to_line(proposal)
+    most = _way_to_line(proposal, around.scale)
     farthest = around.rough.pushed(box, push, 0.0, most)
     if farthest is None or not around.touched(_moved(box, farthest * push)):
         return None
@@ -168,9 +175,9 @@ def _moved(box: Floats, by: Floats) -> Floats:
     return moved
 
 
-def _way_to_line(proposal: Proposal) -> float:
+def _way_to_line(proposal: Proposal, scale: float) -> float:
     """How far a proposal can be pushed until it has passed where the body is, metres."""
     across, down = abs(proposal.push[0]), -proposal.push[1]
     if across > down:
         return (abs(proposal.begin[0]) + _PAST) / across
-    return (proposal.begin[1] - 0.9 + _PAST) / down
+    return (proposal.begin[1] - scale * _HIPS + _PAST) / down

@@ -5,7 +5,7 @@ from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from elbowroom import __version__
 from elbowroom.control.avatar_reference import AvatarReference
@@ -53,6 +53,13 @@ class GauntletSettings:
         return [CourseTask(self.level, seed, self.trial, self.judge, self.avatar, self.shapes) for seed in seeds]
 
 
+class GauntletRun(NamedTuple):
+    """What came of the courses that were asked for."""
+
+    results: list[TrialResult]  # of those that could be made, in order
+    without_course: tuple[int, ...]  # seeds that give this body no course
+
+
 def identity(settings: GauntletSettings) -> dict[str, Any]:
     """All on which the outcome of a walk depends, besides the course's level and seed."""
     return {
@@ -71,8 +78,8 @@ def identity(settings: GauntletSettings) -> dict[str, Any]:
 
 def run_gauntlet(
     settings: GauntletSettings, jobs: int = 1, folder: Path | None = None, progress: Progress | None = None
-) -> list[TrialResult]:
-    """Walk all courses and give the results in their order.
+) -> GauntletRun:
+    """Walk all courses and give the results in their order; seeds that give this body no course are passed over.
 
     With a `folder`, every result is kept there at once, and what it holds of an earlier run with the same settings is
     not walked again. Raises `InputError` for settings out of range and where the folder cannot be used.
@@ -89,7 +96,11 @@ def run_gauntlet(
                 log.append(missing[place].key, record)
             if progress is not None:
                 progress(len(done), len(tasks))
-    return [result_of(done[task.key]) for task in tasks]
+    found = [(task.seed, result_of(done[task.key])) for task in tasks]
+    return GauntletRun(
+        [result for _, result in found if result is not None],
+        tuple(seed for seed, result in found if result is None),
+    )
 
 
 def _generator_digest() -> str:

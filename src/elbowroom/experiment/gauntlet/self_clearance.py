@@ -56,16 +56,20 @@ def _natural_walk() -> tuple[Floats, Floats]:
 
 
 def _pairs(names: tuple[str, ...]) -> NDArray[np.int64]:
-    """Indices (P, 2) of the capsules that may run into each other."""
-    pairs = [
-        (names.index(side + part), names.index(other))
+    """Indices (P, 2) of the capsules that may run into each other; a part may have two of them."""
+
+    def of(part: str) -> list[int]:
+        return [i for i, name in enumerate(names) if name.split(" ")[0] == part]
+
+    parts = [
+        (side + part, other)
         for side in ("left", "right")
         for part in _PARTS
         for other in _BODY
-        if other in names and (part != "UpperArm" or other in _ABOVE_SHOULDER)
+        if part != "UpperArm" or other in _ABOVE_SHOULDER
     ]
-    pairs += [(names.index("left" + one), names.index("right" + other)) for one in _PARTS for other in _PARTS]
-    return np.array(pairs, np.int64)
+    parts += [("left" + one, "right" + other) for one in _PARTS for other in _PARTS]
+    return np.array([(i, j) for one, other in parts for i in of(one) for j in of(other)], np.int64)
 
 
 @exact_kernel

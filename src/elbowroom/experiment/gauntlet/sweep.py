@@ -22,14 +22,21 @@ _PHASES = 32
 _OFFSETS = np.arange(8) / 8.0  # strides: the phases in which a natural walk may come along
 _SPACING = 0.02  # metres between the poses of the natural walk
 _STANCE_SPACING, _SIGHT_SPACING, _SIGHT_STEP = 0.05, 0.10, 0.20  # metres
+_USUAL = 1.51  # metres, the stock avatar's head joint
+_ALIKE = (0.8, 1.25)  # bodies of such a scale get obstacles of the same size
 _LOW = 0.1  # metres: lower end of the stance's axis
 _SIGHT, _LEADS = 3.4, (0.0, 0.3, 0.6)  # metres: how far ahead the way of the legs is looked at, and steered
 
 
 class SweptBody:
-    """Poses of one humanoid along a line as rows of capsules; frozen once made."""
+    """Poses of one humanoid along a line as rows of capsules; frozen once made.
+
+    `scale` says how many times as tall it is as the stock avatar; 1 exactly for bodies of usual size.
+    """
 
     def __init__(self, humanoid: Humanoid) -> None:
+        scale = humanoid.skeleton.height / _USUAL
+        self.scale = 1.0 if _ALIKE[0] <= scale <= _ALIKE[1] else round(scale, 2)
         self._model = body_model(humanoid)
         self._radii = humanoid.capsules.radii
         self._upper = np.array([group is not DofGroup.ROOT for group in humanoid.capsules.groups])

@@ -12,12 +12,14 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT, warm_up
-from elbowroom.experiment.gauntlet.course import Course, CourseMaker
+from elbowroom.experiment.gauntlet.course import Course, CourseMaker, NoCourseError
 from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.planning.command import Command
 
 Record = dict[str, Any]
+
+_NO_COURSE = "no_course"
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,10 @@ class CourseTask:
     def run(self) -> Record:
         """The result as a plain record, see `result_of`."""
         humanoid, maker = _opened(self.avatar)
-        course = maker.course(self.level, self.seed)
+        try:
+            course = maker.course(self.level, self.seed)
+        except NoCourseError:
+            return {"level": self.level, "seed": self.seed, _NO_COURSE: True}
         course = in_shapes(course) if self.shapes else course
         controller = controller_on(humanoid, course, self.settings)
         warm_up(controller)
@@ -55,8 +60,10 @@ class CourseTask:
         return asdict(result)
 
 
-def result_of(record: Mapping[str, Any]) -> TrialResult:
-    """The result that a record holds; raises TypeError or KeyError where it holds something else."""
+def result_of(record: Mapping[str, Any]) -> TrialResult | None:
+    """The result that a record holds, None where the seed gave no course; raises TypeError or KeyError otherwise."""
+    if record.get(_NO_COURSE):
+        return None
     judge = record["judge"]
     figures = None if judge is None else JudgeFigures(**judge)
     return TrialResult(**{**record, "plan_ms": tuple(record["plan_ms"]), "judge": figures})
