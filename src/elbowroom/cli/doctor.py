@@ -27,6 +27,10 @@ def doctor(
     scene: Annotated[str, typer.Option(help="The scene of the measured session.")] = "a",
     startup: Annotated[bool, typer.Option("--startup", help="Measure how long a start takes.")] = False,
     first_run: Annotated[bool, typer.Option("--first-run", help="And the first one, with all to compile.")] = False,
+    soak: Annotated[
+        float | None,
+        typer.Option(metavar="MINUTES", min=0.2, max=1440.0, help="Whether memory stays, with clients good and bad."),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
@@ -43,6 +47,11 @@ def doctor(
 
         with Console(stderr=True).status("Starting programs and servers ..."):
             facts["startup"] = asdict(measure_startup(scene, 3, first_run=first_run))
+    if soak is not None:
+        from elbowroom.cli.soak import soak as soaked
+
+        with Console(stderr=True).status(f"Clients come and go for {soak:g} minutes ...") as status:
+            facts["soak"] = asdict(soaked(soak, lambda how: status.update(f"Clients come and go: {how}")))
     faults = _faults(facts)
     facts["faults"] = faults
     if json:
@@ -140,6 +149,15 @@ def _faults(facts: dict[str, Any]) -> list[str]:
         faults.append("the first plan of a program comes later than its budget")
     if start and (start["first_run_seconds"] or 0.0) > start["first_run_budget_seconds"]:
         faults.append("the first run takes longer than its budget")
+    return faults + _soak_faults(facts.get("soak"))
+
+
+def _soak_faults(soaked: dict[str, Any] | None) -> list[str]:
+    if soaked is None:
+        return []
+    faults = [f"clients that behave were failed: {soaked['failures']}"] if soaked["failures"] else []
+    if soaked["long_enough"] and soaked["slope"] > soaked["slope_budget"]:
+        faults.append("the server's memory grows faster than its budget")
     return faults
 
 
@@ -154,6 +172,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         ("wheel", f"{wheel['file'] or 'packed from here'}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})"),
         *_session_rows(facts.get("session")),
         *_startup_rows(facts.get("startup")),
+        *_soak_rows(facts.get("soak")),
         *(("fault", fault) for fault in facts["faults"]),
     ]
     return "\n".join(f"{name:<10} {text}" for name, text in rows)
@@ -188,3 +207,18 @@ def _startup_rows(start: dict[str, Any] | None) -> list[tuple[str, str]]:
         first = f"{start['first_run_seconds']:.0f} s, budget {start['first_run_budget_seconds']:g} s"
         rows.append(("", f"the same with all kernels to compile: {first}"))
     return rows
+
+
+def _soak_rows(soaked: dict[str, Any] | None) -> list[tuple[str, str]]:
+    if soaked is None:
+        return []
+    clients = f"{soaked['sessions']} sessions, {soaked['courses']} courses, {soaked['uploads']} uploads"
+    own = f"own memory {soaked['own_first']:.0f} MB after the warm-up, {soaked['own_last']:.0f} in the end"
+    slope = f"{soaked['slope']:+.1f} MB an hour (budget {soaked['slope_budget']:g})"
+    short = "" if soaked["long_enough"] else "; too short for a verdict: 15 minutes or more"
+    frames = f"{soaked['frames_per_second']:.1f} frames/s, 99 % within {soaked['late_ms_p99']:.0f} ms of their time"
+    return [
+        ("soak", f"{soaked['minutes']:g} minutes: {clients}, {soaked['misdeeds']} misdeeds"),
+        ("", f"{own}, {soaked['own_most']:.0f} at most: {slope}{short}"),
+        ("", f"one who walked on all the time: {frames} in the worst 10 s"),
+    ]

@@ -81,7 +81,7 @@ def measure_session(
     """
     began = time.perf_counter()
     with started_server(scene, dict(os.environ)) as url:
-        return _measured(url, seconds, sessions, hand or _mostly_ahead, time.perf_counter() - began)
+        return _measured(url, seconds, sessions, hand, time.perf_counter() - began)
 
 
 @contextmanager
@@ -98,7 +98,7 @@ def started_server(scene: str, environment: dict[str, str]) -> Iterator[str]:
 
 def wait_for_plan(url: str) -> None:
     """Hold the forward key until a plan has come."""
-    with _client(url) as client:
+    with client_of(url) as client:
         client.send(encode(Input(seq=1, forward=1.0)))
         while True:
             message = client.recv(timeout=_PATIENCE)
@@ -116,14 +116,14 @@ def _url(server: "subprocess.Popen[str]") -> str:
     raise InputError("doctor: the server did not start; `elbowroom play --no-open` says why")
 
 
-def _measured(url: str, seconds: float, sessions: int, hand: Callable[[], Steer], ready: float) -> SessionCost:
-    _wait_until_warm(url)
+def _measured(url: str, seconds: float, sessions: int, hand: Callable[[], Steer] | None, ready: float) -> SessionCost:
+    wait_until_warm(url)
     with ExitStack() as stack, ThreadPoolExecutor(sessions) as threads:
-        clients = [stack.enter_context(_client(url)) for _ in range(sessions)]
-        list(threads.map(partial(_walk, seconds=_SETTLE, hand=hand), clients))
-        before = _usage(url)
-        tallies = list(threads.map(partial(_walk, seconds=seconds, hand=hand), clients))
-        after = _usage(url)
+        clients = [stack.enter_context(client_of(url)) for _ in range(sessions)]
+        list(threads.map(partial(walk_about, seconds=_SETTLE, hand=hand), clients))
+        before = usage(url)
+        tallies = list(threads.map(partial(walk_about, seconds=seconds, hand=hand), clients))
+        after = usage(url)
     wall = after["wallSeconds"] - before["wallSeconds"]
     told = [tally.status for tally in tallies if tally.status is not None]
     answers = [status.answer_ms for status in told if status.answer_ms is not None]
@@ -148,12 +148,14 @@ def _measured(url: str, seconds: float, sessions: int, hand: Callable[[], Steer]
     )
 
 
-def _client(url: str) -> ClientConnection:
+def client_of(url: str) -> ClientConnection:
+    """A client of the server at an address."""
     return connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE)
 
 
-def _walk(client: ClientConnection, seconds: float, hand: Callable[[], Steer]) -> _Tally:
-    """Steer for `seconds`, from the start again when the finish is reached or it takes long."""
+def walk_about(client: ClientConnection, seconds: float, hand: Callable[[], Steer] | None = None) -> _Tally:
+    """Steer for `seconds`, mostly ahead if no `hand` is given; again from the start at the finish, or after a while."""
+    hand = hand or _mostly_ahead
     tally, steer, sent = _Tally(), hand(), -_HEARTBEAT
     began = start = time.monotonic()
     command, number = Command(), 0
@@ -186,16 +188,17 @@ def _input(number: int, command: Command) -> Input:
     return Input(number, command.forward, command.strafe, command.turn, command.direction, command.run)
 
 
-def _wait_until_warm(url: str) -> None:
+def wait_until_warm(url: str) -> None:
     """Until the server has loaded all its kernels: what that costs is measured with the start."""
     end = time.monotonic() + _PATIENCE
-    while not _usage(url)["warm"]:
+    while not usage(url)["warm"]:
         if time.monotonic() > end:
             raise InputError(f"doctor: the server is not warm after {_PATIENCE:g} s; `elbowroom play` says why")
         time.sleep(0.1)
 
 
-def _usage(url: str) -> dict[str, float]:
+def usage(url: str) -> dict[str, float]:
+    """What a server's process has cost so far, as it tells itself."""
     with urlopen(f"{url}/api/health", timeout=10.0) as response:
-        usage: dict[str, float] = json.load(response)
-    return usage
+        told: dict[str, float] = json.load(response)
+    return told

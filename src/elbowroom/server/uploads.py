@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import errno
 import secrets
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
 from elbowroom.server.while_there import while_there
 
 _NAME = 120  # characters of a file's name that are kept
-_AT_ONCE = 4  # files that are received at once, one from each machine
+_AT_ONCE, _EACH = 8, 4  # files that are received at once, in all and from each machine
 _PAUSE = 20.0  # seconds that a sender may be silent
 _GRACE = 20.0  # seconds after which a sender has to have sent what it should by then
 _SLOWEST = 64 * 1024  # bytes a second, on the whole
@@ -58,20 +59,20 @@ _REFUSALS: dict[type[Exception], tuple[int, str]] = {
 
 
 class UploadDesk:
-    """Takes one file at a time from each machine, a few in all, and has them read one after the other."""
+    """Takes a few files at once, and has them read one after the other."""
 
     def __init__(self, library: Library, pace: Pace | None = None) -> None:
         self._library = library
         self._pace = pace or Pace()
-        self._senders: set[str] = set()
+        self._senders: Counter[str] = Counter()
         self._reading = asyncio.Semaphore(1)
 
     async def take(self, request: Request) -> Response:
         """POST: the raw bytes of an avatar or motion file, `?name=` its name. Answers 201 with an `Uploaded`."""
         sender = Sender(request.client.host if request.client else "", page_key(request.query_params))
-        if sender.address in self._senders or len(self._senders) >= _AT_ONCE:
-            return _refused(503, "another file is being read; try again in a moment")
-        self._senders.add(sender.address)
+        if self._senders[sender.address] >= _EACH or self._senders.total() >= _AT_ONCE:
+            return _refused(503, "other files are being read; try again in a moment")
+        self._senders[sender.address] += 1
         try:
             return JSONResponse(plain(await self._taken(request, sender)), 201)
         except InputError as error:
@@ -79,7 +80,7 @@ class UploadDesk:
         except tuple(_REFUSALS) as error:
             return _refused(*_REFUSALS[type(error)])
         finally:
-            self._senders.discard(sender.address)
+            self._senders -= Counter((sender.address,))
 
     async def _taken(self, request: Request, sender: Sender) -> Uploaded:
         name = request.query_params.get("name", "avatar")[:_NAME]
