@@ -7,7 +7,10 @@ A command is one function in a module of its own, registered at the foot of this
 inside their function, so that `elbowroom --help` answers at once.
 """
 
+import atexit
+import errno
 import sys
+from functools import cache
 from typing import Annotated, Any
 
 import typer
@@ -19,6 +22,7 @@ from elbowroom.errors import InputError
 
 WRONG_CALL = 2
 INTERRUPTED = 130
+_FULL = {errno.ENOSPC, errno.EDQUOT}
 
 # The base of all "wrong call" errors, which typer takes from click or carries itself, depending on its version.
 _CallError: type[Any] = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")
@@ -28,6 +32,8 @@ class _Commands(TyperGroup):
     """The group of all commands; wrong input becomes one line and exit code 2."""
 
     def invoke(self, ctx: Any) -> Any:
+        if not {"-h", "--help", "--version"} & set(sys.argv):
+            _look_over_kernels()
         try:
             return super().invoke(ctx)
         except InputError as error:
@@ -73,7 +79,27 @@ def run() -> None:
     except _CallError as error:
         typer.echo(f"elbowroom: {_one_line(error)}", err=True)
         code = WRONG_CALL
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        typer.echo(f"elbowroom: {error.filename or 'a disk'}: no space is left there", err=True)
+        code = WRONG_CALL
     sys.exit(code if isinstance(code, int) else 0)
+
+
+@cache
+def _look_over_kernels() -> None:
+    """Compiled kernels are read as they are: before that, those that are damaged are removed."""
+    from elbowroom.server import kernel_files
+
+    told = kernel_files.find_place()
+    if told is not None:
+        typer.echo(f"elbowroom: {told}", err=True)
+    for place in kernel_files.places():
+        removed = place.check()
+        if removed:
+            typer.echo(f"elbowroom: {len(removed)} damaged kernels in {place.root} are compiled anew", err=True)
+        atexit.register(place.note)
 
 
 def _one_line(error: Any) -> str:

@@ -23,7 +23,7 @@ from elbowroom.planning.exact.rehearsal import (
     rehearse_proof,
 )
 from elbowroom.planning.names import EXACT, FIGURE6
-from elbowroom.server.kernel_cache import is_warm, mark_warm
+from elbowroom.server.kernel_cache import cache_folders, is_warm, mark_warm
 from elbowroom.server.library import Library
 from elbowroom.server.warmup import Report, listening, walk_and_stand
 
@@ -32,11 +32,11 @@ _TELLING = ("a", "c", "doorway", "traffic")  # where the walk meets what it does
 
 
 def compile_apart(report: Report) -> None:
-    """Compile in processes of their own, unless that was done for the present sources.
+    """Compile in processes of their own, unless that was done for the present sources, or cannot be kept.
 
     Should one of them fail, nothing is lost: what it did not compile is compiled where it is needed.
     """
-    if not is_warm() and compile_parts(report, os.environ):
+    if cache_folders() and not is_warm() and compile_parts(report, os.environ):
         mark_warm()
 
 
