@@ -14,7 +14,8 @@ from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_sp
 from elbowroom.planning.exact.memory.previous_plan import Start
 from elbowroom.planning.exact.plan.full_plan import FullPlan
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans, after
-from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner, UpperPlan
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import UpperPlan
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
@@ -107,7 +108,7 @@ def planned() -> tuple[FullPlan, FullPlan]:
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     for _ in range(2):
         motion = planner.plan_motion(roots, query)
-        whole = planner._recent.since(query.time)
+        whole = planner.memory.recent.since(query.time)
         assert whole is not None
         wholes.append(whole)
         local = motion.local

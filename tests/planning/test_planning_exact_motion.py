@@ -159,7 +159,7 @@ def test_a_reset_leaves_no_trace(humanoid: Humanoid) -> None:
             motion = planner.plan_motion(roots, query)
             local, states = motion.local, motion.root.path.states
             assert local.velocities is not None
-            seen.append((states, local.configurations, planner._turns.thought_through))
+            seen.append((states, local.configurations, planner.memory.attempts.thought_through))
             query = query._replace(
                 time=query.time + T,
                 root=RootState(*states[1].tolist()),

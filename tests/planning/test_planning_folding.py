@@ -11,7 +11,7 @@ from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, own_body_costs, touches_body
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, OwnBodyNodes, own_body_costs, touches_body
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import axis_distance
@@ -78,10 +78,20 @@ class Case:
             known.configurations, known.columns, step, mine, self.previous, self.start, self.settled
         )
 
-    def costs(self, body: OwnBody = BODY) -> Floats:
-        own_body_nodes = body.own_body_nodes(self.side, self.postures)
+    def nodes(self) -> OwnBodyNodes:
+        """Its arm among the body, nothing looked at yet."""
+        return BODY.own_body_nodes(self.side, self.postures, BODY.resting(self.side, self.postures))
+
+    def costs(self, nodes: OwnBodyNodes | None = None) -> Floats:
         costs = own_body_costs(
-            own_body_nodes, self.mine, self.previous, self.start, self.settled, self.walk, self.uppers, self.states
+            nodes or self.nodes(),
+            self.mine,
+            self.previous,
+            self.start,
+            self.settled,
+            self.walk,
+            self.uppers,
+            self.states,
         )
         return costs.astype(np.float64)
 
@@ -118,12 +128,13 @@ def test_ruled_out_is_what_touches_and_nothing_else(side: int) -> None:
 
 
 def test_what_was_looked_at_is_known_again_among_new_surroundings() -> None:
-    body, case, other = OwnBody(MODEL, natural_walk()), Case(1, 7), Case(1, 8)
-    first = case.costs(body)
+    case, other = Case(1, 7), Case(1, 8)
+    nodes = case.nodes()
+    first = case.costs(nodes)
     other.uppers[2], other.states[2], other.states[2, :3] = case.uppers[2], case.states[2], 0.0  # wherever it stands
-    mixed = other.costs(body)
-    assert np.array_equal(mixed, other.costs(OwnBody(MODEL, natural_walk())))
-    assert np.array_equal(case.costs(body), first)
+    mixed = other.costs(nodes)
+    assert np.array_equal(mixed, other.costs())
+    assert np.array_equal(case.costs(nodes), first)
     assert not np.array_equal(mixed, first)
 
 

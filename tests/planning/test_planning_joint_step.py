@@ -12,8 +12,8 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner
-from elbowroom.planning.exact.plan.upper_body_search import UpperBodySearch
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk

@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of, limits
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.whole_body import whole_body
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.tangents import smooth_tangents
 from elbowroom.planning.exact.sweep import own_motion
-from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
 from elbowroom.planning.exact.sweep.own_samples import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
@@ -66,7 +65,7 @@ def looked_at(parts: OwnParts, states: Floats, keys: Floats, rates: Floats, chos
 
 @pytest.mark.parametrize("first", [0, 6])
 def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
-    motion, found, near = OwnMotion(MODEL, PAIRS), [0, 0], 0
+    motion, found, near = OwnMotion(own_parts(MODEL, PAIRS)), [0, 0], 0
     for seed in range(first, first + 6):
         path, keys, rates = swung(seed)
         arms = motion.contacts(path, keys, rates, keys + ASIDE, FAR)
@@ -86,7 +85,7 @@ def test_no_contact_is_missed_and_none_made_up(first: int) -> None:
 @pytest.mark.parametrize("wild", [0.0, 0.3])
 def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
     """Against a twin that takes every look of a level in an interval where the last one left too little room."""
-    parts = OwnParts(whole_body(MODEL), PAIRS.first, PAIRS.second, PAIRS.kinds, PAIRS.limits)
+    parts = own_parts(MODEL, PAIRS)
     rng, touching, near = np.random.default_rng(5), 0, 0
     for seed in range(20, 24):
         path, keys, rates = swung(seed)
@@ -111,7 +110,7 @@ def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
 
 def test_what_was_looked_at_is_known_again_and_natural_intervals_are_not_looked_at() -> None:
     path, keys, rates = swung(3)
-    motion, goals = OwnMotion(MODEL, PAIRS), keys + ASIDE
+    motion, goals = OwnMotion(own_parts(MODEL, PAIRS)), keys + ASIDE
     first = motion.contacts(path, keys, rates, goals, FAR)
     assert np.array_equal(motion.contacts(path, keys, rates, goals, FAR), first)
     assert np.all(motion.contacts(path, keys, rates, keys, FAR) == -1)
@@ -126,8 +125,8 @@ def test_what_was_looked_at_is_known_again_and_natural_intervals_are_not_looked_
 
 def test_a_full_memory_forgets_and_finds_the_same_again(monkeypatch: pytest.MonkeyPatch) -> None:
     path, keys, rates = swung(4)
-    expected = OwnMotion(MODEL, PAIRS).contacts(path, keys, rates, keys + ASIDE, FAR)
+    expected = OwnMotion(own_parts(MODEL, PAIRS)).contacts(path, keys, rates, keys + ASIDE, FAR)
     monkeypatch.setattr(own_motion, "ROOM", 5)
-    motion = OwnMotion(MODEL, PAIRS)
+    motion = OwnMotion(own_parts(MODEL, PAIRS))
     for _ in range(2):
         assert np.array_equal(motion.contacts(path, keys, rates, keys + ASIDE, FAR), expected)

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.body.stock import stock_avatar_path
+from elbowroom.experiment.rehearsal import rehearse_detour
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.rehearsal import rehearse_detour
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.server.library import Library

@@ -7,7 +7,7 @@ from pathlib import Path
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.dodge import dodge_clips
 from elbowroom.clips.figure import Figure
-from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.planning_motion import PlanningMotion, planning_motion
 from elbowroom.clips.swing import Swing, swing_of
 from elbowroom.clips.told import Told
@@ -61,6 +61,8 @@ def motions_of(swing: Clip | None = None, dodge: tuple[Clip, ...] = ()) -> Motio
 
     Raises `InputError` if nobody walks in the clip for the swing.
     """
+    if swing is None and not dodge:
+        return STOCK
     return MotionSet(
         None if swing is None else swing.swing,
         tuple(part for clip in dodge for part in dodge_clips(clip.planning)),

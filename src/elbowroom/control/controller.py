@@ -31,6 +31,7 @@ from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root.plan import RootPlanKind
+from elbowroom.planning.stillness import UNMOVED, is_still
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
@@ -38,7 +39,7 @@ Floats = NDArray[np.float64]
 
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
-_SAME = 1e-6  # radians
+_STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
 _FAR_MOVING = 0.6  # the same where things move by themselves
@@ -266,9 +267,11 @@ class Controller:
             self._resting = still and self._stands_still(path.states, answer.uppers)
 
     def _stands_still(self, states: Floats, uppers: Floats) -> bool:
-        shown = self._shown
-        moving = states[:, 3:6].any() or self._holding.stance.any() or np.abs(shown.upper_velocity).max() > _SAME
-        return not moving and bool(np.abs(uppers - shown.upper).max() < _SAME)
+        """Whether a motion changes nothing of what is shown: that stands, and so does the motion, in the same pose."""
+        shown, stance = self._shown, self._holding.stance
+        if not all(map(is_still, (states[:, 3:6], shown.root[3:6], stance, shown.upper_velocity))):
+            return False
+        return bool(np.abs(uppers - shown.upper).max() < UNMOVED)
 
     # --- flow B ------------------------------------------------------------------------------------------------------
 
@@ -291,7 +294,7 @@ class Controller:
                 break
         else:
             self._hold(dt)
-        if rate == 0.0 and self._halting:
+        if rate < _STANDING_RATE and self._halting:
             self._clear()
         if self._queue.empty:
             self._next = Phase.RESET
@@ -363,7 +366,7 @@ class Controller:
     def _walled_in(self) -> bool:
         """Whether the root stands because there is no way on for it."""
         stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
-        return stopped and not self._shown.root[3:6].any()
+        return stopped and is_still(self._shown.root[3:6])
 
     def _goal(self) -> Floats:
         """The goal functions' posture now, from the last plan (LOCAL,)."""

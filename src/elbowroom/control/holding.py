@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.control.key_frame_queue import Playback
+from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class Holding:
 
     def over(self, played: Playback, dt: float) -> list[tuple[Playback, Floats]]:
         """How a motion can be shown, best first, and the stance that is left: less; all of it, where that touches."""
-        stances = [_faded(self.stance, dt), self.stance] if self.stance.any() else [self.stance]
+        stances = [_faded(self.stance, dt), self.stance] if not is_still(self.stance) else [self.stance]
         return [(_in_stance(played, stance), stance) for stance in stances]
 
     def end(self, stance: Floats) -> None:

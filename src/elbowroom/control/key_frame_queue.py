@@ -9,10 +9,12 @@ from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.root.path import RootPath, interpolate_root
+from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]
 
 _SAME_TIME = 1e-9  # seconds
+_WHOLE = 1.0 - 1e-9  # of the pace of the plan
 
 
 class KeyFrames(NamedTuple):
@@ -80,7 +82,7 @@ class KeyFrameQueue:
     @property
     def ends_moving(self) -> bool:
         """Whether the root still moves at the last key frame."""
-        return bool(len(self._roots) and self._roots[-1, 3:6].any())
+        return bool(len(self._roots)) and not is_still(self._roots[-1, 3:6])
 
     @property
     def fill(self) -> int:
@@ -123,7 +125,7 @@ class KeyFrameQueue:
         """Move the play head by `dt` seconds, in which `rate` times as many seconds of the motion are played."""
         self.time += dt
         self._rate = rate
-        if rate != 1.0:
+        if rate < _WHOLE:
             lost = (1.0 - rate) * dt
             self.delay += lost
             self._times = self._times + lost
@@ -131,7 +133,7 @@ class KeyFrameQueue:
     def sample(self) -> Playback:
         """Root and upper body at the play head, C1 in time across splices too; the queue has key frames."""
         planned = self.at(self.time)
-        if self._rate == 1.0:
+        if self._rate >= _WHOLE:
             return planned
         root = planned.root.copy()
         root[3:6] *= self._rate

@@ -56,6 +56,6 @@ def _angle(a: Command, b: Command) -> float:
     """The angle between two walking directions, in the world if both say so, else in the avatar's axes."""
     if a.direction is not None and b.direction is not None:
         return abs(math.remainder(a.direction - b.direction, math.tau))
-    if _speed(a) == 0.0 or _speed(b) == 0.0 or a.direction is not None or b.direction is not None:
+    if min(_speed(a), _speed(b)) < _TREMOR_SHARE or a.direction is not None or b.direction is not None:
         return 0.0
     return abs(math.remainder(math.atan2(a.strafe, a.forward) - math.atan2(b.strafe, b.forward), math.tau))

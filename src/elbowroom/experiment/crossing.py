@@ -15,10 +15,10 @@ from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.pacing import is_realtime, late_frames
+from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.experiment.replans import Replans
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.planning.names import DEFAULT_PLANNER, EXACT
 from elbowroom.world.scene import Scene
 

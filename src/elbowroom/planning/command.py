@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+_NOTHING = 1e-6  # share of full speed: less asks for nothing
+
 
 @dataclass(frozen=True)
 class Command:
@@ -20,4 +22,4 @@ class Command:
     @property
     def idle(self) -> bool:
         """Whether the user has let go."""
-        return self.forward == 0.0 and self.strafe == 0.0 and self.turn == 0.0
+        return max(abs(self.forward), abs(self.strafe), abs(self.turn)) < _NOTHING

@@ -15,7 +15,7 @@ from contextlib import closing
 from dataclasses import replace
 from threading import Lock
 
-from elbowroom.planning.exact.rehearsal import (
+from elbowroom.experiment.rehearsal import (
     rehearse,
     rehearse_detour,
     rehearse_own_body,

@@ -10,7 +10,7 @@ from typing import Any
 
 from numba.core import event
 
-from elbowroom.planning.exact.rehearsal import rehearse
+from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.planning.names import planner_names
 from elbowroom.server.library import Library
 from elbowroom.server.schema.commands import Input, Overlays

@@ -11,8 +11,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
 from elbowroom.experiment.crossing import start_for
+from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.geometry import quaternion
-from elbowroom.planning.exact.rehearsal import rehearse
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 

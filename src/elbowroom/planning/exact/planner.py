@@ -5,6 +5,7 @@ and taken if it gets beyond the place where the faster one failed; else the root
 comes to a stand there: a posture that is free stays free when the root stands.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -14,12 +15,13 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.planning.exact.memory.plan_memory import PlanMemory
 from elbowroom.planning.exact.memory.previous_plan import Start
-from elbowroom.planning.exact.plan.attempts import AttemptOrder, same_place
+from elbowroom.planning.exact.plan.attempts import same_place
 from elbowroom.planning.exact.plan.extension import OngoingPlan, extended, rest_of, settled
 from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
-from elbowroom.planning.exact.plan.recent_plans import RecentPlans
-from elbowroom.planning.exact.plan.upper_body import Effort, UpperBodyPlanner, UpperPlan
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import Blockade, BlockadeKind, LocalPlan
@@ -27,6 +29,7 @@ from elbowroom.planning.root.motion import brake
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.stillness import SAME_TIME, STILL
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -53,47 +56,64 @@ class ExactPlanner:
     ) -> None:
         self.settings = settings or ExactSettings()
         self._body = UpperBodyPlanner(humanoid, scene, self.settings, motions)
-        self.reset()
 
     def reset(self) -> None:
-        """Forget the last plan, what was thought through, and the postures that were added."""
-        self._recent = RecentPlans()
-        self._stand: StandingPlan | None = None
-        self._walk: OngoingPlan | None = None
-        self._blockade: Blockade | None = None
-        self._turns = AttemptOrder()
+        """Forget all plans made."""
         self._body.reset()
+
+    @property
+    def memory(self) -> PlanMemory:
+        """What is kept from plan to plan."""
+        return self._body.memory
+
+    def _use(self, interval: float) -> None:
+        """Begin anew where key frames are to be so many seconds apart that the memory is of another model."""
+        if abs(interval - self.memory.model.interval) > SAME_TIME:
+            self._body.reset(interval)
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
         """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
         del rng
+        self._use(path.interval)
         return self._body.plan(path, Start(start, np.zeros_like(start))).plan
 
     def plan_motion(self, root_planner: RootPlanner, query: MotionQuery) -> Motion:
-        """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead."""
+        """Motion for the next `query.horizon` key frames, the first part of a plan over the whole look-ahead.
+
+        Who stands as before gets the same answer, who walks as planned goes on; for everybody else all is planned anew.
+        """
+        self._use(query.interval)
         alone = not len(root_planner.moving) and not query.hurry
-        left = self._walk.left(query) if alone and self._walk is not None else None
-        whole = None if left is None else self._gone_on(left, root_planner, query)
+        whole = self._as_before(query) if alone else None
         if whole is None:
-            whole = self._answered(left, root_planner, query, alone=alone)
-            lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
-            self._walk = OngoingPlan(query, whole) if alone and lasts else None
-        self._recent.take(whole)
+            left = self.memory.ongoing.left(query) if alone and self.memory.ongoing is not None else None
+            whole = None if left is None else self._gone_on(left, root_planner, query)
+            whole = whole or self._anew(left, root_planner, query, alone=alone)
+        self.memory.recent.take(whole)
         return first_part(whole, query.horizon)
 
-    def _answered(
-        self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool
-    ) -> FullPlan:
-        """What is planned, or still known from when the avatar stood here; `alone`: nothing moves or is in a hurry."""
-        stand = self._stand
-        again = alone and stand is not None and stand.answers(query, self._body.version)
-        if again and stand is not None and stand.left == 0:
-            return stand.at(query.time)
-        before = self._body.version
+    def _as_before(self, query: MotionQuery) -> FullPlan | None:
+        """The answer to the same query, where the avatar has stood since and nothing is left to be tried."""
+        stand = self.memory.standing
+        known = self.settings.remember and stand is not None and stand.left == 0
+        return (
+            stand.at(query.time) if known and stand is not None and stand.answers(query, self.memory.version) else None
+        )
+
+    def _anew(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> FullPlan:
+        """A new plan, and what may be known of it later: an answer to who stands, a walk to go on with.
+
+        `left` is what is left of a walk that has no new end at first sight; `alone`: nothing moves or is in a hurry.
+        """
+        memory, stand = self.memory, self.memory.standing
+        before = memory.version
+        again = alone and stand is not None and stand.answers(query, before)
         whole = self._whole(left, root_planner, query)
-        turns = stand.left - 1 if again and stand is not None else self._turns.left
-        known = alone and self._body.version == before and stands(whole, query)
-        self._stand = StandingPlan(query, before, whole, turns) if known else None
+        turns = stand.left - 1 if again and stand is not None else memory.attempts.left
+        known = alone and memory.version == before and stands(whole, query)
+        memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None
+        lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
+        memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole
 
     def _horizon(self, query: MotionQuery) -> int:
@@ -110,7 +130,7 @@ class ExactPlanner:
         if known >= horizon:
             return left
         whole = self._prolonged(left, root_planner, query)
-        self._walk = None if whole is None else OngoingPlan(query, whole)
+        self.memory.ongoing = None if whole is None else OngoingPlan(query, whole)
         return whole
 
     def _prolonged(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
@@ -132,7 +152,7 @@ class ExactPlanner:
         if previous is None:
             return None
         path = rest_of(root.path, previous.at)
-        last = self._recent.previous(path)
+        last = self.memory.recent.previous(path)
         rest = self._body.plan(path, previous.begins, last, query.others, effort, query.go_on)
         return extended(previous, rest, root) if rest.reached == path.horizon else None
 
@@ -142,22 +162,22 @@ class ExactPlanner:
         at = query.root, query.command, horizon, query.interval, query.time, self.settings.paces
         tried: list[_Tried] = []
         blocked_at = 0.0
-        self._turns.begin()
+        self.memory.attempts.begin()
         for root in root_planner.candidates(*at):
             if tried and _leads_nowhere_new(root, root_planner, blocked_at + _FARTHER):
                 continue
             upper = self._dress(root.path, query, Effort.QUICK)
-            if not tried and upper.reached < horizon and not query.hurry and self._turns.is_new(_place(upper)):
+            if not tried and upper.reached < horizon and not query.hurry and self.memory.attempts.is_new(_place(upper)):
                 refined = None
                 if left is not None:
                     refined = self._extended(left, root, query, Effort.REFINED)
                 if refined is not None:
-                    self._turns.found()
+                    self.memory.attempts.found()
                     return refined
                 upper = self._dress(root.path, query, Effort.REFINED)
             if upper.reached == horizon:
                 if not tried:
-                    self._turns.found()
+                    self.memory.attempts.found()
                 cheaper = None if query.hurry else self._cheaper(root_planner, query, tried, root)
                 return cheaper or FullPlan(root, upper.plan, upper.asked)
             tried.append(_Tried(root, upper))
@@ -179,7 +199,7 @@ class ExactPlanner:
 
     def _thought_through(self, root_planner: RootPlanner, query: MotionQuery, tried: "list[_Tried]") -> FullPlan | None:
         """A path on which all groups together have a way after all."""
-        for number, effort in self._turns.efforts([one.upper.reached for one in tried]):
+        for number, effort in self.memory.attempts.efforts([one.upper.reached for one in tried]):
             root = tried[number].root
             upper = self._dress(root.path, query, effort)
             if upper.reached == root.path.horizon:
@@ -195,7 +215,7 @@ class ExactPlanner:
         root, upper = max(tried, key=lambda one: one.upper.reached) if len(root_planner.moving) else tried[0]
         root_planner.follow(root)
         why = None if query.hurry else self._why(upper, query)
-        whole, last = self._braked(root, upper.reached, root_planner, query), self._recent.continued(query)
+        whole, last = self._braked(root, upper.reached, root_planner, query), self.memory.recent.continued(query)
         if whole is None and (last is None or len(root_planner.moving)):
             whole = self._braked(root, upper.reached, root_planner, query, harsh=True)
         whole = whole or last or FullPlan(root, upper.plan)
@@ -224,8 +244,8 @@ class ExactPlanner:
         anew. Near the end of a way it is now and then only the motion between free postures that touches: the earlier
         answer, which names obstacles, says more.
         """
-        path, depth, last = upper.search.path, upper.search.blocked[1], self._blockade
-        place, moves = _place(upper), bool(query.root.forward or query.root.lateral)
+        path, depth, last = upper.search.path, upper.search.blocked[1], self.memory.blockade
+        place, moves = _place(upper), math.hypot(query.root.forward, query.root.lateral) > STILL
         near = last is not None and same_place(place, last.place)
         if moves and not near and depth * path.interval > _FAR_OFF:
             return None
@@ -235,12 +255,12 @@ class ExactPlanner:
             why = upper.search.blockade()
             if last is not None and near and why.kind is BlockadeKind.MOTION:
                 why = replace(last, time=why.time, ahead=why.ahead)
-        self._blockade = why
+        self.memory.blockade = why
         return why
 
     def _dress(self, path: RootPath, query: MotionQuery, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         begins = Start(query.upper, query.velocity, harsh=harsh)
-        return self._body.plan(path, begins, self._recent.previous(path), query.others, effort, query.go_on)
+        return self._body.plan(path, begins, self.memory.recent.previous(path), query.others, effort, query.go_on)
 
 
 def _is_commanded(whole: FullPlan, root_planner: RootPlanner) -> bool:

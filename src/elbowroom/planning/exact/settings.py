@@ -29,6 +29,7 @@ class ExactSettings:
     step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself
     near_weight: float = 20.0  # of lacking comfort, for each square metre
     keeping: float = 0.02  # squared radians that another way must be better than the one being followed
+    remember: bool = True  # what was found out for earlier plans; without it the same paths are found, only slower
     paces: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2)  # shares of the wanted speed that are tried
 
     def samples_of(self, group: DofGroup) -> int:

@@ -17,6 +17,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.clips.swing import KEYS, Swing, resting
 from elbowroom.planning.model.self_pairs import SelfPairs, self_clearances, self_pairs
+from elbowroom.planning.shared import Shared
 
 Floats = NDArray[np.float64]
 
@@ -26,12 +27,20 @@ _EASES = (0.0, 0.25, 0.5, 0.75, 1.0)  # parts of the way back to rest, the least
 _SPREAD, _SMOOTH = 5, 1.5  # keys to which a change reaches, and over which it is smoothed
 
 
+_FITTED: Shared[MotionSet] = Shared()
+
+
 def fitted(motions: MotionSet, humanoid: Humanoid) -> MotionSet:
-    """The same motions with a swing that suits this body."""
-    if motions.swing is None:
+    """The same motions with a swing that suits this body, the same ones for all who ask."""
+    swing = motions.swing
+    if swing is None:
         return motions
-    model = body_model(humanoid)
-    return replace(motions, swing=_fitted(motions.swing, model, self_pairs(model)))
+
+    def fit() -> MotionSet:
+        model = body_model(humanoid)
+        return replace(motions, swing=_fitted(swing, model, self_pairs(model)))
+
+    return _FITTED.get((motions, humanoid), fit)
 
 
 def _fitted(swing: Swing, model: BodyModel, pairs: SelfPairs) -> Swing:

@@ -7,14 +7,13 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
 from elbowroom.planning.exact.group.caches import PlanCaches
+from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, extra_postures
 from elbowroom.planning.exact.joint.guide import Guide
-from elbowroom.planning.exact.memory.own_contacts import OwnContacts, rule_out_near
+from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
-from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
-from elbowroom.planning.exact.sweep.own_motion import OwnMotion
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -48,21 +47,18 @@ class Arms:
         self,
         caches: PlanCaches,
         problem: PathProblem,
-        own_body: OwnBody,
-        own_motion: OwnMotion,
-        contacts: OwnContacts,
         rounds: int,
     ) -> None:
         """At most `rounds` motions may turn out to run into the body."""
-        self._shelves, self._problem, self._contacts, self._rounds = caches, problem, contacts, rounds
-        self._own_body, self._own_motion = own_body, own_motion
+        self._caches, self._problem, self._rounds = caches, problem, rounds
+        self._contacts: list[Contact] = []  # of all motions along this path
 
     def under(self, waist: GroupPath, guides: list[Guide] | None, evidence_log: EvidenceLog) -> Ways:
         """The arms' ways under the waist's, following `guides` of all groups, if there are any."""
         horizon = self._problem.path.horizon
         if waist.reached < horizon:
             return Ways((), waist, waist.reached)
-        ways, first, whole, touching = [waist], 0, self._contacts.alert, 0
+        ways, first, whole, touching = [waist], 0, bool(self._contacts), 0
         for _ in range(self._rounds):
             del ways[1 + first :]
             for side in range(first, len(_ARMS)):
@@ -89,17 +85,18 @@ class Arms:
         return evidence_log.search(_ARMS[side], task)
 
     def _resting(self, side: int) -> Floats32:
-        """Infinite where a node touches the naturally walking body."""
-        postures, most = self._shelves.group(_ARMS[side]).postures, self._shelves.horizon + 1
-        return self._own_body.resting_costs(side, postures, most)[: len(self._problem.goals)]
+        """Infinite where a node (n+1, W+OWN) touches the naturally walking body."""
+        resting = self._caches.own_nodes[_ARMS[side]].resting
+        costs = np.zeros((len(self._problem.goals), len(resting) + EXTRA), np.float32)
+        costs[:, : len(resting)][:, resting] = np.inf
+        return costs
 
     def _folded(self, side: int, ways: list[GroupPath], task: GroupTask) -> Floats32:
         """Infinite where a node touches the body on its ways, or is near to one that did."""
-        problem, made = self._problem, self._shelves.group(_ARMS[side])
+        problem, made = self._problem, self._caches.group(_ARMS[side])
         around = np.concatenate([way.keys for way in ways[: 1 + side]], axis=1)
-        own_body_nodes = self._own_body.own_body_nodes(side, made.postures)
         costs = own_body_costs(
-            own_body_nodes,
+            self._caches.own_nodes[_ARMS[side]],
             task.goals,
             task.previous,
             task.start,
@@ -108,9 +105,10 @@ class Arms:
             around,
             problem.path.states,
         )
-        for t, contact in self._contacts.of(side, problem.path.times):
-            if t > 0 and contact.happens(around[t]):
+        for contact in self._contacts:
+            if contact.side == side and contact.happens(around[contact.depth]):
                 own, _, _ = extra_postures(made, task)
+                t = contact.depth
                 rule_out_near(costs[t], made.postures.configurations, own[t], contact.posture, _ALIKE)
         return costs
 
@@ -118,10 +116,10 @@ class Arms:
         """Remember what an arm did at both ends of an interval in which it ran into the body."""
         for t in range(max(interval, 1), interval + 2):
             around = np.concatenate([way.keys[t] for way in ways[: 1 + side]])
-            self._contacts.add(side, float(self._problem.path.times[t]), around, ways[1 + side].keys[t].copy())
+            self._contacts.append(Contact(side, t, around, ways[1 + side].keys[t].copy()))
 
     def _self_contact(self, found: Ways) -> tuple[int, int] | None:
         """The arm and the first interval in which the shown motion runs into the body, or None."""
         problem, keys, rates = self._problem, found.keys, found.velocities
-        arms = self._own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        arms = self._caches.own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
         return next(((arm, k) for k, arm in enumerate(arms.tolist()) if arm >= 0), None)

@@ -1,4 +1,8 @@
-"""What is kept for all plans with the same key interval."""
+"""Results that one walker keeps, each under all that it depends on, to the last bit.
+
+What is found again is what would be computed anew, so nothing but time depends on what is there. Whatever stands in the
+scene and the model belong to the walker and never change; what moves is part of a root sweep's key.
+"""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -6,15 +10,27 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group.problem import Group
-from elbowroom.planning.exact.lattice.lattice import Work
 from elbowroom.planning.exact.memory.cache_index import begin_round
-from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, LimbSweeps, RootSweeps, root_sweeps
+from elbowroom.planning.exact.sweep.motion_bounds import (
+    KinematicChain,
+    LimbSweeps,
+    RootSweeps,
+    new_limb_sweeps,
+    new_root_sweeps,
+    root_sweeps,
+)
+from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
+from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.upper_body_model import PostureSet, UpperBodyModel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
+
+_CACHED = 5  # times the horizon: results of key intervals that are kept
 
 
 class GroupCache(NamedTuple):
@@ -24,47 +40,66 @@ class GroupCache(NamedTuple):
     roots: RootSweeps
     waists: LimbSweeps
     chain: KinematicChain
-    work: Work
 
 
 class PlanCaches(NamedTuple):
-    """All that depends on the interval, with room for so many of them."""
+    """All results, with room for plans of so many key intervals."""
 
-    held: Mapping[DofGroup, GroupCache]
-    horizon: int  # the greatest number of key intervals that there is room for
-
-    @staticmethod
-    def of(
-        groups: Mapping[DofGroup, Group],
-        works: Mapping[DofGroup, Work],
-        roots: RootSweeps,
-        chain: KinematicChain,
-        horizon: int,
-    ) -> "PlanCaches":
-        """The shelves of these groups, one of which is the waist."""
-        waists = groups[DofGroup.WAIST].ways
-        made = {group: GroupCache(groups[group], roots, waists, chain, works[group]) for group in groups}
-        return PlanCaches(made, horizon)
+    groups: Mapping[DofGroup, GroupCache]
+    own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the arms
+    own_motion: OwnMotion
+    horizon: int
 
     @property
     def roots(self) -> RootSweeps:
-        """The ways of the root."""
-        return self.held[DofGroup.WAIST].roots
+        """The sweeps of the root."""
+        return self.groups[DofGroup.WAIST].roots
 
     @property
     def span(self) -> float:
         """No point of the upper body gets farther from the root's axis, metres."""
-        return self.held[DofGroup.WAIST].chain.span
+        return self.groups[DofGroup.WAIST].chain.span
 
     def group(self, group: DofGroup) -> Group:
-        """What is known of a group."""
-        return self.held[group].group
+        """A group with its results."""
+        return self.groups[group].group
 
-    def with_group(self, group: DofGroup, made: Group, scratch: Work) -> "PlanCaches":
-        """The same with another set of postures for a group; its ways stay, as others' tables are known by them."""
-        old = self.held[group]
-        cache = old._replace(group=made._replace(ways=old.group.ways), work=scratch)
-        return self._replace(held={**self.held, group: cache})
+
+def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horizon: int) -> PlanCaches:
+    """Nothing computed yet, for these posture sets of a model."""
+    roots, sweeps = new_root_sweeps(_CACHED * (horizon + 1)), _new_sweeps(horizon)
+    waists = sweeps[DofGroup.WAIST]
+    made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
+    groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
+    own_nodes = {group: _own_nodes(model, group, sets[group]) for group in LOCAL_GROUPS[1:]}
+    return PlanCaches(groups, own_nodes, OwnMotion(model.own_parts), horizon)
+
+
+def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:
+    """The same with another posture set for a group; its sweeps stay, as others' results are known by them."""
+    old = caches.groups[group]
+    cache = old._replace(group=_group(made, _new_tables(made, caches.horizon), old.group.ways))
+    own_nodes = dict(caches.own_nodes)
+    if group in own_nodes:
+        own_nodes[group] = _own_nodes(model, group, made)
+    return caches._replace(groups={**caches.groups, group: cache}, own_nodes=own_nodes)
+
+
+def _group(made: PostureSet, tables: NodeClearances, sweeps: LimbSweeps) -> Group:
+    return Group(made.postures, made.levers, made.limits, made.speed, made.acceleration, tables, sweeps)
+
+
+def _new_tables(made: PostureSet, horizon: int) -> NodeClearances:
+    return new_node_clearances(_CACHED * (horizon + 1), len(made.limits), made.postures.moves.shape[1])
+
+
+def _new_sweeps(horizon: int) -> Mapping[DofGroup, LimbSweeps]:
+    count = _CACHED * (horizon + 1)
+    return {group: new_limb_sweeps(count, group.size, carries=group is DofGroup.WAIST) for group in LOCAL_GROUPS}
+
+
+def _own_nodes(model: UpperBodyModel, arm: DofGroup, made: PostureSet) -> OwnBodyNodes:
+    return model.own_body.own_body_nodes(LOCAL_GROUPS.index(arm) - 1, made.postures, made.resting)
 
 
 @exact_kernel

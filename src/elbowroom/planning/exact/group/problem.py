@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
@@ -28,7 +27,6 @@ class Group(NamedTuple):
     acceleration: float  # rad/s^2
     tables: NodeClearances
     ways: LimbSweeps
-    masks: ClosedEdges
 
 
 class Weights(NamedTuple):

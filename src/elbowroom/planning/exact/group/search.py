@@ -14,14 +14,13 @@ from elbowroom.planning.exact.group.node_costs import Carriers, carriers_at, nod
 from elbowroom.planning.exact.group.problem import Group, GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.lattice.closed_edges import (
     ClosedEdges,
-    admit_closed_edges,
-    closed_edge_keys,
-    known_closed_edges,
-    reopen,
+    new_closed_edges,
+    reopen_first,
+    with_tables,
 )
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
-from elbowroom.planning.exact.lattice.lattice import Lattice, Work, least_in
+from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, new_work
 from elbowroom.planning.exact.lattice.paths import set_keys, traced
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
@@ -110,10 +109,27 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
 
 
 @exact_kernel
-def _closed(
-    lattice: Lattice, work: Work, masks: ClosedEdges, keys: Floats, way: Longs, touches: Bools
-) -> tuple[int, float]:
-    """Close the steps of a way in the intervals where it touches, and those near to them.
+def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
+    """The same lattice with other tables of closed edges."""
+    return Lattice(
+        lattice.postures,
+        lattice.columns,
+        lattice.moves,
+        lattice.spans,
+        lattice.own,
+        lattice.goals,
+        lattice.cost,
+        edges.tables,
+        edges.closed,
+        lattice.previous,
+        lattice.step,
+        lattice.weight,
+    )
+
+
+@exact_kernel
+def _close(lattice: Lattice, work: Work, edges: ClosedEdges, way: Longs, touches: Bools) -> tuple[int, float]:
+    """Close the steps of a way in the intervals where it touches, and those near to them; each has a table.
 
     Returns the first of these intervals and how much dearer ways are to be looked at.
     """
@@ -121,11 +137,10 @@ def _closed(
     for k in range(touches.shape[0] - 1, -1, -1):
         if touches[k]:
             first = k
-            if lattice.masks[k] < 0:
-                lattice.masks[k] = admit_closed_edges(masks, keys[k])
             close_near(lattice, work, k, way[k], way[k + 1], _BAN_RADIUS)
-            slack = max(2.0 * masks.slack[lattice.masks[k]], _FIRST_SLACK)
-            masks.slack[lattice.masks[k]], farthest = slack, max(farthest, slack)
+            at = edges.tables[k]
+            slack = max(2.0 * edges.slack[at], _FIRST_SLACK)
+            edges.slack[at], farthest = slack, max(farthest, slack)
     return first, farthest
 
 
@@ -138,20 +153,20 @@ def _close_promising(
     motion_margins: Floats,
     lattice: Lattice,
     work: Work,
-    masks: ClosedEdges,
+    edges: ClosedEdges,
     steps: Longs,
     first: int,
     best: float,
 ) -> int:
-    """Look at the steps of key intervals with a mask, from `first` on, through which ways lead that cost little more
+    """Look at the steps of key intervals with a table, from `first` on, through which ways lead that cost little more
     than the `best`; close those that touch. Returns the capsules checked; `steps` (MOST_STEPS, 2) is scratch."""
     checks = 0
     for k in range(first, motion_margins.shape[0]):
-        at = lattice.masks[k]
+        at = edges.tables[k]
         if at >= 0:
-            count = promising_edges(lattice, work, k, best + masks.slack[at], masks.seen[at], steps)
+            count = promising_edges(lattice, work, k, best + edges.slack[at], edges.seen[at], steps)
             if count == MOST_EDGES:
-                masks.slack[at] *= 0.5  # there are more of them: the same once again
+                edges.slack[at] *= 0.5  # there are more of them: the same once again
             if count:
                 places, turns = carriers.places[k], carriers.turns[k]
                 checks += close_edges(
@@ -160,20 +175,19 @@ def _close_promising(
     return checks
 
 
-@exact_kernel
-def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
-    """The cheapest way whose motion is free as shown, at every moment.
+@helper
+def _priced(
+    scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
+) -> tuple[Lattice, Carriers, float, int]:
+    """The lattice of a task with its nodes' costs, all edges open; and what carries the limb.
 
-    It begins gently; if there is no such way, only who is told so begins as hard as it takes.
+    Also the greatest clearance that may be asked for, and the capsules checked.
     """
-    group, roots, waists, chain, work = cache
-    postures, masks, goals, obstacles = group.postures, group.masks, task.goals, task.obstacles
-    configurations, columns = postures.configurations, postures.columns
-    interval, limits, horizon = task.interval, group.limits, goals.shape[0] - 1
-    scratch, steps = new_scratch(postures, chain.waist, at_span(obstacles, 0)), np.empty((MOST_EDGES, 2), np.int64)
+    group, roots, waists, _ = cache
+    postures = group.postures
     begin_round(group.tables.entries)
     own, needed, previous = extra_nodes(
-        configurations, columns, postures.step, goals, task.previous, task.start, task.settled
+        postures.configurations, postures.columns, postures.step, task.goals, task.previous, task.start, task.settled
     )
     if postures.limb.is_waist:
         carriers = carriers_at(roots.entries.ids, roots.places, roots.turns, task.roots)
@@ -183,26 +197,37 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
     most, checks = node_costs(
         scratch, group.tables, postures, carriers, task, weights, own, needed, previous, clear, cost
     )
-    named = closed_edge_keys(carriers.ids, goals)
     lattice = Lattice(
-        configurations,
-        columns,
+        postures.configurations,
+        postures.columns,
         postures.moves,
         postures.spans,
         own,
-        goals,
+        task.goals,
         cost,
-        known_closed_edges(masks, named, previous),
-        masks.closed,
+        edges.tables,
+        edges.closed,
         previous,
         postures.step,
         weights.step,
     )
-    entries, motion_margins = np.empty(horizon, np.int64), np.empty(horizon)
-    touches, stiff = np.empty(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
-    touches[:] = False
-    for k in range(horizon):
-        motion_margins[k] = min(task.motion_margins[k], most)
+    return lattice, carriers, most, checks
+
+
+@exact_kernel
+def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
+    """The cheapest way whose motion is free as shown, at every moment.
+
+    It begins gently; if there is no such way, only who is told so begins as hard as it takes.
+    """
+    group, roots, waists, chain = cache
+    postures, goals, obstacles = group.postures, task.goals, task.obstacles
+    horizon, nodes_in_row = goals.shape[0] - 1, postures.moves.shape[1] + EXTRA
+    scratch, steps = new_scratch(postures, chain.waist, at_span(obstacles, 0)), np.empty((MOST_EDGES, 2), np.int64)
+    work, edges = new_work(horizon + 1, nodes_in_row), new_closed_edges(horizon, nodes_in_row)
+    lattice, carriers, most, checks = _priced(scratch, cache, task, weights, edges)
+    entries, motion_margins = np.empty(horizon, np.int64), np.minimum(task.motion_margins, most)
+    touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
     first, deepest, spent, nodes, gentle, harsh = _BEGIN, 0, weights.rounds, 0, True, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(weights.rounds):
@@ -212,27 +237,16 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
         set_keys(lattice, way, keys)
         if reached < horizon and gentle and harsh and task.harsh:
             gentle, first = False, _BEGIN
-            reopen(masks, lattice.masks[0])
+            reopen_first(edges)
             continue
         if reached < horizon:
             deepest, spent = reached, rounds
             break
         stiff[:] = False
         for attempt in range(2):
-            tangents = smooth_tangents(keys, interval, task.velocity, limits, stiff)
+            tangents = smooth_tangents(keys, task.interval, task.velocity, group.limits, stiff)
             count, asks_much = _proven(
-                scratch,
-                group,
-                roots,
-                waists,
-                chain,
-                task,
-                keys,
-                tangents,
-                motion_margins,
-                entries,
-                touches,
-                bool(gentle),
+                scratch, group, roots, waists, chain, task, keys, tangents, motion_margins, entries, touches, gentle
             )
             checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):
@@ -241,12 +255,14 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
             deepest, spent = horizon, rounds + 1
             break
         nodes += widen(lattice, work)
-        first, farthest = _closed(lattice, work, masks, named, way, touches)
+        edges = with_tables(edges, touches)
+        lattice = _closing(lattice, edges)
+        first, farthest = _close(lattice, work, edges, way, touches)
         deepest = max(deepest, first)
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)
         checks += _close_promising(
-            scratch, postures, carriers, obstacles, motion_margins, lattice, work, masks, steps, first, best
+            scratch, postures, carriers, obstacles, motion_margins, lattice, work, edges, steps, first, best
         )
     until = deepest + 1
-    return GroupPath(deepest, keys[:until], tangents[:until], entries, cost, most, checks, nodes, spent)
+    return GroupPath(deepest, keys[:until], tangents[:until], entries, lattice.cost, most, checks, nodes, spent)

@@ -59,8 +59,9 @@ class Work(NamedTuple):
     few: Floats  # (2, OWN)
 
 
+@exact_kernel
 def new_work(depths: int, nodes: int) -> Work:
-    """Room for a lattice with `depths` rows of `nodes` nodes."""
+    """What a search works on, for a lattice with `depths` rows of `nodes` nodes."""
     return Work(
         np.empty((depths, nodes), np.float32),
         np.empty((depths, nodes), np.int32),

@@ -15,7 +15,6 @@ from elbowroom.jit import exact_kernel
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-SAME = 1e-6  # keys this near to each other, in each component, are one
 _NEXT, _ROUND, _HAND = range(3)
 
 
@@ -47,7 +46,7 @@ def find(entries: CacheIndex, key: Floats) -> int:
             continue
         same = True
         for i in range(key.shape[0]):
-            if abs(entries.keys[s, i] - key[i]) > SAME:
+            if entries.keys[s, i] != key[i]:
                 same = False
                 break
         if same:

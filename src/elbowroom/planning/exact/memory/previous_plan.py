@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.stillness import SAME
 
 Floats = NDArray[np.float64]
 
@@ -76,7 +77,7 @@ class PreviousPlan(NamedTuple):
         )
 
 
-def clearances(settings: ExactSettings, interval: float, count: int) -> Asked:
+def required_margins(settings: ExactSettings, interval: float, count: int) -> Asked:
     """What is asked for in the next key intervals, so many of `interval` seconds: less soon than later."""
     shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
     row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
@@ -92,6 +93,6 @@ def jolts(keys: Floats, last: Floats, known: int) -> bool:
     left, farthest = False, 0.0
     for t in range(min(known, keys.shape[0])):
         for j in range(keys.shape[1]):
-            left = left or (j < _WAIST and keys[t, j] != last[t, j])
+            left = left or (j < _WAIST and abs(keys[t, j] - last[t, j]) > SAME)
             farthest = max(farthest, abs(keys[t, j] - last[t, j]))
     return left and farthest > _LITTLE

@@ -1,4 +1,4 @@
-"""Key times known again by what the body does there, wherever it stands: rows for `RowIndex`."""
+"""Key times known again by what the body does there, to the last bit, wherever it stands: rows for `RowIndex`."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,20 +16,21 @@ CONTENT = ROOT_STATE - _FIRST  # numbers of a row beside those of the upper body
 
 @exact_kernel
 def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
-    """Whole millionths of root states (n+1, 7) without place and heading, and beside them of `uppers` (n+1, K).
+    """The bits of root states (n+1, 7) without place and heading, and beside them of `uppers` (n+1, K).
 
     They begin the rows `out` (n+1, CONTENT + K or more).
     """
     for t in range(out.shape[0]):
-        set_millionths(states[t, _FIRST:], out[t])
-        set_millionths(uppers[t], out[t, CONTENT:])
+        set_bits(states[t, _FIRST:], out[t])
+        set_bits(uppers[t], out[t, CONTENT:])
 
 
 @exact_kernel
-def set_millionths(values: Floats, out: Longs) -> None:
-    """Whole millionths of values (K,), to `out` (K or more,)."""
-    for j in range(values.shape[0]):
-        out[j] = np.int64(np.rint(1e6 * values[j]))
+def set_bits(values: Floats, out: Longs) -> None:
+    """The bits of values (K,), to `out` (K or more,)."""
+    bits = values.view(np.int64)
+    for j in range(bits.shape[0]):
+        out[j] = bits[j]
 
 
 @exact_kernel

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from elbowroom.planning.exact.plan.upper_body import Effort
+from elbowroom.planning.exact.plan.upper_body_search import Effort
 
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 

@@ -17,7 +17,7 @@ class EvidenceLog:
 
     def __init__(self, caches: PlanCaches, weights: Weights, go_on: GoOn) -> None:
         """`go_on` is called before each search, and raises an exception to call the plan off."""
-        self._shelves, self._weights, self.go_on = caches, weights, go_on
+        self._caches, self._weights, self.go_on = caches, weights, go_on
         self._rows: list[GroupEvidence] = []
         self.joint: JointEvidence | None = None
 
@@ -25,7 +25,7 @@ class EvidenceLog:
         """`search_group`, entered under `group`."""
         self.go_on()
         began = perf_counter_ns()
-        way: GroupPath = search_group(self._shelves.held[group], task, self._weights)
+        way: GroupPath = search_group(self._caches.groups[group], task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
         self._rows.append(GroupEvidence(group, status, way.checks, way.nodes, 0, spent))

@@ -14,15 +14,14 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.memory.previous_plan import Asked, Start
 from elbowroom.planning.exact.plan.full_plan import FullPlan, later
-from elbowroom.planning.exact.plan.upper_body import UpperPlan
+from elbowroom.planning.exact.plan.upper_body_search import UpperPlan
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.stillness import SAME, SAME_TIME
 
 Floats = NDArray[np.float64]
-
-_SAME = 1e-9  # radians, metres
 
 
 class Settled(NamedTuple):
@@ -45,7 +44,7 @@ def settled(left: FullPlan, path: RootPath, free: int) -> Settled | None:
     at, local = path.horizon - free, left.local
     if not 0 < at < len(local.configurations) or local.velocities is None or left.asked is None:
         return None
-    if not (left.root.path.states[: at + 1] == path.states[: at + 1]).all():
+    if np.abs(left.root.path.states[: at + 1] - path.states[: at + 1]).max() > SAME:
         return None
     rows = slice(at + 1)
     return Settled(at, local.configurations[rows], local.velocities[rows], local.goals[rows], left.asked)
@@ -79,9 +78,9 @@ class OngoingPlan(NamedTuple):
         known, whole = self.query, self.whole
         at = round((query.time - known.time) / query.interval)
         local = whole.local
-        if known.command != query.command or known.interval != query.interval or local.velocities is None:
+        if known.command != query.command or local.velocities is None:
             return None
-        if not 0 <= at < len(local.configurations) or abs(query.time - whole.root.path.time_of(at)) > _SAME:
+        if not 0 <= at < len(local.configurations) or abs(query.time - whole.root.path.time_of(at)) > SAME_TIME:
             return None
         keys = whole.root.path.states, local.configurations, local.velocities
         return later(whole, at) if leads_to(*keys, at, query.root.as_array(), query.upper, query.velocity) else None
@@ -100,4 +99,4 @@ def leads_to(
         apart = max(apart, abs(states[at, i] - state[i]))
     for i in range(upper.shape[0]):
         apart = max(apart, abs(uppers[at, i] - upper[i]), abs(rates[at, i] - rate[i]))
-    return apart <= _SAME
+    return apart <= SAME

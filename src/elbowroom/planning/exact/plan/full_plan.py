@@ -14,6 +14,7 @@ from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.stillness import STILL, UNMOVED
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ def previous_of(whole: FullPlan, path: RootPath) -> PreviousPlan | None:
     known, keys, velocities = whole.root.path, whole.local.configurations, whole.local.velocities
     at = (path.start_time - known.start_time) / known.interval
     first, last = math.floor(at + _SAME), len(keys) - 1
-    if path.interval != known.interval or velocities is None or whole.asked is None or not 0 <= first <= last:
+    if velocities is None or whole.asked is None or not 0 <= first <= last:
         return None
     asked, share = whole.asked.since(first, path.horizon), at - first
     rows = np.minimum(first + np.arange(len(path.states)), last)
@@ -86,11 +87,15 @@ class StandingPlan(NamedTuple):
     def answers(self, query: MotionQuery, version: int) -> bool:
         """Whether this is the answer to `query` too."""
         known, asked = self.query, query
-        same = known.root == asked.root and known.command == asked.command and version == self.version
-        same &= known.horizon == asked.horizon and known.interval == asked.interval
-        return same and bool(
-            np.array_equal(known.upper, asked.upper) and np.array_equal(known.velocity, asked.velocity)
+        if known.command != asked.command or version != self.version or known.horizon != asked.horizon:
+            return False
+        pairs = (
+            (known.root.as_array(), asked.root.as_array()),
+            (known.upper, asked.upper),
+            (known.velocity, asked.velocity),
         )
+        apart = max(float(np.abs(one - other).max()) for one, other in pairs)
+        return apart < UNMOVED
 
     def at(self, time: float) -> FullPlan:
         """The answer at another time, for which nothing was searched."""
@@ -113,13 +118,12 @@ def stands(whole: FullPlan, query: MotionQuery) -> bool:
 @exact_kernel
 def _stays(states: Floats, uppers: Floats, upper: Floats, velocity: Floats) -> bool:
     """Whether root states (n+1, 7) are at rest, and `uppers` (n+1, 11) where an `upper` body is at rest already."""
+    fastest, farthest = 0.0, 0.0
     for t in range(states.shape[0]):
-        if states[t, 3] != 0.0 or states[t, 4] != 0.0 or states[t, 5] != 0.0:
-            return False
+        for i in range(3, 6):
+            fastest = max(fastest, abs(states[t, i]))
     for j in range(upper.shape[0]):
-        if velocity[j] != 0.0:
-            return False
+        fastest = max(fastest, abs(velocity[j]))
         for t in range(uppers.shape[0]):
-            if uppers[t, j] != upper[j]:
-                return False
-    return True
+            farthest = max(farthest, abs(uppers[t, j] - upper[j]))
+    return bool(fastest < STILL and farthest < UNMOVED)

@@ -7,10 +7,10 @@ from elbowroom.planning.exact.plan.full_plan import FullPlan, later, previous_of
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
+from elbowroom.planning.stillness import SAME
 
 _PAST = 3  # plans before the last one
 _SAME_TIME = 1e-6  # of a key interval
-_SAME = 1e-9  # radians, metres
 
 
 class RecentPlans:
@@ -50,7 +50,7 @@ class RecentPlans:
             return None
         path = last.root.path
         at = round((query.time - path.start_time) / query.interval)
-        if not 0 <= at < len(path.states) - 1 or not np.allclose(path.states[at], query.root, atol=1e-9):
+        if not 0 <= at < len(path.states) - 1 or not np.abs(path.states[at] - query.root.as_array()).max() <= SAME:
             return None
         left = later(last, at)
         return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED))
@@ -65,10 +65,10 @@ def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:
     velocities, speeds = earlier.local.velocities, local.velocities
     at = round((path.start_time - known.start_time) / known.interval)
     apart = abs(known.start_time + at * known.interval - path.start_time)
-    if velocities is None or speeds is None or known.interval != path.interval or not 0 < at < len(rows):
+    if velocities is None or speeds is None or not 0 < at < len(rows):
         return whole
     there, here = (known.states[at], rows[at], velocities[at]), (path.states[0], local.configurations[0], speeds[0])
-    if apart > _SAME_TIME * path.interval or any(np.abs(a - b).max() > _SAME for a, b in zip(there, here, strict=True)):
+    if apart > _SAME_TIME * path.interval or any(np.abs(a - b).max() > SAME for a, b in zip(there, here, strict=True)):
         return whole
     joined = local._replace(
         configurations=np.concatenate([rows[:at], local.configurations]),

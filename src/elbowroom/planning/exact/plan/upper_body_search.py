@@ -6,7 +6,9 @@ joint step decides.
 """
 
 from dataclasses import dataclass
+from enum import Enum
 from time import perf_counter_ns
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,15 +22,12 @@ from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.joint.guide import Guide, arm_nodes, guide, surroundings, waist_nodes
 from elbowroom.planning.exact.joint.step import JointSettings, JointStep, Surroundings
 from elbowroom.planning.exact.lattice.lattice import EXTRA, KEPT
-from elbowroom.planning.exact.memory.own_contacts import OwnContacts
 from elbowroom.planning.exact.memory.previous_plan import Asked, jolts
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
-from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
-from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.upper_body_model import UpperBodyModel
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -44,25 +43,31 @@ _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way c
 _JOLT = 0.5  # squared radians that another motion must be better than one under the last plan's waist
 
 
+class Effort(Enum):
+    """What is tried before it is said that there is no way."""
+
+    __hash__ = object.__hash__  # as `DofGroup` has it
+
+    QUICK = "quick"  # the groups one after the other
+    GLANCE = "glance"  # then all together, at first sight
+    JOINT = "joint"  # then all together
+    REFINED = "refined"  # then with more postures
+
+
 @dataclass(eq=False)
 class UpperBodySearch:
     """One root path to be dressed."""
 
     caches: PlanCaches
     weights: Weights
-    settings: ExactSettings
-    own_body: OwnBody
-    own_motion: OwnMotion
-    contacts: OwnContacts
+    model: UpperBodyModel
     legs: LoweredLegs
     problem: PathProblem
     go_on: GoOn = keep_going  # called before each search
 
     def __post_init__(self) -> None:
         self.asked: Asked | None = None  # of the way that was found
-        self._arms = Arms(
-            self.caches, self.problem, self.own_body, self.own_motion, self.contacts, self.settings.self_rounds
-        )
+        self._arms = Arms(self.caches, self.problem, self.model.settings.self_rounds)
         self.evidence_log = EvidenceLog(self.caches, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
@@ -102,7 +107,7 @@ class UpperBodySearch:
 
     def _asked(self, found: Ways) -> Asked:
         """The clearances that were asked for: less where the start has less."""
-        most, settings = [way.most for way in found.ways], self.settings
+        most, settings = [way.most for way in found.ways], self.model.settings
         enough = min(most) >= max(settings.margin, settings.motion_margin)
         return self.problem.asked if enough else self.problem.asked.at_most(most)
 
@@ -192,7 +197,7 @@ class UpperBodySearch:
                 most = self._room_at_start(group, arm_task, waist)
             arms.append(arm_nodes(caches.group(group), arm_task, self.weights.keeping, most))
         return JointStep(
-            self.own_body,
+            self.model.own_body,
             waist_nodes(caches.group(DofGroup.WAIST), task, waist, self.weights.keeping),
             (arms[0], arms[1]),
             self._surroundings(),
@@ -242,3 +247,12 @@ class UpperBodySearch:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
         task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
         return self.evidence_log.search(DofGroup.WAIST, task)
+
+
+class UpperPlan(NamedTuple):
+    """A local plan and how far it got."""
+
+    plan: LocalPlan
+    reached: int  # n if found, else the deepest key time with a way for every group
+    search: UpperBodySearch  # the last attempt, which can say why there is no way
+    asked: Asked | None = None  # what clearances were asked for; None unless found

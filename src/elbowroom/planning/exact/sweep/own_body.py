@@ -14,7 +14,6 @@ from elbowroom.body.dof import DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel, arm_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
-from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.memory.row_contents import CONTENT
 from elbowroom.planning.exact.memory.row_index import new_row_index
@@ -29,7 +28,7 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 _PHASES, _SPEED = 8, 1.1  # of the stride
-_REMEMBERED = 1024  # surroundings of an arm
+_REMEMBERED = 128  # surroundings of an arm
 
 ARMS = (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 
@@ -42,15 +41,12 @@ class Parts(NamedTuple):
 
 
 class OwnBody:
-    """One avatar's body as its arms see it."""
+    """One avatar's body as its arms see it; frozen."""
 
     def __init__(self, model: BodyModel, goals: GoalFunction) -> None:
         self.model = model
         self.pairs: SelfPairs = self_pairs(model, goals)
         self._goals = goals
-        self._resting: dict[tuple[int, int], tuple[Postures, Bools]] = {}
-        self._prices: dict[int, tuple[Floats, Floats32]] = {}
-        self._foldings: dict[int, tuple[Floats, OwnBodyNodes]] = {}
 
     def parts(self, side: int, waists: Floats, states: Floats, other: Floats | None) -> Parts:
         """What arm `side` must keep away from, at N waists (N, d), root states (N, 7), with the other arm (N, d)."""
@@ -65,46 +61,30 @@ class OwnBody:
 
     def resting(self, side: int, postures: Postures) -> Bools:
         """Which postures (W,) touch the body at some phase of the natural walk, or the other arm there."""
-        key = side, id(postures.configurations)
-        if key not in self._resting:
-            states = np.zeros((_PHASES + 1, ROOT_STATE))
-            states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
-            path = RootPath(0.0, 1.0, states)
-            natural, groups = self._goals(path), (DofGroup.WAIST, ARMS[1 - side])
-            waists, other = (np.ascontiguousarray(natural[:, columns_of(group)]) for group in groups)
-            parts = self.parts(side, waists, states, other)
-            found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
-            others = {known: previous for known, previous in self._resting.items() if known[0] != side}
-            self._resting = others | {key: (postures, np.any(found, axis=0))}
-        return self._resting[key][1]
+        states = np.zeros((_PHASES + 1, ROOT_STATE))
+        states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
+        path = RootPath(0.0, 1.0, states)
+        natural, groups = self._goals(path), (DofGroup.WAIST, ARMS[1 - side])
+        waists, other = (np.ascontiguousarray(natural[:, columns_of(group)]) for group in groups)
+        parts = self.parts(side, waists, states, other)
+        found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
+        touching: Bools = np.any(found, axis=0)
+        return touching
 
-    def resting_costs(self, side: int, postures: Postures, count: int) -> Floats32:
-        """What that adds to the prices (count, W + OWN) of an arm's nodes: nothing, or infinity."""
-        known = self._prices.get(side)
-        if known is None or known[0] is not postures.configurations or len(known[1]) != count:
-            resting = self.resting(side, postures)
-            costs = np.zeros((count, len(resting) + EXTRA), np.float32)
-            costs[:, : len(resting)][:, resting] = np.inf
-            known = self._prices[side] = postures.configurations, costs
-        return known[1]
+    def own_body_nodes(self, side: int, postures: Postures, resting: Bools) -> OwnBodyNodes:
+        """What arm `side` is held against with `postures`, for `own_body_costs`; nothing looked at yet.
 
-    def own_body_nodes(self, side: int, postures: Postures) -> OwnBodyNodes:
-        """What arm `side` is held against with `postures`, for `own_body_costs`, and what was looked at."""
-        known = self._foldings.get(side)
-        if known is None or known[0] is not postures.configurations:
-            pairs, model, arm = self.pairs, self.model, postures.limb
-            wanted, allowed = pairs.rest, pairs.allowed[side]
-            if side == 1:
-                wanted = np.concatenate([wanted, pairs.arms[0]])
-                allowed = np.concatenate([allowed, pairs.between.T], axis=1)
-            resting = self.resting(side, postures)
-            own_body_nodes = OwnBodyNodes(
-                whole_body(model), arm.order, arm.arm_joints, arm.mirror, arm.joints, arm.ends, wanted,
-                np.ascontiguousarray(allowed), postures.configurations, postures.columns, postures.step,
-                postures.lanes, postures.balls, resting,
-                new_row_index(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
-                np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
-            )  # fmt: skip
-            known = postures.configurations, own_body_nodes
-            self._foldings[side] = known
-        return known[1]
+        `resting` (W,) are those that touch the walking body.
+        """
+        pairs, arm = self.pairs, postures.limb
+        wanted, allowed = pairs.rest, pairs.allowed[side]
+        if side == 1:
+            wanted = np.concatenate([wanted, pairs.arms[0]])
+            allowed = np.concatenate([allowed, pairs.between.T], axis=1)
+        return OwnBodyNodes(
+            whole_body(self.model), arm.order, arm.arm_joints, arm.mirror, arm.joints, arm.ends, wanted,
+            np.ascontiguousarray(allowed), postures.configurations, postures.columns, postures.step,
+            postures.lanes, postures.balls, resting,
+            new_row_index(_REMEMBERED, CONTENT + columns_of(ARMS[side]).start),
+            np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
+        )  # fmt: skip

@@ -13,7 +13,7 @@ from elbowroom.body.dof import LOCAL
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.whole_body import whole_body
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_contents, set_millionths
+from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
 from elbowroom.planning.exact.sweep.own_samples import OwnParts, least_gaps
 from elbowroom.planning.model.self_pairs import SelfPairs
@@ -25,7 +25,7 @@ Indices = NDArray[np.int64]
 _UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
 _AFAR = 2.0  # times as much room is left far ahead: what was free from afar stays free when it is near
 _SOON = 4  # key intervals ahead until which a motion is near
-ROOM = 2048  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
+ROOM = 512  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
 
 
 class Seen(NamedTuple):
@@ -36,11 +36,16 @@ class Seen(NamedTuple):
     gaps: Floats  # (S,) its gap, metres
 
 
-class OwnMotion:
-    """One avatar's motion among its own parts."""
+def own_parts(model: BodyModel, pairs: SelfPairs) -> OwnParts:
+    """The parts of a body that must not run into each other."""
+    return OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits)
 
-    def __init__(self, model: BodyModel, pairs: SelfPairs) -> None:
-        self._parts = OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits)
+
+class OwnMotion:
+    """One avatar's motion among its own parts, and the key intervals of it that were looked at."""
+
+    def __init__(self, parts: OwnParts) -> None:
+        self._parts = parts
         known = new_row_index(ROOM, 2 * (CONTENT + 2 * LOCAL))
         self._seen = Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM))
 
@@ -70,7 +75,7 @@ def _contacts(
     contents = names.reshape(keys.shape[0], width)
     set_contents(states, keys, contents)
     for t in range(keys.shape[0]):
-        set_millionths(rates[t], contents[t, CONTENT + LOCAL :])
+        set_bits(rates[t], contents[t, CONTENT + LOCAL :])
     if 2 * it.known.taken[0] > it.gaps.shape[0]:
         forget(it.known)
     missing, count = np.empty(chosen.shape[0], np.int64), 0

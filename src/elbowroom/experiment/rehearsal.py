@@ -13,11 +13,11 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
 from elbowroom.planning.exact.joint.product import joint_path
 from elbowroom.planning.exact.joint.reachability import stepped_triples
 from elbowroom.planning.exact.lattice.postures import postures_of
-from elbowroom.planning.exact.memory.own_contacts import rule_out_near
 from elbowroom.planning.exact.memory.previous_plan import Start, jolts
 from elbowroom.planning.exact.plan.extension import leads_to
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -25,7 +25,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
-from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
 from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
@@ -49,7 +49,7 @@ def rehearse(humanoid: Humanoid) -> None:
     path = _straight_on()
     for box in (_BESIDE, _WALL):
         body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
-        start = body.goals(path)[0]
+        start = body.model.goals(path)[0]
         search = body.plan(path, Start(start, np.zeros_like(start))).search
         search.together(1)
         search.blockade()
@@ -77,8 +77,17 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     previous, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
     goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
     rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
-    own_body_costs(body.own_body_nodes(0, postures), previous, previous, previous[0], True, goals, waists, path.states)
-    OwnMotion(model, body.pairs).contacts(path, bent, np.zeros_like(bent), goals, 0)
+    own_body_costs(
+        body.own_body_nodes(0, postures, body.resting(0, postures)),
+        previous,
+        previous,
+        previous[0],
+        True,
+        goals,
+        waists,
+        path.states,
+    )
+    OwnMotion(own_parts(model, body.pairs)).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
