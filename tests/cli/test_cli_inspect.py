@@ -1,21 +1,21 @@
 """`elbowroom inspect`: what it says, as a table and as JSON, and the sheet that it draws."""
 
 import json
-import struct
-import zlib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 from avatar_builder import MIXAMO, Recipe, build
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.experiment.pose_sheet.gestures import GESTURES
-from elbowroom.experiment.pose_sheet.png import png_bytes
-from elbowroom.experiment.pose_sheet.sheet import pose_sheet
+from elbowroom.experiment.pose_sheet.lettering import Lettering
+from elbowroom.experiment.pose_sheet.sheet import SIDE, TALL, TOP, WIDE, pose_sheet
+from odd_bodies import box_body
 
 
 @pytest.fixture
@@ -65,19 +65,42 @@ def test_wrong_options_are_one_line(figure: Path, arguments: list[str]) -> None:
     assert len(result.output.strip().splitlines()) == 1
 
 
-def test_the_sheet_is_a_png_of_every_gesture(figure: Path, tmp_path: Path) -> None:
+def test_the_sheet_is_a_png_of_every_gesture_and_says_where_it_went(figure: Path, tmp_path: Path) -> None:
     out = tmp_path / "sheet.png"
-    assert CliRunner().invoke(app, ["inspect", str(figure), "--capsules", "--pose-sheet", str(out)]).exit_code == 0
-    data = out.read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    width, height = struct.unpack(">II", data[16:24])
-    size = struct.unpack(">I", data[33:37])[0]
-    rows = np.frombuffer(zlib.decompress(data[41 : 41 + size]), np.uint8).reshape(height, 1 + 3 * width)
-    assert not rows[:, 0].any()
-    image = rows[:, 1:].reshape(height, width, 3)
-    cells = np.split(image[16:, 96:], len(GESTURES), axis=1)
+    result = CliRunner().invoke(app, ["inspect", str(figure), "--capsules", "--pose-sheet", str(out), "-q"])
+    assert result.exit_code == 0
+    image = np.asarray(Image.open(out).convert("RGB"))
+    height, width, _ = image.shape
+    assert (height, width) == (TOP + TALL, SIDE + 8 * WIDE)
+    assert result.stdout == f"{out}: figure in eight gestures, {width} x {height} pixels\n"
+    cells = np.split(image[TOP:, SIDE:], len(GESTURES), axis=1)
     assert all(len(np.unique(cell.reshape(-1, 3), axis=0)) > 40 for cell in cells)
     assert all(not np.array_equal(cells[0], cell) for cell in cells[1:])
+    drawn = np.abs(cells[2].astype(int) - cells[2][0, 0]).max(axis=2) > 40  # a figure that hangs its arms
+    rows = np.flatnonzero(drawn.any(axis=1))
+    assert rows[-1] - rows[0] > 0.6 * TALL
+    for column in range(8):  # a word above each
+        head = image[:TOP, SIDE + column * WIDE : SIDE + (column + 1) * WIDE]
+        assert (head.min(axis=2) < 120).sum() > 20
+    assert (image[TOP:, :SIDE].min(axis=2) < 120).sum() > 200  # the name
+
+
+def test_a_sheet_that_cannot_be_written_is_one_line(figure: Path, tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["inspect", str(figure), "-q", "--pose-sheet", str(tmp_path / "no" / "sheet.png")])
+    assert result.exit_code == 2
+    assert "cannot be written" in result.output
+
+
+@pytest.mark.parametrize("name", ["a", "KoreanCharacter02Chul", "VRMC_materials_mtoon_UV_Animation_Test", "x" * 300])
+def test_names_are_broken_where_they_may(name: str) -> None:
+    paper = np.full((200, 200, 3), 255, np.uint8)
+    lettering = Lettering(paper)
+    below = lettering.wrapped(name, 10, 10, 150, 20, (0, 0, 0))
+    ink = np.argwhere(lettering.image().min(axis=2) < 128)
+    assert 10 < below <= 10 + 4 * 25
+    assert ink[:, 0].max() < below
+    assert ink[:, 1].max() <= 161
+    assert (paper == 255).all()
 
 
 def test_the_same_gesture_is_the_same_picture_whatever_the_rig(tmp_path: Path) -> None:
@@ -88,15 +111,26 @@ def test_the_same_gesture_is_the_same_picture_whatever_the_rig(tmp_path: Path) -
     for number, recipe in enumerate(recipes):
         path = tmp_path / f"{number}.glb"
         path.write_bytes(build(recipe))
-        images.append(pose_sheet([Humanoid.load(path)], capsules=True)[16:, 96:].astype(int))
+        images.append(pose_sheet([Humanoid.load(path)], capsules=True)[TOP:, SIDE:].astype(int))
     for image in images[1:]:
         different = np.abs(image - images[0]).max(axis=2) > 40
         assert different.mean() < 0.01
 
 
-def test_png_bytes_hold_the_picture() -> None:
-    image = np.random.default_rng(0).integers(0, 256, (5, 7, 3)).astype(np.uint8)
-    data = png_bytes(image)
-    size = struct.unpack(">I", data[33:37])[0]
-    rows = np.frombuffer(zlib.decompress(data[41 : 41 + size]), np.uint8).reshape(5, 22)
-    assert np.array_equal(rows[:, 1:].reshape(5, 7, 3), image)
+def test_a_bone_without_mesh_is_not_said_to_be_covered(tmp_path: Path) -> None:
+    """The boxes leave abdomen and neck bare."""
+    path = tmp_path / "boxes.vrm"
+    path.write_bytes(build(Recipe(vrm="1", body=box_body())))
+    output = CliRunner().invoke(app, ["inspect", str(path)]).output
+    (note,) = [line for line in output.splitlines() if line.startswith("note: without mesh")]
+    bare = note.partition("average proportions: ")[2].split(", ")
+    assert "neck" in bare
+    rows = {line.split()[0]: line for line in output.splitlines() if " cm" in line and line.strip()}
+    assert all("covers" not in rows[part] for part in bare)
+    assert "covers" in rows["head"]
+    token = tmp_path / "token.vrm"
+    token.write_bytes(build(Recipe(vrm="1", mesh=False)))
+    output = CliRunner().invoke(app, ["inspect", str(token)]).output
+    assert "of average proportions" in output
+    assert "covers" not in output
+    assert "100.0%" not in output

@@ -53,7 +53,8 @@ def inspect(
             except InputError as error:
                 refused[str(path)] = str(error)
     if pose_sheet is not None and found:
-        _draw(pose_sheet, [humanoid for _, humanoid in found], capsules)
+        drawn = _draw(pose_sheet, [humanoid for _, humanoid in found], capsules, quiet)
+        typer.echo(drawn, err=json)
     if json:
         print_json(
             {"avatars": [asdict(facts) | {"warnings": facts.warnings} for facts, _ in found], "refused": refused}
@@ -79,14 +80,20 @@ def _paths(files: list[Path]) -> list[Path]:
     return paths
 
 
-def _draw(path: Path, humanoids: "list[Humanoid]", capsules: bool) -> None:
-    from elbowroom.experiment.pose_sheet.png import png_bytes
+def _draw(path: Path, humanoids: "list[Humanoid]", capsules: bool, quiet: bool) -> str:
+    """Draw the sheet; gives a sentence on it."""
+    from PIL import Image
+
     from elbowroom.experiment.pose_sheet.sheet import pose_sheet
 
+    with progress_bar("Drawing", float(len(humanoids)), quiet) as bar:
+        sheet = pose_sheet(humanoids, capsules, lambda row: bar.move(row, humanoids[row - 1].name))
     try:
-        path.write_bytes(png_bytes(pose_sheet(humanoids, capsules)))
+        Image.fromarray(sheet).save(path, "PNG", optimize=True)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+        raise InputError(f"{path}: cannot be written ({error.strerror or error})") from None
+    count = f"{len(humanoids)} avatars" if len(humanoids) > 1 else humanoids[0].name
+    return f"{path}: {count} in eight gestures, {sheet.shape[1]} x {sheet.shape[0]} pixels"
 
 
 def _print(facts: "AvatarFacts") -> None:

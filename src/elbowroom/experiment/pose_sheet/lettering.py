@@ -1,26 +1,50 @@
-"""Small capitals of three by five dots, for labels in pictures."""
+"""Words in pictures, in the outline font that Pillow brings (Aileron, CC0)."""
+
+import re
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
 
-# Rows from the top, the left dot first, as octal digits.
-_DOTS = {
-    "A": "25755", "B": "65656", "C": "34443", "D": "65556", "E": "74647", "F": "74644", "G": "34553", "H": "55755",
-    "I": "72227", "J": "11152", "K": "55655", "L": "44447", "M": "57755", "N": "65555", "O": "25552", "P": "65644",
-    "Q": "25563", "R": "65655", "S": "34216", "T": "72222", "U": "55557", "V": "55552", "W": "55775", "X": "55255",
-    "Y": "55222", "Z": "71247", "0": "75557", "1": "26227", "2": "61247", "3": "61216", "4": "55711", "5": "74616",
-    "6": "34757", "7": "71244", "8": "75757", "9": "75716", "-": "00700", ".": "00002", "_": "00007", ",": "00024",
-    "(": "24442", ")": "21112", "%": "51245", ":": "02020", "/": "11244",
-}  # fmt: skip
-_ROWS, _COLUMNS = 5, 3
+Colour = tuple[int, int, int]
+
+_LEADING = 1.22  # from one line to the next, of the size
 
 
-def letter(image: NDArray[np.uint8], text: str, x: int, y: int, size: int, color: tuple[int, int, int]) -> None:
-    """Write `text` into an RGB image with its top left corner at (x, y); what goes beyond the border is cut."""
-    for character in text.upper():
-        for row, dots in enumerate(_DOTS.get(character, "00000")):
-            for column in range(_COLUMNS):
-                if int(dots) >> (_COLUMNS - 1 - column) & 1:
-                    top, left = y + row * size, x + column * size
-                    image[max(top, 0) : top + size, max(left, 0) : left + size] = color
-        x += (_COLUMNS + 1) * size
+class Lettering:
+    """Writes into a copy of an RGB picture (height, width, 3); places and sizes are in pixels."""
+
+    def __init__(self, picture: NDArray[np.uint8]) -> None:
+        self._picture = Image.fromarray(picture)
+        self._draw = ImageDraw.Draw(self._picture)
+
+    def centred(self, text: str, x: int, top: int, size: int, colour: Colour) -> None:
+        """One line with its middle at `x`."""
+        self._draw.text((x, top), text, colour, ImageFont.load_default(size), anchor="ma")
+
+    def wrapped(self, text: str, left: int, top: int, width: int, size: int, colour: Colour) -> int:
+        """Lines no wider than `width`, one below the other; gives where the next one would begin."""
+        font = ImageFont.load_default(size)
+        for line in _lines(text, lambda words: self._draw.textlength(words, font) <= width):
+            self._draw.text((left, top), line, colour, font)
+            top += round(_LEADING * size)
+        return top
+
+    def image(self) -> NDArray[np.uint8]:
+        """The picture with what was written."""
+        return np.asarray(self._picture)
+
+
+def _lines(text: str, fits: Callable[[str], bool], most: int = 4) -> list[str]:
+    """A text in lines that fit, broken after separators, before capitals, else anywhere."""
+    lines = [""]
+    for piece in re.findall(r"[^ _-][^ _A-Z-]*[ _-]?|[ _-]", text):
+        if fits(lines[-1] + piece.rstrip()) or not lines[-1]:
+            lines[-1] += piece
+        else:
+            lines.append(piece)
+        while not fits(lines[-1].rstrip()) and len(lines[-1]) > 1:
+            cut = next(n for n in range(len(lines[-1]) - 1, 0, -1) if n == 1 or fits(lines[-1][:n]))
+            lines[-1:] = [lines[-1][:cut], lines[-1][cut:]]
+    return lines[:most]

@@ -11,18 +11,18 @@ from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.skin import Skin, skin_of
 from elbowroom.experiment.pose_sheet.capsule_skin import capsule_skin
 from elbowroom.experiment.pose_sheet.gestures import GESTURES
-from elbowroom.experiment.pose_sheet.lettering import letter
+from elbowroom.experiment.pose_sheet.lettering import Lettering
 from elbowroom.experiment.pose_sheet.raster import draw
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-_CELL, _TOP, _SIDE = 150, 16, 96  # pixels: a figure's square, the head line, the name beside a row
+WIDE, TALL, TOP, SIDE = 236, 316, 58, 236  # pixels: a figure's place, the head line, the names beside the rows
 _FINER = 3  # each pixel is drawn as so many by so many
-_FILL = 0.66  # of the square that a standing figure takes
+_FILL, _GROUND_AT = 0.70, 0.94  # of a place's height: a standing figure, and where it stands from the top
 _VIEW = np.deg2rad(-35.0)  # the camera stands ahead and to the figure's left
-_PAPER, _INK, _GROUND = (247, 246, 243), (70, 70, 74), (226, 224, 218)
+_PAPER, _INK, _FAINT, _GROUND = (250, 249, 246), (38, 40, 44), (112, 114, 120), (229, 227, 221)
 _COLORS = {
     "trunk": (96, 125, 139), "head": (222, 184, 150), "leftArm": (224, 122, 63), "rightArm": (66, 133, 191),
     "leftLeg": (176, 137, 104), "rightLeg": (125, 146, 116),
@@ -37,22 +37,25 @@ def pose_sheet(
 
     `capsules` draws those instead of the surface; so are avatars drawn that have no mesh of a body.
     """
-    image = np.full((_TOP + _CELL * len(humanoids), _SIDE + _CELL * len(GESTURES), 3), _PAPER, np.uint8)
-    for column, gesture in enumerate(GESTURES):
-        letter(image, gesture.name, _SIDE + column * _CELL + 8, 5, 2, _INK)
+    image = np.full((TOP + TALL * len(humanoids), SIDE + WIDE * len(GESTURES), 3), _PAPER, np.uint8)
     for row, humanoid in enumerate(humanoids):
-        top = _TOP + row * _CELL
-        image[top : top + _CELL, _SIDE:] = _row(humanoid, capsules)
-        for line, part in enumerate(_lines(humanoid.name)):
-            letter(image, part, 4, top + 20 + 14 * line, 2, _INK)
+        top = TOP + row * TALL
+        image[top : top + TALL, SIDE:] = _row(humanoid, capsules)
         if progress is not None:
             progress(row + 1)
-    return image
+    lettering = Lettering(image)
+    for column, gesture in enumerate(GESTURES):
+        lettering.centred(gesture.name, SIDE + int((column + 0.5) * WIDE), 18, 22, _INK)
+    for row, humanoid in enumerate(humanoids):
+        middle = TOP + row * TALL + TALL // 2
+        below = lettering.wrapped(humanoid.name, 20, middle - 34, SIDE - 36, 23, _INK)
+        lettering.wrapped(_about(humanoid), 20, below + 6, SIDE - 36, 16, _FAINT)
+    return lettering.image()
 
 
-def _lines(name: str) -> list[str]:
-    """A name in pieces that fit beside its row."""
-    return [name[at : at + 11] for at in range(0, min(len(name), 44), 11)]
+def _about(humanoid: Humanoid) -> str:
+    """What kind of file it is, and how tall its figure."""
+    return f"{humanoid.meta.format or 'no file'}, head joint at {humanoid.skeleton.height:.2f}\u00a0m"
 
 
 def _row(humanoid: Humanoid, capsules: bool) -> Image:
@@ -81,15 +84,13 @@ def _colors(skin: Skin, humanoid: Humanoid) -> Floats:
 
 
 def _cell(points: Floats, skin: Skin, colors: Floats, stature: float) -> Image:
-    size = _CELL * _FINER
+    wide, tall, ground = WIDE * _FINER, TALL * _FINER, int(_GROUND_AT * TALL) * _FINER
     turned = quaternion.rotate(quaternion.about_axis(1, _VIEW), points)
-    scale = _FILL * size / stature
-    pixels = np.stack(
-        [0.5 * size + scale * turned[:, 0], 0.86 * size - scale * turned[:, 1], scale * turned[:, 2]], axis=1
-    )
-    canvas = np.full((size, size, 3), _PAPER, np.float64)
-    canvas[int(0.86 * size) :] = _GROUND
-    draw(pixels, skin.triangles, colors, _LIGHT / np.linalg.norm(_LIGHT), canvas, np.full((size, size), -np.inf))
-    finer = canvas.reshape(_CELL, _FINER, _CELL, _FINER, 3).mean(axis=(1, 3))
+    scale = _FILL * tall / stature
+    pixels = np.stack([0.5 * wide + scale * turned[:, 0], ground - scale * turned[:, 1], scale * turned[:, 2]], axis=1)
+    canvas = np.full((tall, wide, 3), _PAPER, np.float64)
+    canvas[ground:] = _GROUND
+    draw(pixels, skin.triangles, colors, _LIGHT / np.linalg.norm(_LIGHT), canvas, np.full((tall, wide), -np.inf))
+    finer = canvas.reshape(TALL, _FINER, WIDE, _FINER, 3).mean(axis=(1, 3))
     cell: Image = np.clip(finer, 0.0, 255.0).astype(np.uint8)
     return cell
