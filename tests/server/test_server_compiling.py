@@ -61,7 +61,8 @@ def test_a_few_changed_files_are_compiled_where_they_are_needed_and_many_ahead()
     assert kernel_cache.is_nearly(mark(0), mark(5))
     assert not kernel_cache.is_nearly(mark(0), mark(40))
     assert not kernel_cache.is_nearly(mark(0), mark(0, "2.0"))
-    for nonsense in ({}, [], None, 3, {"compiler": ["1.0"], "sources": 3}):
+    nothings: tuple[Any, ...] = ({}, [], None, 3, {"compiler": ["1.0"], "sources": 3})
+    for nonsense in nothings:
         assert not kernel_cache.is_nearly(nonsense, mark(0))
 
 
