@@ -190,7 +190,7 @@ export class App implements SessionListener, MenuListener {
   private showAddress(): void {
     const { settings } = this.session;
     const { overlays } = this.preferences;
-    if (settings) this.address.show({ settings, camera: this.picture.camera.viewName, overlays });
+    if (settings && !this.session.sceneAwaited) this.address.show({ settings, camera: this.picture.camera.viewName, overlays });
   }
 
   private share(): void {

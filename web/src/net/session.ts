@@ -47,6 +47,8 @@ export class Session {
   private readonly clock = new ServerClock();
   private readonly connection: Connection;
   private subscriptions: Subscriptions = { capsules: false, plan: false };
+  /** The next settings tell what came of the scene that was asked for. */
+  private decided = false;
   private choices: Omit<Configure, "type">;
 
   constructor(url: string, private readonly listener: SessionListener, wishes: SessionWishes) {
@@ -70,6 +72,12 @@ export class Session {
 
   get newestPose(): PoseFrame | null {
     return this.timeline.newest;
+  }
+
+  /** Whether the scene that was asked for is still on its way: the settings tell the one before. */
+  get sceneAwaited(): boolean {
+    const { scene } = this.choices;
+    return (scene ?? this.settings?.scene) !== this.settings?.scene;
   }
 
   send(message: ClientMessage): void {
@@ -133,6 +141,8 @@ export class Session {
         break;
       case "settings":
         this.settings = message;
+        if (this.decided) this.choices = { ...this.choices, scene: message.scene };
+        this.decided = false;
         listener.settings(message);
         break;
       case "status":
@@ -153,12 +163,14 @@ export class Session {
         listener.plan(message);
         break;
       case "loading":
+        this.decided ||= message.what === "scene" && !message.active;
         listener.loading(message);
         break;
       case "crossed":
         listener.crossed(message);
         break;
       case "notice":
+        this.decided ||= message.level === "error";
         listener.notice(message.level, message.message);
         break;
       case "pong":
