@@ -16,7 +16,7 @@ from elbowroom.body.dof import DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.joint.step import JointStep
-from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
@@ -42,7 +42,7 @@ def walk(horizon: int, begin: float) -> RootPath:
 def dressing_of(body: UpperBodyPlanner, path: RootPath) -> UpperBodySearch:
     """A plan's dressing along a path that begins in the natural walk; nothing searched yet."""
     start = body.model.goals(path)[0]
-    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).search
+    return body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT).search
 
 
 def shade(share: float) -> str:

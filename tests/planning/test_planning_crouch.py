@@ -9,7 +9,7 @@ from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
 from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.key_frame_queue import KeyFrameQueue
-from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
@@ -76,7 +76,7 @@ def shown_legs(made: Scene, path: RootPath, uppers: Floats) -> tuple[float, floa
 
 def planned(made: Scene, body: UpperBodyPlanner) -> tuple[float, float] | None:
     start = natural_walk()(walk(speed=0.0))[0]
-    plan = body.plan(walk(), Start(start, np.zeros(LOCAL))).plan
+    plan = body.plan(walk(), StartState(start, np.zeros(LOCAL))).plan
     return shown_legs(made, walk(), plan.configurations) if plan.status is PlanStatus.FOUND else None
 
 

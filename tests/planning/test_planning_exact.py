@@ -14,7 +14,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, Start
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
@@ -105,9 +105,9 @@ def test_in_the_open_the_walk_is_natural(humanoid: Humanoid) -> None:
 
 def test_a_plan_that_is_still_good_is_kept(humanoid: Humanoid) -> None:
     body = UpperBodyPlanner(humanoid, course(1), ExactSettings())
-    first = body.plan(walk(), Start(hanging(), np.zeros(LOCAL))).plan.configurations
+    first = body.plan(walk(), StartState(hanging(), np.zeros(LOCAL))).plan.configurations
     again = body.plan(
-        walk(), Start(hanging(), np.zeros(LOCAL)), previous=PreviousPlan.freely(first)
+        walk(), StartState(hanging(), np.zeros(LOCAL)), previous=PreviousPlan.freely(first)
     ).plan.configurations
     assert len(first)
     assert np.allclose(first, again)

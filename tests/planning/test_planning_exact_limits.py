@@ -11,7 +11,7 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed
-from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.full_plan import FullPlan
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans, after
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -86,8 +86,8 @@ def test_a_plan_that_begins_in_motion_keeps_the_limits_unless_told_otherwise(
     found = harder = 0
     for _ in range(8):
         velocity = at_speed(rng, share)
-        gentle = body.plan(walk(), Start(start, velocity))
-        harsh = body.plan(walk(), Start(start, velocity, harsh=True))
+        gentle = body.plan(walk(), StartState(start, velocity))
+        harsh = body.plan(walk(), StartState(start, velocity, harsh=True))
         if gentle.reached == HORIZON:
             found += 1
             assert max(asked(gentle)) <= 1.0 + 1e-9
@@ -131,9 +131,9 @@ def test_who_changes_the_wish_before_a_plan_begins_still_knows_the_motion_until_
     assert np.array_equal(joined.local.configurations[0], earlier.local.configurations[0])
     assert np.array_equal(joined.local.configurations[1:], last.local.configurations)
     assert np.array_equal(joined.root.path.states[1:], last.root.path.states)
-    assert joined.asked is not None
-    assert last.asked is not None
-    assert np.array_equal(joined.asked.margins[:, 1:], last.asked.margins)
+    assert joined.margins is not None
+    assert last.margins is not None
+    assert np.array_equal(joined.margins.margins[:, 1:], last.margins.margins)
     previous = recent.previous(RootPath(0.4 * T, T, last.root.path.states[:5]))
     assert previous is not None
     for k in range(5):  # on the curves of both plans
@@ -153,4 +153,4 @@ def test_a_plan_that_does_not_go_on_from_the_earlier_one_is_not_joined_to_it() -
     off_time = last._replace(root=last.root._replace(path=replace(last.root.path, start_time=0.7 * T)))
     assert after(earlier, off_time) is off_time
     assert after(last, earlier) is earlier
-    assert after(earlier._replace(asked=None), last) is last
+    assert after(earlier._replace(margins=None), last) is last

@@ -14,7 +14,7 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
-from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, Start
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
@@ -83,15 +83,17 @@ def test_what_was_computed_before_changes_no_plan(humanoid: Humanoid) -> None:
     previous, velocity, checks = None, np.zeros(LOCAL), []
     for first in range(6):
         path = walk(16, first)
-        plan = body.plan(path, Start(start, velocity), previous).plan
+        plan = body.plan(path, StartState(start, velocity), previous).plan
         fresh = UpperBodyPlanner(humanoid, posts(), ExactSettings())
-        anew = fresh.plan(path, Start(start, velocity), previous).plan
+        anew = fresh.plan(path, StartState(start, velocity), previous).plan
         assert len(plan.configurations) == 17
         assert plan.velocities is not None
         assert anew.velocities is not None
         assert np.allclose(plan.configurations, anew.configurations, atol=1e-9)
         assert np.allclose(plan.velocities, anew.velocities, atol=1e-9)
-        again = UpperBodyPlanner(humanoid, posts(), ExactSettings()).plan(path, Start(start, velocity), previous).plan
+        again = (
+            UpperBodyPlanner(humanoid, posts(), ExactSettings()).plan(path, StartState(start, velocity), previous).plan
+        )
         assert np.array_equal(anew.configurations, again.configurations)
         checks.append((plan.checks, anew.checks))
         previous = PreviousPlan.freely(np.concatenate([plan.configurations[1:], plan.configurations[-1:]]))

@@ -11,7 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.joint.step import JointStep
-from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch
 from elbowroom.planning.exact.settings import ExactSettings
@@ -59,7 +59,7 @@ def walk(horizon: int = 8) -> RootPath:
 def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> UpperBodySearch:
     body = UpperBodyPlanner(humanoid, scene, SETTINGS)
     start = natural_walk()(path)[0]
-    return body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT).search
+    return body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT).search
 
 
 def step_of(dressing: UpperBodySearch) -> JointStep:
@@ -168,10 +168,10 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     plans = []
     for _ in range(2):
         body = UpperBodyPlanner(humanoid, scene, ExactSettings(samples_share=0.1, refinements=4))
-        coarse = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
-        plans.append(body.plan(path, Start(start, np.zeros_like(start))))
+        coarse = body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT)
+        plans.append(body.plan(path, StartState(start, np.zeros_like(start))))
         body.reset()
-        again = body.plan(path, Start(start, np.zeros_like(start)), effort=Effort.JOINT)
+        again = body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT)
         assert again.reached == coarse.reached
     assert coarse.reached < path.horizon
     assert plans[0].reached == path.horizon

@@ -14,7 +14,7 @@ from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.canned import standing_posture
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
-from elbowroom.planning.exact.memory.previous_plan import Start
+from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
@@ -124,7 +124,7 @@ def test_added_postures_belong_to_who_added_them(humanoid: Humanoid) -> None:
     one, other = (UpperBodyPlanner(humanoid, scene, coarse) for _ in range(2))
     start = one.model.goals(path)[0]
     counts = {group: len(one.model.points[group]) for group in LOCAL_GROUPS}
-    one.plan(path, Start(start, np.zeros_like(start)))
+    one.plan(path, StartState(start, np.zeros_like(start)))
     assert one.memory.version > 0
     assert any(len(one.memory.known(group)) > counts[group] for group in LOCAL_GROUPS)
     for group in LOCAL_GROUPS:

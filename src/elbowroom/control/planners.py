@@ -5,6 +5,7 @@ from threading import Lock
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.planning.motion import MotionPlanner
 from elbowroom.planning.planner import Planner, make_planner
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
@@ -27,6 +28,11 @@ class Planners:
     def upper(self) -> Planner:
         """Plans the upper body, some of them the root too."""
         return make_planner(*self._made_of)
+
+    @cached_property
+    def motion(self) -> MotionPlanner | None:
+        """The planner of the upper body, if it plans the root too."""
+        return self.upper if isinstance(self.upper, MotionPlanner) else None
 
     def make(self) -> None:
         """Make both now, which takes a while, unless that is done."""

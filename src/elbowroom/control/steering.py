@@ -35,6 +35,8 @@ def steady(held: Command, command: Command) -> Command:
 
 def changed(planned: Command, command: Command) -> bool:
     """Whether the user asks for something else: waiting for the next key frame would feel late."""
+    if planned == command:
+        return False
     if (planned.idle, planned.run, planned.direction is None) != (command.idle, command.run, command.direction is None):
         return True
     share = abs(_speed(planned) - _speed(command)) > _SHARE or abs(planned.turn - command.turn) > _SHARE
@@ -43,6 +45,8 @@ def changed(planned: Command, command: Command) -> bool:
 
 def overturned(planned: Command, command: Command) -> bool:
     """Whether what was planned is not wanted any more at all: the user has let go, or turned back."""
+    if planned == command:
+        return False
     if command.idle:
         return not planned.idle
     return not planned.idle and _angle(planned, command) > _REVERSED

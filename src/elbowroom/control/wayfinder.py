@@ -15,7 +15,7 @@ from elbowroom.control.canned import canned_walk
 from elbowroom.control.planners import Planners
 from elbowroom.control.rehearsal import Held, Rehearsal, frozen_motion, partial_motions, standing_path
 from elbowroom.control.settings import ControlSettings
-from elbowroom.planning.motion import Motion, MotionPlanner, MotionQuery, SupersededError
+from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
@@ -91,9 +91,10 @@ class Wayfinder:
         """A root path and its upper body; from the planner as one if it can do that."""
         query = question.query
         self._planners.root.others = query.others
-        if question.assist and isinstance(self._planners.upper, MotionPlanner):
+        planner = self._planners.motion
+        if question.assist and planner is not None:
             far = query._replace(horizon=max(query.horizon, question.reserve))
-            return self._planners.upper.plan_motion(self._planners.root, far)
+            return planner.plan_motion(self._planners.root, far)
         root = self._planners.root.plan(query.root, query.command, query.horizon, query.interval, query.time)
         if not question.assist:
             return Motion(root, canned_walk(root.path, query.upper, self._motions))

@@ -18,8 +18,8 @@ from elbowroom.planning.exact.joint.bounds import Problem
 from elbowroom.planning.exact.joint.product import joint_path
 from elbowroom.planning.exact.joint.reachability import stepped_triples
 from elbowroom.planning.exact.lattice.postures import postures_of
-from elbowroom.planning.exact.memory.previous_plan import Start, jolts
-from elbowroom.planning.exact.plan.extension import leads_to
+from elbowroom.planning.exact.memory.previous_plan import StartState, jolts
+from elbowroom.planning.exact.plan.ongoing import leads_to
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
@@ -50,7 +50,7 @@ def rehearse(humanoid: Humanoid) -> None:
     for box in (_BESIDE, _WALL):
         body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
         start = body.model.goals(path)[0]
-        search = body.plan(path, Start(start, np.zeros_like(start))).search
+        search = body.plan(path, StartState(start, np.zeros_like(start))).search
         search.together(1)
         search.blockade()
     rehearse_own_body(humanoid)

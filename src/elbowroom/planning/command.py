@@ -22,4 +22,4 @@ class Command:
     @property
     def idle(self) -> bool:
         """Whether the user has let go."""
-        return max(abs(self.forward), abs(self.strafe), abs(self.turn)) < _NOTHING
+        return abs(self.forward) < _NOTHING and abs(self.strafe) < _NOTHING and abs(self.turn) < _NOTHING

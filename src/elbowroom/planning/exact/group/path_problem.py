@@ -10,7 +10,7 @@ from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.problem import GroupTask
 from elbowroom.planning.exact.joint.guide import Guide
 from elbowroom.planning.exact.lattice.lattice import EXTRA
-from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.along import Along
 
@@ -28,21 +28,21 @@ class PathProblem(NamedTuple):
     goals: Floats  # (n+1, 11)
     last: PreviousPlan | None  # the last plan
     previous: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
-    begins: Start
+    begins: StartState
     roots: Longs  # (n,) slots of the root ways
     near: Along
-    anew: Asked  # clearances that are asked for, apart from what the last plan was allowed
-    asked: Asked  # with that
+    anew: RequiredMargins  # clearances that are asked for, apart from what the last plan was allowed
+    required: RequiredMargins  # with that
 
     @staticmethod
     def of(
         path: RootPath,
         goals: Floats,
         last: PreviousPlan | None,
-        begins: Start,
+        begins: StartState,
         roots: Longs,
         near: Along,
-        anew: Asked,
+        anew: RequiredMargins,
     ) -> "PathProblem":
         """What is asked for on a path among what is `near`, in view of the `last` plan.
 
@@ -52,7 +52,7 @@ class PathProblem(NamedTuple):
             return PathProblem(path, goals, None, goals, begins, roots, near, anew, anew)
         reached = last.known if begins.ahead else len(goals)
         previous = np.concatenate([last.keys[:reached], goals[reached:]])
-        return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.asked))
+        return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.required))
 
     def task(
         self, group: DofGroup, carriers: Longs, extra: Floats32 | None = None, follow: Guide | None = None
@@ -70,8 +70,8 @@ class PathProblem(NamedTuple):
             np.ascontiguousarray(previous),
             begins.upper[at],
             begins.velocity[at],
-            self.asked.margins[number],
-            self.asked.motion_margins[number],
+            self.required.margins[number],
+            self.required.motion_margins[number],
             costs,
             self.roots,
             carriers,

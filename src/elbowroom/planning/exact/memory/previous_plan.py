@@ -21,13 +21,13 @@ _LITTLE = 0.15  # radians
 _WAIST = DofGroup.WAIST.size  # components, the first of an upper body
 
 
-class Asked(NamedTuple):
+class RequiredMargins(NamedTuple):
     """Clearances that a plan asked for, in metres; rows: waist, left arm, right arm."""
 
     margins: Floats  # (3, n+1) of postures around key times
     motion_margins: Floats  # (3, n) of the motion in the key intervals
 
-    def since(self, first: int, horizon: int) -> "Asked":
+    def since(self, first: int, horizon: int) -> "RequiredMargins":
         """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
         margins, motion_margins = self.margins[:, first:], self.motion_margins[:, first:]
         if margins.shape[1] <= horizon:
@@ -36,24 +36,26 @@ class Asked(NamedTuple):
                 np.concatenate([margins, beyond], axis=1),
                 np.concatenate([motion_margins, beyond], axis=1),
             )
-        return Asked(margins[:, : horizon + 1], motion_margins[:, :horizon])
+        return RequiredMargins(margins[:, : horizon + 1], motion_margins[:, :horizon])
 
-    def beside(self, other: "Asked") -> "Asked":
+    def beside(self, other: "RequiredMargins") -> "RequiredMargins":
         """The lesser of two."""
-        return Asked(np.minimum(self.margins, other.margins), np.minimum(self.motion_margins, other.motion_margins))
+        return RequiredMargins(
+            np.minimum(self.margins, other.margins), np.minimum(self.motion_margins, other.motion_margins)
+        )
 
-    def at_most(self, most: list[float]) -> "Asked":
+    def at_most(self, most: list[float]) -> "RequiredMargins":
         """No more than so much for each group."""
         rows = np.array(most)[:, None]
-        return Asked(np.minimum(self.margins, rows), np.minimum(self.motion_margins, rows))
+        return RequiredMargins(np.minimum(self.margins, rows), np.minimum(self.motion_margins, rows))
 
-    def then(self, at: int, later: "Asked") -> "Asked":
+    def then(self, at: int, later: "RequiredMargins") -> "RequiredMargins":
         """These until the key time `at`, and `later` ones, which begin there."""
         margins = np.concatenate([self.margins[:, :at], later.margins], axis=1)
-        return Asked(margins, np.concatenate([self.motion_margins[:, :at], later.motion_margins], axis=1))
+        return RequiredMargins(margins, np.concatenate([self.motion_margins[:, :at], later.motion_margins], axis=1))
 
 
-class Start(NamedTuple):
+class StartState(NamedTuple):
     """Where a motion begins: now, or so many key intervals ahead on a plan that is kept until there."""
 
     upper: Floats  # (11,)
@@ -67,21 +69,21 @@ class PreviousPlan(NamedTuple):
 
     keys: Floats  # (n+1, 11) upper bodies; the last one known is repeated
     known: int  # of these key times, those that the last plan reached
-    asked: Asked  # infinite elsewhere
+    required: RequiredMargins  # infinite elsewhere
 
     @staticmethod
     def freely(keys: Floats) -> "PreviousPlan":
         """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
         return PreviousPlan(
-            keys, len(keys), Asked(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf))
+            keys, len(keys), RequiredMargins(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf))
         )
 
 
-def required_margins(settings: ExactSettings, interval: float, count: int) -> Asked:
+def required_margins(settings: ExactSettings, interval: float, count: int) -> RequiredMargins:
     """What is asked for in the next key intervals, so many of `interval` seconds: less soon than later."""
     shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
     row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
-    return Asked(settings.margin * row, settings.motion_margin * row[:, :-1])
+    return RequiredMargins(settings.margin * row, settings.motion_margin * row[:, :-1])
 
 
 @exact_kernel

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
@@ -26,7 +26,7 @@ class FullPlan(NamedTuple):
 
     root: RootPlan
     local: LocalPlan
-    asked: Asked | None = None  # None: not a way that was found
+    margins: RequiredMargins | None = None  # that it was found with; None: it was not found as a whole
 
 
 def previous_of(whole: FullPlan, path: RootPath) -> PreviousPlan | None:
@@ -34,18 +34,18 @@ def previous_of(whole: FullPlan, path: RootPath) -> PreviousPlan | None:
     known, keys, velocities = whole.root.path, whole.local.configurations, whole.local.velocities
     at = (path.start_time - known.start_time) / known.interval
     first, last = math.floor(at + _SAME), len(keys) - 1
-    if velocities is None or whole.asked is None or not 0 <= first <= last:
+    if velocities is None or whole.margins is None or not 0 <= first <= last:
         return None
-    asked, share = whole.asked.since(first, path.horizon), at - first
+    margins, share = whole.margins.since(first, path.horizon), at - first
     rows = np.minimum(first + np.arange(len(path.states)), last)
     if share < _SAME:
-        return PreviousPlan(keys[rows], len(keys) - first, asked)
-    span, later = np.array([0.0, known.interval]), whole.asked.since(first + 1, path.horizon)
+        return PreviousPlan(keys[rows], len(keys) - first, margins)
+    span, later = np.array([0.0, known.interval]), whole.margins.since(first + 1, path.horizon)
     between = [
         hermite(span, keys[k : k + 2], velocities[k : k + 2], share * known.interval)[0] if k < last else keys[last]
         for k in rows
     ]
-    return PreviousPlan(np.array(between), last - first, asked.beside(later))
+    return PreviousPlan(np.array(between), last - first, margins.beside(later))
 
 
 def first_part(whole: FullPlan, horizon: int) -> Motion:
@@ -65,11 +65,11 @@ def part(
 
 def later(whole: FullPlan, at: int) -> FullPlan:
     """What is left of a motion from its key time `at` on, for which nothing was searched."""
-    root, local, asked = whole
+    root, local, margins = whole
     path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
     rest = part(local, slice(at, None), _free_of_charge(local))
-    asked = None if asked is None else asked.since(at, path.horizon)
-    return FullPlan(root.going_on(path), rest, asked)
+    margins = None if margins is None else margins.since(at, path.horizon)
+    return FullPlan(root.going_on(path), rest, margins)
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
@@ -106,7 +106,7 @@ class StandingPlan(NamedTuple):
         return FullPlan(
             root.going_on(path),
             local._replace(evidence=_free_of_charge(local), joint=None, blockade=why),
-            self.whole.asked,
+            self.whole.margins,
         )
 
 

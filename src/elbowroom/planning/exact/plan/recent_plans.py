@@ -59,7 +59,7 @@ class RecentPlans:
 def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:
     """A motion with what is shown before it, if it goes on from an `earlier` one at one of its key times."""
     path, local = whole.root.path, whole.local
-    if earlier.asked is None or whole.asked is None:
+    if earlier.margins is None or whole.margins is None:
         return whole
     known, rows = earlier.root.path, earlier.local.configurations
     velocities, speeds = earlier.local.velocities, local.velocities
@@ -77,4 +77,4 @@ def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:
     )
     states = np.concatenate([known.states[:at], path.states])
     longer = whole.root.along(RootPath(known.start_time, known.interval, states))
-    return FullPlan(longer, joined, earlier.asked.then(at, whole.asked))
+    return FullPlan(longer, joined, earlier.margins.then(at, whole.margins))

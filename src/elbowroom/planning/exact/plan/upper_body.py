@@ -15,7 +15,7 @@ from elbowroom.planning.exact.group.caches import begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import Weights
 from elbowroom.planning.exact.memory.plan_memory import PlanMemory
-from elbowroom.planning.exact.memory.previous_plan import Asked, PreviousPlan, Start, required_margins
+from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState, required_margins
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch, UpperPlan
 from elbowroom.planning.exact.refine.blocked import arms_for, waists_for
 from elbowroom.planning.exact.refine.sampling import RefinementSettings
@@ -66,7 +66,7 @@ class UpperBodyPlanner:
     def plan(
         self,
         path: RootPath,
-        begins: Start,
+        begins: StartState,
         previous: PreviousPlan | None = None,
         others: Moving | None = None,
         effort: Effort = Effort.REFINED,
@@ -85,7 +85,7 @@ class UpperBodyPlanner:
             between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
             found = search.motion(0 if between else rounds)
             if found is not None:
-                return UpperPlan(found, path.horizon, search, search.asked)
+                return UpperPlan(found, path.horizon, search, search.margins)
             if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(search):
                 break
         evidence_log, goals = search.evidence_log, search.goals
@@ -102,7 +102,7 @@ class UpperBodyPlanner:
     def _search_of(
         self,
         path: RootPath,
-        begins: Start,
+        begins: StartState,
         previous: PreviousPlan | None,
         near: Along,
         legs: LoweredLegs,
@@ -115,7 +115,7 @@ class UpperBodyPlanner:
         problem = PathProblem.of(path, self.model.goals(path), previous, begins, roots, near, margins)
         return UpperBodySearch(caches, weights, self.model, legs, problem, go_on)
 
-    def _required(self, path: RootPath, ahead: int) -> Asked:
+    def _required(self, path: RootPath, ahead: int) -> RequiredMargins:
         """The margins of nodes and motion along a path that begins so many key intervals ahead."""
         until = ahead + path.horizon
         if self._margins.motion_margins.shape[1] < until:

@@ -22,7 +22,7 @@ from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.joint.guide import Guide, arm_nodes, guide, surroundings, waist_nodes
 from elbowroom.planning.exact.joint.step import JointSettings, JointStep, Surroundings
 from elbowroom.planning.exact.lattice.lattice import EXTRA, KEPT
-from elbowroom.planning.exact.memory.previous_plan import Asked, jolts
+from elbowroom.planning.exact.memory.previous_plan import RequiredMargins, jolts
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
@@ -66,7 +66,7 @@ class UpperBodySearch:
     go_on: GoOn = keep_going  # called before each search
 
     def __post_init__(self) -> None:
-        self.asked: Asked | None = None  # of the way that was found
+        self.margins: RequiredMargins | None = None  # of the way that was found
         self._arms = Arms(self.caches, self.problem, self.model.settings.self_rounds)
         self.evidence_log = EvidenceLog(self.caches, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
@@ -101,15 +101,15 @@ class UpperBodySearch:
             found = self.together(rounds)
         if found.failed is not None:
             return None
-        self.asked = self._asked(found)
+        self.margins = self._margins(found)
         evidence, joint = self.evidence_log.evidence(), self.evidence_log.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
-    def _asked(self, found: Ways) -> Asked:
+    def _margins(self, found: Ways) -> RequiredMargins:
         """The clearances that were asked for: less where the start has less."""
         most, settings = [way.most for way in found.ways], self.model.settings
         enough = min(most) >= max(settings.margin, settings.motion_margin)
-        return self.problem.asked if enough else self.problem.asked.at_most(most)
+        return self.problem.required if enough else self.problem.required.at_most(most)
 
     def _cost(self, found: Ways) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""
@@ -255,4 +255,4 @@ class UpperPlan(NamedTuple):
     plan: LocalPlan
     reached: int  # n if found, else the deepest key time with a way for every group
     search: UpperBodySearch  # the last attempt, which can say why there is no way
-    asked: Asked | None = None  # what clearances were asked for; None unless found
+    margins: RequiredMargins | None = None  # that it was found with; None unless found

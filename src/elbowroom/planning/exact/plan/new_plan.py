@@ -1,0 +1,183 @@
+"""A new plan from where the avatar is, where none goes on from an earlier one: what is tried, and in which order."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowroom.planning.exact.memory.previous_plan import StartState
+from elbowroom.planning.exact.plan.attempts import same_place
+from elbowroom.planning.exact.plan.extension import prolonged
+from elbowroom.planning.exact.plan.full_plan import FullPlan
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
+from elbowroom.planning.motion import MotionQuery
+from elbowroom.planning.result import Blockade, BlockadeKind
+from elbowroom.planning.root.motion import brake
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.stillness import STILL
+
+_EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that was not reached, at which braking is tried
+_FARTHER = 0.05  # metres that a slower path must get beyond the place where a faster one failed
+_FAR_OFF = 1.2  # seconds until a place that is not asked about yet
+_WORTH = 0.3  # seconds that a path must cost less than one that was found, to be searched more closely before it
+_STANDING = 0.02  # metres: a path that is shorter stands
+
+
+class _Tried(NamedTuple):
+    """A root path, and how far the upper body got on it."""
+
+    root: RootPlan
+    upper: UpperPlan
+
+
+@dataclass(frozen=True, eq=False)
+class NewPlan:
+    """The making of one plan for one query."""
+
+    body: UpperBodyPlanner
+    root_planner: RootPlanner
+    query: MotionQuery
+    horizon: int  # key intervals that it leads over
+
+    def made(self, left: FullPlan | None) -> FullPlan:
+        """The first of these that there is: a root path on which each group finds a path, the commanded one first;
+        one on which all groups together find one; to walk on as far as possible, and stand.
+
+        `left` is what is left of a walk that has no new end at first sight: that is searched more closely too.
+        """
+        tried: list[_Tried] = []
+        found = self._group_by_group(left, tried)
+        if found is None and not self.query.hurry:
+            found = self._all_together(tried)
+        return found or self._stop(tried)
+
+    def _group_by_group(self, left: FullPlan | None, tried: list[_Tried]) -> FullPlan | None:
+        """A plan on the first root path on which the groups find one; the commanded path is searched with all means.
+
+        The paths that were of no use are added to `tried`.
+        """
+        query, attempts, blocked_at = self.query, self.body.memory.attempts, 0.0
+        attempts.begin()
+        at = query.root, query.command, self.horizon, query.interval, query.time, self.body.settings.paces
+        for root in self.root_planner.candidates(*at):
+            if tried and self._leads_nowhere_new(root, blocked_at + _FARTHER):
+                continue
+            upper = self._upper_body(root.path, Effort.QUICK)
+            if not tried and upper.reached < self.horizon and not query.hurry and attempts.is_new(_place(upper)):
+                refined = None if left is None else prolonged(self.body, left, root, query, Effort.REFINED)
+                if refined is not None:
+                    attempts.found()
+                    return refined
+                upper = self._upper_body(root.path, Effort.REFINED)
+            if upper.reached == self.horizon:
+                if not tried:
+                    attempts.found()
+                cheaper = None if query.hurry else self._cheaper(tried, root)
+                return cheaper or FullPlan(root, upper.plan, upper.margins)
+            tried.append(_Tried(root, upper))
+            blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
+        return None
+
+    def _cheaper(self, tried: list[_Tried], than: RootPlan) -> FullPlan | None:
+        """A plan on a root path that costs much less than the one that was found, if all groups together find one."""
+        cheaper = sorted((one.root for one in tried if one.root.lost + _WORTH < than.lost), key=lambda one: one.lost)
+        plans = (self._followed(root, Effort.GLANCE) for root in cheaper)
+        return next((plan for plan in plans if plan is not None), None)
+
+    def _all_together(self, tried: list[_Tried]) -> FullPlan | None:
+        """A plan on a root path on which all groups together find one after all."""
+        efforts = self.body.memory.attempts.efforts([one.upper.reached for one in tried])
+        plans = (self._followed(tried[number].root, effort) for number, effort in efforts)
+        return next((plan for plan in plans if plan is not None), None)
+
+    def _followed(self, root: RootPlan, effort: Effort) -> FullPlan | None:
+        """A plan on a root path, which is followed then; None if there is none."""
+        upper = self._upper_body(root.path, effort)
+        if upper.reached < root.path.horizon:
+            return None
+        self.root_planner.follow(root)
+        return FullPlan(root, upper.plan, upper.margins)
+
+    def _stop(self, tried: list[_Tried]) -> FullPlan:
+        """Walk on while possible, then brake, and say why; or do what the previous plan had in mind.
+
+        Only if that is of no use either may the upper body begin as hard as it takes.
+        """
+        among_moving = len(self.root_planner.moving) > 0
+        root, upper = max(tried, key=lambda one: one.upper.reached) if among_moving else tried[0]
+        self.root_planner.follow(root)
+        why = None if self.query.hurry else self._why(upper)
+        plan, previous = self._braked(root, upper.reached), self.body.memory.recent.continued(self.query)
+        if plan is None and (previous is None or among_moving):
+            plan = self._braked(root, upper.reached, harsh=True)
+        plan = plan or previous or FullPlan(root, upper.plan)
+        return plan._replace(local=plan.local._replace(blockade=why))
+
+    def _braked(self, root: RootPlan, reached: int, *, harsh: bool = False) -> FullPlan | None:
+        """A plan on a root path that is braked as late as possible; the upper body came as far as `reached` on it."""
+        brakings = [(moving, Effort.QUICK) for moving in _moving(reached)]
+        brakings += [] if self.query.hurry else [(0, Effort.JOINT)]
+        for moving, effort in brakings:
+            states = root.path.states.copy()
+            brake(states, moving, self.query.interval, self.root_planner.bounds)
+            path = replace(root.path, states=states)
+            stopping = self._upper_body(path, effort, harsh=harsh)
+            if stopping.reached == path.horizon:
+                stands = _walked(path, path.horizon) < _STANDING
+                kind = RootPlanKind.STOPPED if stands else RootPlanKind.SHORTENED
+                return FullPlan(root._replace(path=path, kind=kind), stopping.plan, stopping.margins)
+        return None
+
+    def _why(self, upper: UpperPlan) -> Blockade | None:
+        """Why there is no path; None as long as that is far off: most of it is solved when it has come nearer.
+
+        On the way to a place that was asked about before it is the answer of then; one who has come to a stand asks
+        anew. Near the end of a path it is now and then only the motion between free postures that touches: the earlier
+        answer, which names obstacles, says more.
+        """
+        path, depth, last = upper.search.path, upper.search.blocked[1], self.body.memory.blockade
+        place, moves = _place(upper), math.hypot(self.query.root.forward, self.query.root.lateral) > STILL
+        near = last is not None and same_place(place, last.place)
+        if moves and not near and depth * path.interval > _FAR_OFF:
+            return None
+        if last is not None and near and moves:
+            why = replace(last, time=path.start_time + path.interval * depth, ahead=_walked(path, depth))
+        else:
+            why = upper.search.blockade()
+            if last is not None and near and why.kind is BlockadeKind.MOTION:
+                why = replace(last, time=why.time, ahead=why.ahead)
+        self.body.memory.blockade = why
+        return why
+
+    def _upper_body(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:
+        """What the upper body can do on a root path, from where the avatar is."""
+        start, query = StartState(self.query.upper, self.query.velocity, harsh=harsh), self.query
+        previous = self.body.memory.recent.previous(path)
+        return self.body.plan(path, start, previous, query.others, effort, query.go_on)
+
+    def _leads_nowhere_new(self, root: RootPlan, least: float) -> bool:
+        """Whether a path along the same line is shorter than `least` metres, among things that stand still."""
+        aside = root.kind is RootPlanKind.EVASION or len(self.root_planner.moving) > 0
+        return not aside and _walked(root.path, root.path.horizon) < least
+
+
+def _place(upper: UpperPlan) -> tuple[float, float]:
+    """Where the root is, x and z, at the key time that the upper body did not reach."""
+    x, z = upper.search.path.states[upper.search.blocked[1], :2].tolist()
+    return x, z
+
+
+def _moving(reached: int) -> Iterator[int]:
+    """Key frames at which to begin to brake, latest first; at last at once."""
+    yield from (reached - earlier for earlier in _EARLIER if reached - earlier > 0)
+    yield 0
+
+
+def _walked(path: RootPath, depth: int) -> float:
+    """Metres walked until a key frame."""
+    return float(np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum())
