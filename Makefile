@@ -1,6 +1,6 @@
 # make run    walk an avatar through a scene in the browser      make test   lint, types, all tests
 # make env    .venv with the `elbowroom` command                 make docs   pages and API reference, in site/
-# make clean  forget .venv, the built client and site/
+# make clean  forget .venv, the built client and site/             make fuzz   damaged files for every reader
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test test-long lint types unit web-test browser docs clean format
+.PHONY: help env run test test-long lint types unit web-test browser docs fuzz clean format
 
 help:
 	@sed -n '1,3s/^# //p' Makefile
@@ -60,6 +60,10 @@ unit: $(VENV)/developer
 test-long: $(VENV)/developer
 	@echo "==> Long walks"
 	@$(BIN)/python -m pytest -m long -n 2 $(ARGS)
+
+fuzz: $(VENV)/developer
+	@echo "==> Damaged files for every reader, each reader in a bounded process of its own"
+	@$(BIN)/python tools/fuzz_readers.py $(ARGS)
 
 web-test: $(VENV)/developer
 	@echo "==> Tests of the page's modules"

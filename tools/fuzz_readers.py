@@ -1,18 +1,24 @@
 """Throws damaged files at the readers: each must answer with a result or one line, soon, and with bounded memory.
 
-Call: python tools/fuzz_readers.py [READER ...] [--inputs 10000] [--seed 1] [--keep FOLDER]
+Call: python tools/fuzz_readers.py [READER ...] [--inputs 20000] [--seed 1] [--keep FOLDER]
 
-A reader of one's own is registered in `READERS`: how it reads bytes, a few good files, and pieces of its grammar.
-The same seed throws the same files. Exit code 1 if any input broke a promise; `--keep` saves those inputs.
+Each reader runs in a process of its own, bounded as the server bounds its readers; should an input end that process,
+it is told and the next ones go on in another. A reader of one's own is registered in `READERS`: how it reads bytes, a
+few good files, and pieces of its grammar. The same seed throws the same files. Exit code 1 if any input broke a
+promise; `--keep` saves those inputs.
 """
 
 import argparse
 import gzip
+import json
 import resource
 import signal
 import struct
+import subprocess
 import sys
+import tempfile
 import time
+import zlib
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -23,11 +29,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
+from elbowroom.server.apart.bounds import Bounds, keep_to
 from fuzzing import Container, Reader, answer, damaged
 
 LONGEST = 2.0  # seconds of processor time that one input may take
 _GIVEN_UP = 20.0  # seconds after which it is stopped
-MEMORY = 2**30  # bytes that one input may need beyond what the process has when it starts
+MEMORY = 2**30  # bytes that the process of a reader may have
 
 
 def _chunks(data: bytes) -> list[bytes]:
@@ -213,6 +220,67 @@ def packed_reader() -> Reader:
     return Reader(lambda data: load_humanoid_bytes(data, "fuzz.wrz"), seeds, words, GZIP)
 
 
+def scene_reader() -> Reader:
+    """Scene files."""
+    from elbowroom.world.json_place import parse_json
+    from elbowroom.world.scene import Scene
+
+    seeds = tuple(json.dumps(Scene.load(name).to_dict()).encode() for name in ("empty", "a", "traffic"))
+    words = (b'"size":[1e9,1,1]', b"null", b"[[[[", b'"type":"box"', b"1e308", b'"rotation":[0,0,0,0]', b"{", b'"x":')
+
+    def read(data: bytes) -> None:
+        Scene.from_dict(parse_json(data.decode("utf-8", "replace"), "fuzz.json"), "fuzz.json")
+
+    return Reader(read, seeds, words)
+
+
+def message_reader() -> Reader:
+    """What a client sends over a live session."""
+    from elbowroom.server.codec import decode_client, encode
+    from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Overlays, Ping
+
+    configure, clock = Configure("a", queue_size=5), ClockMessage(steps=2)
+    messages = (Input(3, 1.0, direction=0.5), configure, clock, Overlays(), Ping(1.0))
+    words = (b"null", b"1e999", b"[[[[", b'"type":"reset"', b"-1", b"true", b"9" * 400, b"NaN", b"{")
+    seeds = tuple(encode(message).encode() for message in messages)
+    return Reader(lambda data: decode_client(data.decode("utf-8", "replace")), seeds, words)
+
+
+def recording_reader() -> Reader:
+    """Recordings, to their last step."""
+    from elbowroom.body.proportions import proportional_humanoid
+    from elbowroom.control.controller import Controller
+    from elbowroom.control.recording import Recorder, Recording, RecordingHeader
+    from elbowroom.planning.command import Command
+    from elbowroom.world.scene import Scene
+
+    file = Path(tempfile.mkdtemp()) / "fuzz.elbow"
+    controller = Controller(proportional_humanoid(1.72), Scene.load("empty"))
+    with Recorder(file, controller) as recorder:
+        for _ in range(5):
+            recorder.append(Command(), 0.01, controller.step(Command(), 0.01))
+    header = len(RecordingHeader.of(controller).to_json())
+
+    def read(data: bytes) -> None:
+        file.write_bytes(data)
+        Recording(file).steps()
+
+    start = file.read_bytes().index(b"{")
+    good = file.read_bytes()
+    whole = Container(
+        lambda data: [data[start : start + header], data[start + header + 4 :]],
+        lambda parts: (
+            good[: start - 4]
+            + struct.pack("<I", len(parts[0]))
+            + parts[0]
+            + struct.pack("<I", zlib.crc32(parts[0]))
+            + parts[1]
+        ),
+    )
+    words = (b"CHNK", b"DONE", b"null", b"[[[[", b'"seed":-1', b"1e999", b'"queue_size":1e9')
+    return Reader(read, (good,), words, whole)
+
+
 READERS: dict[str, Callable[[], Reader]] = {
     "glb": glb_reader,
     "compressed": compressed_reader,
@@ -223,18 +291,25 @@ READERS: dict[str, Callable[[], Reader]] = {
     "x3d-classic": classic_reader,
     "vrml97": vrml_reader,
     "x3d-gzip": packed_reader,
+    "scene": scene_reader,
+    "message": message_reader,
+    "recording": recording_reader,
 }
 
 
-def run(name: str, inputs: int, seed: int, keep: Path | None) -> bool:
-    """Fuzz one reader and print a line of what it answered; True if it kept every promise."""
+def run(name: str, inputs: range, seed: int, keep: Path | None) -> bool:
+    """Fuzz one reader in this process and print a line of what it answered; True if it kept every promise.
+
+    Before each input its number is printed, after an @.
+    """
     reader = READERS[name]()
     for good in reader.seeds:
         answer(reader, good)  # compiled and warm; its time does not count
-    _limit_memory()
+    keep_to(Bounds(memory=MEMORY, processor=10**6))
     answers: Counter[str] = Counter()
     slowest = 0.0
-    for number in range(inputs):
+    for number in inputs:
+        print(f"@{number}", flush=True)
         data = damaged(reader, np.random.default_rng([seed, number]))
         start = time.process_time()
         result = _watched(reader, data)
@@ -244,17 +319,46 @@ def run(name: str, inputs: int, seed: int, keep: Path | None) -> bool:
             result = f"took {took:.1f} s"
         answers[result if result in {"read", "refused"} else "broken"] += 1
         if result not in {"read", "refused"}:
-            print(f"{name}: input {number} of seed {seed}: {result}", flush=True)
-            if keep is not None:
-                keep.mkdir(parents=True, exist_ok=True)
-                (keep / f"{name}-{seed}-{number}").write_bytes(data)
+            _tell(name, number, seed, result, keep)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(
-        f"{name}: {inputs} inputs, {answers['read']} read, {answers['refused']} refused, {answers['broken']} broken; "
-        f"slowest {slowest:.2f} s, process peak {peak:.0f} MB",
+        f"{name}: {len(inputs)} inputs, {answers['read']} read, {answers['refused']} refused, "
+        f"{answers['broken']} broken; slowest {slowest:.2f} s, process peak {peak:.0f} MB",
         flush=True,
     )
     return answers["broken"] == 0
+
+
+def run_apart(name: str, inputs: int, seed: int, keep: Path | None) -> bool:
+    """The same in a process of its own, and in another one where an input has ended it."""
+    whole, number = True, -1
+    while number + 1 < inputs:
+        command = [sys.executable, __file__, name, "--inputs", str(inputs), "--seed", str(seed)]
+        command += ["--inside", str(number + 1), *(["--keep", str(keep)] if keep else [])]
+        number = -1
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
+                if line.startswith("@"):
+                    number = int(line[1:])
+                else:
+                    print(line, end="", flush=True)
+        if process.returncode in (0, 1) and (number + 1 == inputs):
+            return whole and process.returncode == 0
+        whole = False
+        if number < 0:
+            print(f"{name}: does not start (exit code {process.returncode})", flush=True)
+            return False
+        _tell(name, number, seed, f"ended its reader with {process.returncode}", None)
+    return whole
+
+
+def _tell(name: str, number: int, seed: int, result: str, keep: Path | None) -> None:
+    print(f"{name}: input {number} of seed {seed}: {result}", flush=True)
+    if keep is not None:
+        keep.mkdir(parents=True, exist_ok=True)
+        data = damaged(READERS[name](), np.random.default_rng([seed, number]))
+        (keep / f"{name}-{seed}-{number}").write_bytes(data)
 
 
 def _watched(reader: Reader, data: bytes) -> str:
@@ -272,28 +376,22 @@ def _stop(_number: int, _frame: FrameType | None) -> NoReturn:
     raise TimeoutError(f"stopped after {_GIVEN_UP:.0f} s")
 
 
-def _limit_memory() -> None:
-    """From here on this process gets no more than `MEMORY`: a reader that wants more fails with a MemoryError."""
-    status = Path("/proc/self/status")
-    if not status.exists():
-        print("the memory is not limited: this system has no /proc/self/status")
-        return
-    used = int(next(line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmSize"))) * 1024
-    resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("readers", nargs="*", metavar="READER", help=f"of {', '.join(READERS)}; all if none is named")
-    parser.add_argument("--inputs", type=int, default=10_000)
+    parser.add_argument("--inputs", type=int, default=20_000, help="of each reader")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="folder for the inputs that broke a promise")
+    parser.add_argument("--inside", type=int, metavar="FIRST", help="in this process, from this input on")
     options = parser.parse_args()
     names = options.readers or list(READERS)
     unknown = sorted(set(names) - READERS.keys())
     if unknown:
         parser.error(f"no reader {', '.join(unknown)}; there are {', '.join(READERS)}")
-    kept = [run(name, options.inputs, options.seed, options.keep) for name in names]
+    if options.inside is not None:
+        kept = [run(name, range(options.inside, options.inputs), options.seed, options.keep) for name in names]
+    else:
+        kept = [run_apart(name, options.inputs, options.seed, options.keep) for name in names]
     sys.exit(0 if all(kept) else 1)
 
 

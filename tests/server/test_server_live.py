@@ -1,17 +1,22 @@
 """Live sessions over a real WebSocket."""
 
+import gc
 import math
 import socket
 import struct
+import time
+import weakref
 from collections.abc import Iterator
 from contextlib import closing
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from elbowroom.server import app, changes, session
+from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.schema.bounds import MAX_MESSAGE
@@ -336,3 +341,30 @@ def test_a_foreign_host_name_is_refused(url: str) -> None:
         ),
     ):
         pass
+
+
+def test_a_session_that_has_ended_leaves_nothing(url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its walk goes at once, without looking for garbage: that is looked for seldom, and walks are large."""
+    walks: list[weakref.ref[Walk | ClipWalk]] = []
+    made = changes.make_walk
+
+    def noted(*arguments: Any) -> Walk | ClipWalk:
+        walk = made(*arguments)
+        walks.append(weakref.ref(walk))
+        return walk
+
+    monkeypatch.setattr(changes, "make_walk", noted)
+    gc.disable()
+    try:
+        for abrupt in (False, True):
+            with client_of(url) as other:
+                other.frame()
+                if abrupt:
+                    other.connection.socket.shutdown(socket.SHUT_RDWR)
+        deadline = time.monotonic() + 10.0
+        while any(walk() is not None for walk in walks) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        assert len(walks) == 2
+        assert [walk() for walk in walks] == [None, None]
+    finally:
+        gc.enable()

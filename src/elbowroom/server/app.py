@@ -1,5 +1,6 @@
 """The web application: the page, what it loads, and the WebSocket of a live session."""
 
+import asyncio
 import logging
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +22,7 @@ from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.codec import encode, plain
 from elbowroom.server.courses import BusyError
 from elbowroom.server.guard import Guard, is_loopback
+from elbowroom.server.heap import hand_back
 from elbowroom.server.library import Library
 from elbowroom.server.reports import scene_message
 from elbowroom.server.schema.progress import Notice
@@ -128,6 +130,8 @@ class _Handlers:
             await Session(socket, self._library).run()
         finally:
             self._sessions -= 1
+            if self._sessions == 0:
+                await asyncio.to_thread(hand_back)
 
 
 def _has_the_file(request: Request, avatar: StoredAvatar) -> bool:

@@ -27,6 +27,11 @@ def settle() -> bool:
     False where the C library cannot hand it back, or had nothing.
     """
     gc.freeze()
+    return hand_back()
+
+
+def hand_back() -> bool:
+    """Hand what was freed back to the system; false as for `settle`."""
     try:
         return bool(ctypes.CDLL(None).malloc_trim(0))
     except (OSError, AttributeError, TypeError):

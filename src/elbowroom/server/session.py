@@ -77,6 +77,8 @@ class Session:
         finally:
             self._library.hold(self)
             await _stop(sender)
+            with contextlib.suppress(AttributeError):  # where it had not begun
+                self._stage.close()
 
     def _now(self) -> float:
         return time.monotonic() - self._began

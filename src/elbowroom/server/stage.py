@@ -53,6 +53,10 @@ class Stage:
         self.walk = walk
         self._jump()
 
+    def close(self) -> None:
+        """Let the walk go, which is large: what ended a session may hold its parts until garbage is looked for."""
+        del self.walk
+
     def reset(self) -> None:
         """Back to the start."""
         self.walk.reset()

@@ -104,11 +104,12 @@ def parse_json(text: str, source: str) -> Any:
     """The JSON document in a text: no duplicate names, no NaN, no endless nesting; raises `InputError`."""
 
     def members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        names = [name for name, _ in pairs]
-        for i, name in enumerate(names):
-            if name in names[:i]:
+        found: dict[str, Any] = {}
+        for name, value in pairs:
+            if name in found:
                 raise InputError(f"{source}: the field {quoted(name)} stands twice in one object; keep one of them")
-        return dict(pairs)
+            found[name] = value
+        return found
 
     def constant(name: str) -> NoReturn:
         raise InputError(f"{source}: {name} is not a JSON number; write a finite number")
