@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.layout import Nearby, Spans
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
 
@@ -34,6 +35,11 @@ RANDOM: dict[str, Callable[[Rng], Shape]] = {
     "cylinder": lambda rng: Cylinder(_number(rng, 0.02, 0.4), _number(rng, 0.02, 0.8)),
     "hull": lambda rng: random_hull(rng, int(rng.integers(4, 40))),
 }
+
+
+def stacked(nears: list[Nearby]) -> Spans:
+    """The same number of obstacles in one span after the other."""
+    return Spans(np.stack([near.rows for near in nears]), nears[0].hulls)
 
 
 def obstacles_of(shapes: list[Shape], rng: Rng) -> Obstacles:

@@ -18,7 +18,7 @@ from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.planning.result import PlanStatus, SearchResult
 from elbowroom.world.obstacles.clearance import clearance_of
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import stacked
+from shapes import stacked
 
 GROUPS = (DofGroup.WAIST, DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM)
 

@@ -15,7 +15,8 @@ from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import seen_from, stacked
+from elbowroom.world.obstacles.rows import seen_from
+from shapes import stacked
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,9 @@ from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.free_map import CELL, FARTHEST, LEVELS
 from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import about, joined, span_of, stacked
+from elbowroom.world.obstacles.rows import about, joined, span_of
 from elbowroom.world.scene import Scene
+from shapes import stacked
 
 Floats = NDArray[np.float64]
 

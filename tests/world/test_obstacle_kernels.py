@@ -39,7 +39,7 @@ def axes(rng: np.random.Generator, count: int, around: Floats | None = None) -> 
     starts, steps = rng.uniform(-1.2, 1.2, (3, count)), rng.uniform(-0.4, 0.4, (3, count))
     kind = rng.integers(0, 6, count)
     for axis in range(3):
-        steps[axis] = np.where((kind == axis) | (kind == 3), 0.0, steps[axis])
+        steps[axis] = np.where((kind == axis) | (kind == 3) | ((kind == 4) & (axis > 0)), 0.0, steps[axis])
     if around is not None:
         starts += around[:, None]
     return np.concatenate([starts, starts + steps]).astype(np.float32).astype(np.float64)
@@ -67,7 +67,7 @@ def test_distances_are_the_twins_and_coals(kind: str) -> None:
     rng = np.random.default_rng(KINDS.index(kind))
     obstacles = obstacles_of([RANDOM[kind](rng) for _ in range(12)], rng)
     judges = judged_obstacles(scene_with(obstacles))
-    segments, radius, checked = axes(rng, 40), 0.05, 0
+    segments, radius, checked = axes(rng, 80), 0.12, 0
     ours = pairwise_clearance(segments[None], [radius], obstacles.standing)[0]
     for i, segment in enumerate(segments.T):
         # The twin ends some 1e-6 of the axis away from the nearest point, which counts only where the two touch.
@@ -82,7 +82,7 @@ def test_distances_are_the_twins_and_coals(kind: str) -> None:
             if theirs > 0.0:
                 assert ours[b, i] == pytest.approx(theirs, abs=1e-5)
     assert checked > 250
-    assert 0.002 < np.mean(ours < 0.0) < 0.9
+    assert np.any(ours < 0.0)
 
 
 @pytest.mark.parametrize("name", HARD)
@@ -163,10 +163,12 @@ def test_all_shapes_together_are_the_least_of_each() -> None:
 def test_a_hull_that_is_a_box_is_as_far_as_the_box() -> None:
     rng = np.random.default_rng(4)
     half = (0.2, 0.5, 0.1)
-    turn = quaternion.normalize(rng.normal(size=(1, 4)))
-    hull = Obstacles((box_hull(half),), np.zeros((1, 3)), turn, ("hull",))
-    box = Obstacles((Box((0.4, 1.0, 0.2)),), np.zeros((1, 3)), turn, ("box",))
-    segments = axes(rng, 2000)[None]
-    np.testing.assert_allclose(
-        clearance(segments, [0.0], hull.standing), clearance(segments, [0.0], box.standing), atol=1e-6
-    )
+    nearly = quaternion.about_axis(1, 2e-4)  # axes are parallel to edges, or nearly
+    for turn in (quaternion.normalize(rng.normal(size=4)), quaternion.IDENTITY, nearly):
+        hull = Obstacles((box_hull(half),), np.zeros((1, 3)), turn[None], ("hull",))
+        box = Obstacles((Box((0.4, 1.0, 0.2)),), np.zeros((1, 3)), turn[None], ("box",))
+        segments = axes(rng, 2000)[None]
+        found, expected = clearance(segments, [0.0], hull.standing), clearance(segments, [0.0], box.standing)
+        far = expected > 0.01  # nearer than that, rounding along parallel edges counts more: capsules are thicker
+        np.testing.assert_allclose(found[far], expected[far], atol=1e-6)
+        np.testing.assert_allclose(found, expected, atol=2e-5)

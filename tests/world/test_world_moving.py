@@ -1,4 +1,4 @@
-"""Boxes on tracks: where they are, and what holds all that they sweep."""
+"""Obstacles on tracks: where they are, and what holds all that they sweep."""
 
 import math
 from typing import Any

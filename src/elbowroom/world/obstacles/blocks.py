@@ -96,7 +96,7 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int
 def lower_blocks_in(
     scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, near: Nearby, count: int, out: Floats32
 ) -> int:
-    """`lower_blocks` with room to work in, for lanes that lie flat and balls as `spread_balls` leaves them."""
+    """`lower_blocks` with scratch memory, for lanes that lie flat and balls as `spread_balls` leaves them."""
     total = tiles.shape[0] // TILE
     rows, squares, pairs, parts = scratch.rows, scratch.squares, scratch.pairs, total // out.shape[0]
     fill_tile_rows(near.rows, count, rows)
@@ -180,7 +180,7 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
 
 @exact_kernel
 def capsule_clearances_in(scratch: ClearanceScratch, near: Nearby, count: int, out: Floats32) -> int:
-    """`capsule_clearances` of the capsules in the room."""
+    """`capsule_clearances` of the capsules in the scratch memory."""
     for c in range(scratch.lanes.shape[0]):
         _ball_around(scratch.lanes[c], scratch.apart, scratch.balls[c, 0])
     spread_balls(scratch.balls, scratch.spread)

@@ -16,8 +16,7 @@ from elbowroom.jit import helper, kernel
 from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 from elbowroom.world.obstacles.own_axes import STATE, may_be_nearer
 
-LINE = 16  # numbers of a line of packed hulls: of its head, of a triangle, of two edges
-HEAD_TRIANGLES, HEAD_EDGES = 0, 1  # in the head: how many of each follow it
+LINE = 16  # numbers of a line of packed hulls: of its head (how many triangles, how many edges), a triangle, two edges
 EDGE = 8  # begin, step, squared length, one over it
 
 _LANES, _TILE, _LINE, _EDGE = np.uint64(LANES), np.uint64(TILE), np.uint64(LINE), np.uint64(EDGE)
@@ -94,7 +93,7 @@ def _hold_against_edge(hulls: Floats32, at: Any, state: Floats32) -> None:
 def lower_from_hulls(
     tiles: Floats32, rows: Floats32, hulls: Floats32, pairs: Longs, count: int, squares: Floats32
 ) -> None:
-    """Lower the squared distances of tiles to those from hulls, packed as `pack_hull` does.
+    """Lower the squared distances of tiles to those from hulls, packed as `pack_hulls` does.
 
     The other arguments are as in `lower_from_boxes`.
     """

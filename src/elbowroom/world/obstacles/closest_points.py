@@ -7,7 +7,7 @@ lies: an interval that holds the least of a row of samples and both its neighbou
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.capsule_hull import LINE
+from elbowroom.world.obstacles.capsule_hull import EDGE, LINE
 from elbowroom.world.obstacles.layout import DATA, HALF, KIND, PER_METRE, ROUNDING, TURN, Kind, Nearby
 
 Floats = NDArray[np.float64]
@@ -75,7 +75,7 @@ def _in_hull(points: Floats, near: Nearby, line: int) -> Floats:
     lines = near.hulls[line * LINE :].astype(np.float64)
     triangles, edges = int(lines[0]), int(lines[1])
     faces = lines[LINE : LINE * (1 + triangles)].reshape(-1, 4, 4)
-    sides = lines[LINE * (1 + triangles) : LINE * (1 + triangles) + 8 * edges].reshape(-1, 8)
+    sides = lines[LINE * (1 + triangles) : LINE * (1 + triangles) + EDGE * edges].reshape(-1, EDGE)
     scaled = points[:, None] * PER_METRE
     above = np.einsum("sfi,fki->sfk", np.broadcast_to(scaled, (len(points), triangles, 3)), faces[:, :, :3])
     above = above - faces[:, :, 3]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.capsule_hull import EDGE, LINE
+from elbowroom.world.obstacles.capsule_hull import LINE
 from elbowroom.world.obstacles.layout import PER_METRE
 from elbowroom.world.obstacles.shapes import Hull
 
@@ -93,7 +93,7 @@ def _pack(hull: Hull) -> Floats32:
 
 
 def _edges(corners: Floats, triangles: Indices, normals: Floats) -> Floats:
-    """The edges (E, 8) between faces; those between two triangles of one face are left out."""
+    """The edges (E, EDGE) between faces; those between two triangles of one face are left out."""
     beside: dict[tuple[int, int], list[int]] = {}
     for number, triangle in enumerate(triangles.tolist()):
         for i in range(3):
@@ -105,5 +105,4 @@ def _edges(corners: Floats, triangles: Indices, normals: Floats) -> Floats:
     begin, end = np.moveaxis(corners[np.array(real)], 1, 0)
     squares = np.einsum("ei,ei->e", end - begin, end - begin)[:, None]
     edges: Floats = np.concatenate([begin, end - begin, squares, 1.0 / squares], axis=1)
-    assert edges.shape[1] == EDGE
     return edges

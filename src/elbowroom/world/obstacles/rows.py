@@ -40,11 +40,6 @@ def rows_of(
     return Nearby(rows, held.lines)
 
 
-def no_obstacles() -> Nearby:
-    """Nothing at all."""
-    return rows_of((), np.empty((0, 3)), np.empty((0, 4)))
-
-
 def some_of(near: Nearby, chosen: NDArray[np.bool_]) -> Nearby:
     """The `chosen` (B,) obstacles."""
     return Nearby(near.rows[chosen], near.hulls)
@@ -53,16 +48,6 @@ def some_of(near: Nearby, chosen: NDArray[np.bool_]) -> Nearby:
 def first_spans(spans: Spans, count: int) -> Spans:
     """The first spans."""
     return Spans(spans.rows[:count], spans.hulls)
-
-
-def stacked(nears: Sequence[Nearby]) -> Spans:
-    """The same obstacles, B of them, in one span after the other."""
-    return Spans(np.stack([near.rows for near in nears]), nears[0].hulls)
-
-
-def always(near: Nearby) -> Spans:
-    """The obstacles in one span that never ends."""
-    return Spans(near.rows[None], near.hulls)
 
 
 def is_empty(near: Nearby) -> bool:
@@ -145,18 +130,6 @@ def row_of(near: Nearby, b: int) -> Nearby:
 def how_many(near: Nearby) -> int:
     """The number of obstacles, for kernels."""
     return int(near.rows.shape[0])
-
-
-@helper
-def spans_in(spans: Spans) -> int:
-    """The number of spans, for kernels."""
-    return int(spans.rows.shape[0])
-
-
-@exact_kernel
-def single(spans: Spans) -> Nearby:
-    """One obstacle, to be written to by other kernels."""
-    return Nearby(np.empty((1, ROW)), spans.hulls)
 
 
 @exact_kernel

@@ -14,7 +14,7 @@ Longs = NDArray[np.int64]
 
 ONCE, LOOP, PINGPONG = range(3)  # what follows the last key pose
 _BOX = float(Kind.BOX)
-_PARTS = 4  # of a span of time in which a sweep is looked at
+_PARTS = 4  # of a span of time in which a sweep is sampled
 
 
 class Tracks(NamedTuple):
@@ -70,33 +70,33 @@ def _turning_points(times: Floats, repeat: int, first: float, last: float, out: 
 
 
 @helper
-def _looks(times: Floats, repeat: int, first: float, last: float) -> Floats:
-    """The times at which a track is looked at in a span, in order: evenly, and at its key poses."""
+def _samples(times: Floats, repeat: int, first: float, last: float) -> Floats:
+    """The times at which a track is sampled in a span, in order: evenly, and at its key poses."""
     count = _PARTS + 1 + _turning_points(times, repeat, first, last, np.empty(0))
-    looks = np.empty(count)
+    samples = np.empty(count)
     for i in range(_PARTS + 1):
-        looks[i] = first + i / _PARTS * (last - first)
-    _turning_points(times, repeat, first, last, looks[_PARTS + 1 :])
+        samples[i] = first + i / _PARTS * (last - first)
+    _turning_points(times, repeat, first, last, samples[_PARTS + 1 :])
     for i in range(_PARTS + 1, count):  # each goes down among the few even ones
-        time, place = looks[i], i
-        while looks[place - 1] > time:
-            looks[place] = looks[place - 1]
+        time, place = samples[i], i
+        while samples[place - 1] > time:
+            samples[place] = samples[place - 1]
             place -= 1
-        looks[place] = time
-    return looks
+        samples[place] = time
+    return samples
 
 
 @helper
 def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
     """The row of a box, turned as the track is in the middle of a span, round its corners at all its times."""
-    looks, pose = _looks(times, repeat, first, last), np.empty(4)
+    samples, pose = _samples(times, repeat, first, last), np.empty(4)
     _pose_at(times, poses, repeat, 0.5 * (first + last), pose)
     yaw, reach = pose[3], math.hypot(half[0], half[2])
     sine, cosine, farthest, before = np.sin(yaw), np.cos(yaw), 0.0, 0.0
     low, high = np.empty(3), np.empty(3)
     low[:], high[:] = np.inf, -np.inf
-    for i in range(looks.shape[0]):
-        _pose_at(times, poses, repeat, looks[i], pose)
+    for i in range(samples.shape[0]):
+        _pose_at(times, poses, repeat, samples[i], pose)
         turned = pose[3] - yaw
         farthest = max(farthest, abs(turned - before)) if i > 0 else 0.0
         before = turned
