@@ -159,12 +159,12 @@ export class OverlayDrawing {
   private create(count: number): Drawings {
     const p = this.palette();
     const drawings: Drawings = {
-      body: new CapsuleSet(count, { color: p.capsule, opacity: 0.7, middle: 0.1 }),
+      body: new CapsuleSet(count, { color: p.capsule, opacity: 0.55, middle: 0.06 }),
       solidBody: new CapsuleSet(count, { solid: p.accent }),
       touching: new CapsuleSet(count, { color: p.touching, opacity: 0.72, middle: 1, onTop: true }),
       ghosts: new CapsuleSet(count * MOST_GHOSTS, { color: p.ghost, opacity: 0.34, middle: 0.25, ghost: true }),
-      goal: new CapsuleSet(count, { color: p.goal, opacity: 0.7, middle: 0.06 }),
-      chosen: new CapsuleSet(count, { color: p.chosen, opacity: 0.7, middle: 0.06 }),
+      goal: new CapsuleSet(count, { color: p.goal, opacity: 0.5, middle: 0.03 }),
+      chosen: new CapsuleSet(count, { color: p.chosen, opacity: 0.5, middle: 0.03 }),
       path: new PathRibbon(p.path),
       nearest: new NearestLine(p.nearest, this.label),
     };
