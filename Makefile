@@ -1,6 +1,7 @@
 # make run    walk an avatar through a scene in the browser      make test   lint, types, all tests
 # make env    .venv with the `elbowroom` command                 make docs   pages and API reference, in site/
 # make clean  forget .venv, the built client and site/             make fuzz   damaged files for every reader
+# make pictures  those of README and docs again
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
@@ -12,10 +13,10 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test test-long lint types unit web-test browser docs fuzz clean format
+.PHONY: help env run test test-long lint types unit web-test browser docs fuzz pictures clean format
 
 help:
-	@sed -n '1,3s/^# //p' Makefile
+	@sed -n '1,4s/^# //p' Makefile
 
 run: env
 	@$(BIN)/elbowroom play $(ARGS)
@@ -79,6 +80,15 @@ browser: $(VENV)/developer
 docs: $(VENV)/developer
 	@echo "==> Pages in site/index.html"
 	@$(BIN)/python -m mkdocs build --strict --quiet
+
+pictures: $(VENV)/developer
+	@echo "==> Pictures of README and docs (some minutes)"
+	@sh tools/install_browser.sh
+	@$(BIN)/python tools/make_pictures.py
+	@$(BIN)/python tools/make_planner_pictures.py
+	@$(BIN)/elbowroom bench plan --plots docs/images
+	@if test -n "$(AVATARS)"; then $(BIN)/elbowroom inspect --quiet --pose-sheet docs/images/pose-sheet.png $(AVATARS); \
+	else echo "pose-sheet.png stays as it is: name its avatars, make pictures AVATARS='a.vrm b.glb'"; fi
 
 format: $(VENV)/developer
 	@$(BIN)/ruff check --fix .

@@ -1,5 +1,6 @@
 """What README, CONTRIBUTING and docs show can be done: Python runs, commands parse, targets and files exist."""
 
+import json
 import re
 import shlex
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 from typer.main import get_command
 
 from elbowroom.cli.main import app
+from elbowroom.world.scene import Scene
 
 ROOT = Path(__file__).parents[1]
 
@@ -37,6 +39,13 @@ def test_two_avatars_in_the_planners_page_pass_each_other(capsys) -> None:  # ty
     (example,) = code_blocks("python", "docs/planner.md")
     exec(compile(example, "docs/planner.md", "exec"), {})
     assert "past each other" in capsys.readouterr().out
+
+
+def test_the_scene_in_the_docs_is_a_scene() -> None:
+    (example,) = code_blocks("json", "docs/scenes.md")
+    assert Scene.from_dict(json.loads(example)).name == "attic"
+    page = (ROOT / "docs" / "scenes.md").read_text("utf-8")
+    assert [name for name in Scene.stock_names() if name not in "bc" and f"`{name}`" not in page] == []
 
 
 def test_every_command_shown_is_a_command() -> None:

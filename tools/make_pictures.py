@@ -1,41 +1,87 @@
 """Takes the pictures of the documentation from the running page: `python tools/make_pictures.py [FOLDER]`.
 
-Starts the server, walks the stock avatar into a scene step by step in a headless Chromium, and takes screenshots.
+Starts the server and walks the stock avatar into scenes, step by step, in a headless Chromium: some pictures stand,
+one moves. The page is told to move nothing by itself, so the same pictures come out on any machine.
 """
 
+import io
+import os
+import shutil
 import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
 
-from playwright.sync_api import Page, sync_playwright
+from PIL import Image
+from playwright.sync_api import Browser, Page, sync_playwright
 
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+PATIENCE = 300_000  # milliseconds: the pictures are drawn without a graphics card
+PREFERENCES = '{"hud": false}'  # times of a page that is drawn without a graphics card would mislead
+SMALL = (160, 90)  # pixels, while the avatar walks to where the picture is taken
+METRES_PER_STEP = 1.1 / 60
+SETTLED = 12  # pictures until the camera rests and what hides the avatar has faded
+STEPS_PER_PICTURE = 5  # of 1/60 s: twelve pictures a second
 
 
 @dataclass(frozen=True)
-class Picture:
-    """Where the avatar stands and how it is looked at."""
+class View:
+    """What is looked at, and from where."""
+
+    query: str  # of the page's address
+    size: tuple[int, int]  # pixels
+    drag: tuple[int, int] = (0, 0)  # pixels by which the camera is dragged round
+    wheel: int = 0  # towards the avatar where negative
+    dark: bool = False
+
+
+@dataclass(frozen=True)
+class Still:
+    """A picture that stands."""
 
     name: str
-    query: str
+    view: View
     until: float  # metres along z that the avatar has walked
-    drag: tuple[int, int] = (0, 0)  # pixels by which the camera is dragged round
-    wheel: int = 0
-    size: tuple[int, int] = (1280, 720)
-    scheme: str = "light"
 
 
-PICTURES = (
-    Picture("hero", "scene=c&ui=0", 1.3, (470, 10), -330),
-    Picture("overlays", "scene=c&overlays=path,ghosts,nearest", 1.35, (120, 30), -200),
-    Picture("scene-d-dark", "scene=d&overlays=capsules", 1.8, (-160, 20), -200, scheme="dark"),
+@dataclass(frozen=True)
+class Scene:
+    """A part of the picture that moves."""
+
+    view: View
+    first: float  # metres along z where it begins
+    last: float  # and ends
+
+
+STILLS = (
+    Still("overlays", View("scene=c&overlays=path,ghosts,nearest", (1280, 720), (150, 20), -250), 1.4),
+    Still("dark", View("scene=d&overlays=capsules,nearest", (1280, 720), (-190, 20), -300, dark=True), 1.9),
 )
+MOVING_SIZE = (640, 360)
+MOVING = (
+    Scene(View("scene=d&ui=0", MOVING_SIZE, (330, 14), -300), 0.5, 4.3),
+    Scene(View("scene=doorway&ui=0", MOVING_SIZE, (70, 30), -120), 0.9, 3.4),
+    Scene(View("scene=beam&ui=0", MOVING_SIZE, (210, -4), -170), 1.0, 4.5),
+)
+MOVING_NAME = "walk.webp"
+MOST_BYTES = 2_000_000
+
+
+def browser_path() -> str:
+    """The Chromium to use, as the browser tests do; raises FileNotFoundError."""
+    named = os.environ.get("ELBOWROOM_CHROMIUM")
+    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if not found:
+        raise FileNotFoundError("no Chromium: sh tools/install_browser.sh, or name one in ELBOWROOM_CHROMIUM")
+    return found
 
 
 def free_port() -> int:
@@ -45,7 +91,21 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-def wait_for(address: str, seconds: float = 120.0) -> None:
+@contextmanager
+def served() -> Iterator[str]:
+    """The address of a server that lasts as long as the block."""
+    port = free_port()
+    address = f"http://127.0.0.1:{port}"
+    server = subprocess.Popen([sys.executable, "-m", "elbowroom", "play", "--no-open", "--port", str(port)])
+    try:
+        wait_for(address)
+        yield address
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def wait_for(address: str, seconds: float = 600.0) -> None:
     """Return when the server answers; raises TimeoutError."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -58,59 +118,105 @@ def wait_for(address: str, seconds: float = 120.0) -> None:
     raise TimeoutError(f"no answer from {address}")
 
 
-def walk_to(page: Page, z: float) -> None:
-    """Hold W and let the paused simulation step until the avatar is at z."""
-    page.wait_for_function("window.__app?.avatarLoaded && window.__app.framesDrawn > 0", timeout=120_000)
+@contextmanager
+def opened(browser: Browser, address: str, view: View) -> Iterator[Page]:
+    """The page, paused at the start with W held down, its camera turned as the view says."""
+    width, height = view.size
+    page = browser.new_page(
+        viewport={"width": width, "height": height},
+        bypass_csp=True,
+        color_scheme="dark" if view.dark else "light",
+        reduced_motion="reduce",
+    )
+    page.set_default_timeout(PATIENCE)
+    page.add_init_script(f"localStorage.setItem('elbowroom.preferences', '{PREFERENCES}')")
+    page.goto(f"{address}/?quality=high&steering=tank&{view.query}")
+    page.wait_for_function("window.__app?.avatarLoaded && window.__app.framesDrawn > 3 && window.__app.root")
     page.keyboard.press("KeyP")
     page.wait_for_function("window.__app.paused")
+    turn(page, view)
     page.keyboard.down("KeyW")
-    while (page.evaluate("window.__app.root.z")) < z:
-        for _ in range(5):
-            page.keyboard.press("Period")
-        page.wait_for_timeout(60)
-    page.keyboard.up("KeyW")
-
-
-def take(page: Page, picture: Picture, folder: Path) -> None:
-    """One picture; the camera is given time to come to rest."""
-    walk_to(page, picture.until)
-    middle = (picture.size[0] // 2, picture.size[1] // 2)
-    page.mouse.move(*middle)
-    page.mouse.wheel(0, picture.wheel)
-    if picture.drag != (0, 0):
-        page.mouse.down()
-        page.mouse.move(middle[0] + picture.drag[0], middle[1] + picture.drag[1], steps=4)
-        page.mouse.up()
-    drawn = page.evaluate("window.__app.framesDrawn")
-    page.wait_for_function(f"window.__app.framesDrawn > {drawn + 12}", timeout=120_000)
-    page.screenshot(path=folder / f"{picture.name}.png")
-
-
-def main() -> None:
-    """Take all pictures."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
-    port = free_port()
-    address = f"http://127.0.0.1:{port}"
-    server = subprocess.Popen([sys.executable, "-m", "elbowroom", "play", "--no-open", "--port", str(port)])
     try:
-        wait_for(address)
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
-            for picture in PICTURES:
-                width, height = picture.size
-                page = browser.new_page(
-                    viewport={"width": width, "height": height},
-                    bypass_csp=True,
-                    color_scheme="dark" if picture.scheme == "dark" else "light",
-                )
-                page.goto(f"{address}/?quality=high&{picture.query}")
-                take(page, picture, folder)
-                page.close()
-                print(folder / f"{picture.name}.png")
+        yield page
     finally:
-        server.terminate()
+        page.close()
+
+
+def turn(page: Page, view: View) -> None:
+    """Drag the camera round, and nearer."""
+    middle = (view.size[0] // 2, view.size[1] // 2)
+    page.mouse.move(*middle)
+    page.mouse.wheel(0, view.wheel)
+    page.mouse.down()
+    page.mouse.move(middle[0] + view.drag[0], middle[1] + view.drag[1], steps=4)
+    page.mouse.up()
+
+
+def step(page: Page, steps: int) -> float:
+    """Let the paused simulation go on by some steps; how far along z the avatar is then."""
+    then = page.evaluate("window.__app.simTime") + steps / 60.0
+    for _ in range(steps):
+        page.keyboard.press("Period")
+    page.wait_for_function(f"window.__app.simTime > {then - 1e-3}")
+    return float(page.evaluate("window.__app.root.z"))
+
+
+def shot(page: Page, drawn: int) -> Image.Image:
+    """The page as it is once `drawn` more pictures were drawn, so that the camera has come to rest."""
+    before = page.evaluate("window.__app.framesDrawn")
+    page.wait_for_function(f"window.__app.framesDrawn >= {before + drawn}")
+    return Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+
+
+def walk_to(page: Page, view: View, z: float) -> None:
+    """Go on until the avatar is at z; drawn small meanwhile, which is quicker."""
+    page.set_viewport_size({"width": SMALL[0], "height": SMALL[1]})
+    at = float(page.evaluate("window.__app.root.z"))
+    while at < z:
+        at = step(page, max(1, int(0.8 * (z - at) / METRES_PER_STEP)))
+    page.set_viewport_size({"width": view.size[0], "height": view.size[1]})
+
+
+def still(browser: Browser, address: str, wanted: Still) -> Image.Image:
+    """One picture that stands."""
+    with opened(browser, address, wanted.view) as page:
+        walk_to(page, wanted.view, wanted.until)
+        return shot(page, SETTLED)
+
+
+def moving(browser: Browser, address: str, wanted: Scene) -> list[Image.Image]:
+    """The pictures of one part, in order."""
+    with opened(browser, address, wanted.view) as page:
+        walk_to(page, wanted.view, wanted.first)
+        pictures = [shot(page, SETTLED)]
+        while step(page, STEPS_PER_PICTURE) < wanted.last:
+            pictures.append(shot(page, 1))
+        return pictures
+
+
+def write_moving(pictures: list[Image.Image], path: Path) -> None:
+    """Write them as one WebP file that shows them over and over, as well as `MOST_BYTES` allow."""
+    milliseconds = round(1000 * STEPS_PER_PICTURE / 60)
+    for quality in (80, 70, 60, 50, 40, 30):
+        pictures[0].save(
+            path, save_all=True, append_images=pictures[1:], duration=milliseconds, loop=0, quality=quality, method=4
+        )
+        if path.stat().st_size < MOST_BYTES:
+            return
+
+
+def main(folder: Path) -> None:
+    """Take all pictures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with served() as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=browser_path(), args=FLAGS)
+        for wanted in STILLS:
+            still(browser, address, wanted).save(folder / f"{wanted.name}.png", optimize=True)
+            print(folder / f"{wanted.name}.png", flush=True)
+        pictures = [picture for part in MOVING for picture in moving(browser, address, part)]
+        write_moving(pictures, folder / MOVING_NAME)
+        print(folder / MOVING_NAME, len(pictures), "pictures")
 
 
 if __name__ == "__main__":
-    main()
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER)
