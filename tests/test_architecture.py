@@ -10,6 +10,8 @@ import elbowroom
 
 PACKAGE = Path(elbowroom.__file__).parent
 ROOMS = ["geometry", "formats", "body", "clips", "world", "planning", "control", "experiment", "server", "cli"]
+# Of `planning/exact`, bottom to top.
+CHAPTERS = ["memory", "lattice", "sweep", "group", "joint", "refine", "certificate", "plan"]
 FOR_ALL = {"errors", "jit", "kernel_cache"}
 
 
@@ -36,6 +38,19 @@ def test_imports_point_down(room: str) -> None:
             target = room_of(module)
             if module.startswith("elbowroom") and target != "__version__":
                 assert target in below, f"{path.relative_to(PACKAGE)} imports {module}, which is above {room}"
+
+
+def test_chapters_of_the_exact_planner_point_down() -> None:
+    """Its files beside the chapters are read by all of them (the settings) or read them all (the planner)."""
+    exact = PACKAGE / "planning" / "exact"
+    assert {path.name for path in exact.iterdir() if path.is_dir() and path.name != "__pycache__"} == set(CHAPTERS)
+    for chapter in CHAPTERS:
+        below = {"settings", *CHAPTERS[: CHAPTERS.index(chapter) + 1]}
+        for path in (exact / chapter).rglob("*.py"):
+            for module in imported_modules(path):
+                if module.startswith("elbowroom.planning.exact."):
+                    target = module.split(".")[3]
+                    assert target in below, f"{path.relative_to(PACKAGE)} imports {module}, which is above {chapter}"
 
 
 def test_every_folder_with_code_is_a_room() -> None:

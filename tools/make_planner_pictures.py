@@ -80,7 +80,7 @@ def slice_table(humanoid: Humanoid) -> str:
     """Left arm in scene D: key times across, postures down, the nearest to hanging on top."""
     body, path = UpperBodyPlanner(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
-    ways = dressing.apart().ways
+    ways = dressing.apart().paths
     way, points_of = ways[1], dressing.caches.group(DofGroup.LEFT_ARM).postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
@@ -122,9 +122,9 @@ def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArra
     for seed in range(TRIES):
         dressing = dressing_of(UpperBodyPlanner(humanoid, random_scene(seed), ExactSettings()), path)
         alone = dressing.apart()
-        if alone.failed is None or not alone.ways:
+        if alone.failed is None or not alone.paths:
             continue
-        step = dressing.joint_step(alone.ways[0])
+        step = dressing.joint_step(alone.paths[0])
         answer = step.search()
         if len(answer.nodes):
             return dressing, step, answer.nodes
@@ -147,8 +147,8 @@ def joint_picture(humanoid: Humanoid) -> str:
     parts, x = [], left
     for side, name in enumerate(("left arm", "right arm")):
         prices = step.costs[side][depth, rows]
-        columns = np.flatnonzero(np.isfinite(step.nodes[1 + side].prices_alone[depth]))
-        columns = columns[np.argsort(step.nodes[1 + side].prices_alone[depth, columns], kind="stable")]
+        columns = np.flatnonzero(np.isfinite(step.nodes[1 + side].costs_alone[depth]))
+        columns = columns[np.argsort(step.nodes[1 + side].costs_alone[depth, columns], kind="stable")]
         free = np.isfinite(prices[:, columns])
         cost = np.where(free, prices[:, columns], 0.0).astype(np.float64)
         parts += [cells(free, np.clip(cost / 3.0, 0.0, 1.0), x, top, (wide, high)), label(name, x, top - 10)]

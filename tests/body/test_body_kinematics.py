@@ -4,7 +4,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body import kinematics
 from elbowroom.body.bones import PARENTS
-from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, DofGroup, limits
+from elbowroom.body.dof import CHILDREN, DOF, LOCAL, LOCAL_GROUPS, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
@@ -100,10 +100,10 @@ def test_groups_compose_to_the_whole_body(humanoid: Humanoid, model: BodyModel) 
 
     of = humanoid.capsules.of
     np.testing.assert_array_equal(kinematics.leg_capsules(model, roots, q[:, 5]), whole[of(DofGroup.ROOT)])
-    trunk = moved(kinematics.trunk_capsules(model, q[:, 3:6]), pelvis, heading)
+    trunk = moved(kinematics.group_capsules(model, DofGroup.WAIST, q[:, DofGroup.WAIST.at]), pelvis, heading)
     np.testing.assert_allclose(trunk, whole[of(DofGroup.WAIST)], atol=1e-5)
-    for group in (DofGroup.LEFT_ARM, DofGroup.RIGHT_ARM):
-        arm = moved(kinematics.arm_capsules(model, group, q[:, group.at]), chest_place, chest_turn)
+    for group in CHILDREN:
+        arm = moved(kinematics.group_capsules(model, group, q[:, group.at]), chest_place, chest_turn)
         np.testing.assert_allclose(arm, whole[of(group)], atol=1e-5)
 
 
@@ -199,8 +199,3 @@ def test_the_gaze_stays_roughly_forward() -> None:
         _, rotations = joint_frames(humanoid.skeleton, local, model.offsets[0], np.zeros(7))
         turned = np.linalg.norm(quaternion.to_rotation_vector(rotations[head]))
         assert turned <= 0.5 * np.linalg.norm(quaternion.to_rotation_vector(chest_rotation(q[3:6])))
-
-
-def test_a_waist_is_no_arm() -> None:
-    with pytest.raises(ValueError, match="WAIST"):
-        kinematics.arm_capsules(body_model(proportional_humanoid()), DofGroup.WAIST, np.zeros(4))

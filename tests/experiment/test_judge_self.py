@@ -12,7 +12,7 @@ from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.verdict import BodyVerdict, JudgeSettings, judge
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.model.self_pairs import SKIN, self_clearances, self_pairs
+from elbowroom.planning.model.self_pairs import OVERLAP, self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.obstacles import Obstacles
 from judged_bodies import random_postures, scene_with
@@ -65,8 +65,8 @@ def test_judge_and_planner_agree_pose_by_pose() -> None:
         ledger = Ledger(0.0)
         JUDGE.judge(type(posed)(posed.positions[n : n + 1], posed.rotations[n : n + 1]), np.zeros(1), n, ledger)
         assert ledger.least is not None
-        beyond = ledger.least.clearance + SKIN
-        if min(beyond, float(opinions[n])) < SKIN:  # farther apart, the planner measures from its own rim
+        beyond = ledger.least.clearance + OVERLAP
+        if min(beyond, float(opinions[n])) < OVERLAP:  # farther apart, the planner measures from its own rim
             assert np.isclose(beyond, opinions[n], atol=8e-3)
             agreed += 1
     assert agreed > 20

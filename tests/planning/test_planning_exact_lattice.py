@@ -18,8 +18,8 @@ STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
 INF = np.float32(np.inf)
 
 
-def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZON) -> Lattice:
-    """`size` postures and, at most, `own` more at each key time."""
+def random_lattice(seed: int, size: int = 3, extras: int = 2, horizon: int = HORIZON) -> Lattice:
+    """`size` postures and, at most, `extras` more at each key time."""
     rng = np.random.default_rng(seed)
     width, lanes = int(rng.integers(2, 5)), -(-size // BLOCK) * BLOCK
     postures = rng.uniform(-0.5, 0.5, (size, width))
@@ -29,7 +29,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
     moves[:, :size] = np.where(squares <= STEP**2, squares, np.inf)
     cost = rng.uniform(0.0, 1.0, (horizon + 1, lanes + EXTRA)).astype(np.float32)
     cost[rng.random(cost.shape) < rng.uniform(0.0, 0.6)] = INF
-    cost[:, size:lanes], cost[:, lanes + own :] = INF, INF
+    cost[:, size:lanes], cost[:, lanes + extras :] = INF, INF
     closed = rng.random((horizon, lanes + EXTRA, lanes + EXTRA)) < rng.choice([0.0, 0.4])
     columns = np.ascontiguousarray(postures[np.minimum(np.arange(lanes), size - 1)].T, np.float32)
     return Lattice(
@@ -37,7 +37,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
         columns=columns,
         moves=moves.astype(np.float32),
         spans=spans_of(moves.astype(np.float32)),
-        own=rng.uniform(-0.5, 0.5, (horizon + 1, EXTRA, width)),
+        extras=rng.uniform(-0.5, 0.5, (horizon + 1, EXTRA, width)),
         goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
         cost=cost,
         masks=np.where(rng.random(horizon) < 0.6, np.arange(horizon), -1),
@@ -51,7 +51,7 @@ def random_lattice(seed: int, size: int = 3, own: int = 2, horizon: int = HORIZO
 def posture_of(lattice: Lattice, depth: int, node: int) -> NDArray[np.float64]:
     """The configuration (d,) of a node."""
     width = lattice.moves.shape[1]
-    posture: NDArray[np.float64] = lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    posture: NDArray[np.float64] = lattice.postures[node] if node < width else lattice.extras[depth, node - width]
     return posture
 
 
@@ -123,7 +123,7 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
 def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
-    lattice = random_lattice(seed, size=70, own=EXTRA, horizon=6)
+    lattice = random_lattice(seed, size=70, extras=EXTRA, horizon=6)
     near = np.where(lattice.moves <= 0.1, lattice.moves, INF)
     lattice = lattice._replace(moves=near, spans=spans_of(near))
     assert np.ptp(lattice.spans, axis=1).min() < near.shape[1]
@@ -132,7 +132,7 @@ def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
         work, everywhere = work_for(lattice), lattice._replace(spans=spans)
         reached, _ = cheapest_path(everywhere, work, 0, False)
         settle_backward(everywhere, work, 0, np.inf if reached < 6 else float(work.costs[6].min()) + 0.5)
-        found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.left))
+        found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.onward))
     for one, other in zip(*found, strict=True):
         assert np.array_equal(one, other)
 
@@ -145,7 +145,7 @@ def widened(lattice: Lattice, work: Work) -> int:
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 10_000), st.sampled_from([0.02, 0.3, 1.0]))
 def test_what_a_glance_finds_is_the_cheapest_way_and_can_be_made_whole(seed: int, dear: float) -> None:
-    lattice = random_lattice(seed, size=70, own=EXTRA, horizon=6)
+    lattice = random_lattice(seed, size=70, extras=EXTRA, horizon=6)
     lattice = lattice._replace(cost=np.float32(dear) * lattice.cost)
     glanced, whole = work_for(lattice), work_for(lattice)
     reached, _ = cheapest_path(lattice, glanced, 0, True)
@@ -159,7 +159,7 @@ def test_what_a_glance_finds_is_the_cheapest_way_and_can_be_made_whole(seed: int
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 10_000))
 def test_costs_from_both_ends_meet(seed: int) -> None:
-    lattice = random_lattice(seed, size=40, own=EXTRA, horizon=6)
+    lattice = random_lattice(seed, size=40, extras=EXTRA, horizon=6)
     work = work_for(lattice)
     reached, _ = cheapest_path(lattice, work, 0, False)
     if reached < 6:
@@ -167,15 +167,15 @@ def test_costs_from_both_ends_meet(seed: int) -> None:
     best = float(work.costs[6].min())
     settle_backward(lattice, work, 0, best + 1e-3)
     for depth in range(6):
-        assert np.min(work.costs[depth] + work.left[depth]) == pytest.approx(best, abs=2e-5)
+        assert np.min(work.costs[depth] + work.onward[depth]) == pytest.approx(best, abs=2e-5)
 
 
 def test_who_follows_the_goal_pays_nothing() -> None:
     lattice = random_lattice(3)
-    own, cost = lattice.own.copy(), np.ones_like(lattice.cost)
+    own, cost = lattice.extras.copy(), np.ones_like(lattice.cost)
     own[:, BACK], own[0, HOLD] = lattice.goals, lattice.goals[0]
     cost[:, BLOCK + BACK] = 0.0
-    lattice = lattice._replace(own=own, cost=cost, masks=np.full(HORIZON, -1))
+    lattice = lattice._replace(extras=own, cost=cost, masks=np.full(HORIZON, -1))
     work = work_for(lattice)
     reached, _ = cheapest_path(lattice, work, 0, False)
     assert reached == HORIZON

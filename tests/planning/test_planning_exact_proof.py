@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, chest_frames, pelvis_frames, trunk_capsules
+from elbowroom.body.kinematics import BodyModel, body_model, chest_frames, group_capsules, pelvis_frames
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
@@ -76,8 +76,8 @@ class Body:
         """The end points (C, 2, 3, N) of the trunk's and the left arm's capsules, one pose after the other."""
         places, turns = pelvis_frames(self.model, roots)
         inner, inner_turns = chest_frames(self.model, waists)
-        trunk = trunk_capsules(self.model, waists).astype(np.float64)
-        arm = arm_capsules(self.model, ARM, arms).astype(np.float64)
+        trunk = group_capsules(self.model, DofGroup.WAIST, waists).astype(np.float64)
+        arm = group_capsules(self.model, ARM, arms).astype(np.float64)
         out = []
         for segments, carried in ((trunk, False), (arm, True)):
             points = segments.reshape(len(segments), 2, 3, -1).transpose(0, 1, 3, 2)

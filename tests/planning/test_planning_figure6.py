@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import naive_figure6 as naive
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, limits
-from elbowroom.body.kinematics import BodyModel, arm_capsules, body_model, trunk_capsules
+from elbowroom.body.kinematics import BodyModel, body_model, group_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import clear_of_trunk
@@ -94,10 +94,7 @@ class Trial:
         return naive.search(twin, self.roadmap.source, goals, collides, new_neighbor, self.budget), twin
 
     def collides(self, q: NDArray[np.float64], vertex: int, depth: int) -> bool:
-        if self.group is DofGroup.WAIST:
-            segments = trunk_capsules(self.model, q[None])
-        else:
-            segments = arm_capsules(self.model, self.group, q[None])
+        segments = group_capsules(self.model, self.group, q[None])
         limb = self.limb
         clearance = clearance_of(segments[:, :, 0], limb.radii, self.obstacles[depth])
         into_trunk = vertex < 0 and not clear_of_trunk(segments, limb.trunk, limb.allowed)[0]

@@ -4,18 +4,24 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp, limits
-from elbowroom.body.kinematics import arm_capsules, body_model
+from elbowroom.body.dof import ARMS, LOCAL, SEARCH_ORDER, DofGroup, clamp, columns_of, limits
+from elbowroom.body.kinematics import body_model, group_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, OwnBodyNodes, own_body_costs, touches_body
+from elbowroom.planning.exact.sweep.own_body_nodes import (
+    SPARE,
+    OwnBodyNodes,
+    OwnBodyTask,
+    own_body_costs,
+    touches_body,
+)
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import axis_distance
-from elbowroom.planning.model.self_pairs import EXEMPT, body_from_chest
+from elbowroom.planning.model.self_pairs import EXEMPT, seen_from_chest
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -31,7 +37,7 @@ def drawn(rng: np.random.Generator, group: DofGroup, count: int, share: float) -
 
 
 def some_postures(side: int) -> Postures:
-    group = LOCAL_GROUPS[1 + side]
+    group = ARMS[side]
     return postures_of(limb_of(MODEL, group), drawn(np.random.default_rng(side), group, 40, 0.7), 0.5)
 
 
@@ -40,13 +46,10 @@ POSTURES = [some_postures(side) for side in range(2)]
 
 def gaps_of(side: int, arms: Floats, uppers: Floats, state: Floats) -> Floats:
     """How far beyond what is allowed arm `side` is at `arms` (V, d) from the body, and the right arm from the left."""
-    pairs = BODY.pairs
-    axes = body_from_chest(MODEL, pairs, uppers[None, :3], state[None])[:, :, 0]
-    allowed = pairs.allowed[side]
-    if side == 1:
-        axes = np.concatenate([axes, arm_capsules(MODEL, LOCAL_GROUPS[1], uppers[None, 3:])[:, :, 0]])
-        allowed = np.concatenate([allowed, pairs.between.T], axis=1)
-    segments = arm_capsules(MODEL, LOCAL_GROUPS[1 + side], arms).astype(np.float64)
+    group = ARMS[side]
+    capsules, allowed = BODY.pairs.beside(group, group.clear_of)
+    axes = seen_from_chest(MODEL, capsules, uppers[None], state[None])[:, :, 0]
+    segments = group_capsules(MODEL, group, arms).astype(np.float64)
     return np.array(
         [
             min(
@@ -64,12 +67,14 @@ class Case:
     def __init__(self, side: int, seed: int) -> None:
         rng = np.random.default_rng(seed)
         self.side, self.postures = side, POSTURES[side]
-        group = LOCAL_GROUPS[1 + side]
-        before = [drawn(rng, one, ROWS, 0.5) for one in LOCAL_GROUPS[: 1 + side]]
-        self.uppers = np.concatenate(before, axis=1)
+        self.group = group = ARMS[side]
+        self.before = np.zeros(LOCAL, np.bool_)
+        self.uppers = np.zeros((ROWS, LOCAL))
+        for one in SEARCH_ORDER[: SEARCH_ORDER.index(group)]:
+            self.uppers[:, columns_of(one)], self.before[columns_of(one)] = drawn(rng, one, ROWS, 0.5), True
         self.states = rng.uniform(-1.0, 1.0, (ROWS, 7)) * [9.0, 9.0, 3.0, 1.2, 0.2, 0.5, 1.0]
         self.natural, self.start = rng.uniform(size=ROWS) < 0.4, drawn(rng, group, 1, 0.7)[0]
-        self.walk = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1)
+        self.walk = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1 * self.before)
         self.mine = mine = drawn(rng, group, ROWS, 0.7)
         self.previous = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
         self.settled = seed % 3 > 0
@@ -80,27 +85,18 @@ class Case:
 
     def nodes(self) -> OwnBodyNodes:
         """Its arm among the body, nothing looked at yet."""
-        return BODY.own_body_nodes(self.side, self.postures, BODY.resting(self.side, self.postures))
+        return BODY.own_body_nodes(self.group, self.postures, BODY.resting(self.group, self.postures))
 
     def costs(self, nodes: OwnBodyNodes | None = None) -> Floats:
-        costs = own_body_costs(
-            nodes or self.nodes(),
-            self.mine,
-            self.previous,
-            self.start,
-            self.settled,
-            self.walk,
-            self.uppers,
-            self.states,
-        )
-        return costs.astype(np.float64)
+        task = OwnBodyTask(self.mine, self.previous, self.start, self.settled, self.walk, self.uppers, self.states)
+        return own_body_costs(nodes or self.nodes(), task).astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:
         """Which nodes are ruled out (ROWS, W + OWN), and of which that is sure."""
         known = self.postures.configurations
         width = len(self.postures.lanes) * BLOCK
         out, sure = np.zeros((ROWS, width + EXTRA), np.bool_), np.ones((ROWS, width + EXTRA), np.bool_)
-        out[:, :width] = BODY.resting(self.side, self.postures)
+        out[:, :width] = BODY.resting(self.group, self.postures)
         filled = np.minimum(np.arange(width), len(known) - 1)
         for t in range(ROWS):
             if self.natural[t] and not self.needed[t, 1:].any():

@@ -27,9 +27,9 @@ def random_problem(seed: int, sizes: tuple[int, int, int] = (2, 3, 3), horizon: 
         waist=some(horizon + 1, w),
         left=some(horizon + 1, w, a),
         right=some(horizon + 1, w, b),
-        waist_steps=some(horizon, w, w),
-        left_steps=some(horizon, a, a),
-        right_steps=some(horizon, b, b),
+        waist_edges=some(horizon, w, w),
+        left_edges=some(horizon, a, a),
+        right_edges=some(horizon, b, b),
         apart=rng.random((horizon + 1, a, b)) > 0.5 * closed,
     )
     problem.waist[0], problem.left[0], problem.right[0] = INF, INF, INF
@@ -46,14 +46,14 @@ def price(problem: Problem, depth: int, triple: tuple[int, ...]) -> float:
 
 
 def step(problem: Problem, depth: int, a: tuple[int, ...], b: tuple[int, ...]) -> float:
-    tables = problem.waist_steps, problem.left_steps, problem.right_steps
+    tables = problem.waist_edges, problem.left_edges, problem.right_edges
     return float(sum(table[depth, i, j] for table, i, j in zip(tables, a, b, strict=True)))
 
 
 def whole_product(problem: Problem) -> tuple[int, float]:
     """The deepest slice that can be reached, and the cost of the cheapest way to the last; every edge looked at."""
-    horizon = len(problem.waist_steps)
-    triples = list(product(*(range(table.shape[1]) for table in (problem.waist, problem.apart, problem.right_steps))))
+    horizon = len(problem.waist_edges)
+    triples = list(product(*(range(table.shape[1]) for table in (problem.waist, problem.apart, problem.right_edges))))
     costs = {t: price(problem, 0, t) for t in triples}
     for depth in range(horizon):
         costs = {
@@ -107,7 +107,7 @@ def _everything(problem: Problem) -> tuple[bool, float]:
         if depth == 0:
             costs = prices
             continue
-        for axis, table in enumerate((problem.waist_steps, problem.left_steps, problem.right_steps)):
+        for axis, table in enumerate((problem.waist_edges, problem.left_edges, problem.right_edges)):
             moved = np.moveaxis(costs, axis, -1)
             costs = np.moveaxis((moved[..., None] + table[depth - 1]).min(axis=-2), -1, axis)
         costs = costs + prices
@@ -116,7 +116,7 @@ def _everything(problem: Problem) -> tuple[bool, float]:
 
 @settings(deadline=None, max_examples=25)
 @given(st.integers(0, 100_000))
-def test_bounds_never_exceed_what_a_way_costs(seed: int) -> None:
+def test_bounds_never_exceed_what_a_path_costs(seed: int) -> None:
     problem = random_problem(seed)
     way = joint_path(problem)
     if way.status is PlanStatus.FOUND:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.kinematics import BodyModel, body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import StartState
@@ -17,7 +17,7 @@ from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySea
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.model.self_pairs import SelfPairs, carriers_of, self_clearances, self_pairs
 from elbowroom.planning.result import BlockadeKind, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.clearance import clearance
@@ -79,24 +79,38 @@ def test_its_tables_say_what_the_posed_body_says(humanoid: Humanoid) -> None:
     seen = {True: 0, False: 0}
     for _ in range(120):
         depth = int(rng.integers(4, 9))
-        usable = [np.flatnonzero(np.isfinite(group.prices_alone[depth])) for group in step.nodes]
+        usable = [np.flatnonzero(np.isfinite(group.costs_alone[depth])) for group in step.nodes]
         nodes = tuple(int(rng.choice(row)) for row in usable)
         if not np.isfinite(step.nodes[0].base[depth, nodes[0]]):
             continue
         step.fill(depth, np.arange(step.filled.shape[1]) == nodes[0])
         upper = triple(step, depth, nodes)
-        contact = self_clearances(model, pairs, path.states[depth : depth + 1], upper[None])[:, 0]
+        state = path.states[depth : depth + 1]
+        apart = gap_of(model, pairs, ARMS[1], (ARMS[0],), state, upper)
         moments = len(step.around.places[depth])
         for side in range(2):
             free = np.isfinite(step.costs[side][depth, nodes[0], nodes[1 + side]])
             near = min(arm_clearance(humanoid, step, depth, i, upper, side) for i in range(moments))
             margin = step.nodes[1 + side].margins[depth]
-            if abs(near - margin) > 1e-4 and abs(contact[side] - SPARE) > 1e-3:
-                assert free == (near >= margin and contact[side] >= SPARE)
+            contact = gap_of(model, pairs, ARMS[side], carriers_of(ARMS[side]), state, upper)
+            if abs(near - margin) > 1e-4 and abs(contact - SPARE) > 1e-3:
+                assert free == (near >= margin and contact >= SPARE)
                 seen[bool(free)] += 1
-        if abs(contact[2] - SPARE) > 1e-3:
-            assert step.apart[depth, nodes[1], nodes[2]] == (contact[2] >= SPARE)
+        if abs(apart - SPARE) > 1e-3:
+            assert step.apart[depth, nodes[1], nodes[2]] == (apart >= SPARE)
     assert min(seen.values()) > 5
+
+
+def gap_of(
+    model: BodyModel, pairs: SelfPairs, group: DofGroup, others: tuple[DofGroup, ...], state: Floats, upper: Floats
+) -> float:
+    """How much nearer a group's parts could come to those of others, metres."""
+    theirs = np.concatenate([pairs.capsules[other] for other in others])
+    chosen = np.isin(pairs.first, pairs.capsules[group]) & np.isin(pairs.second, theirs)
+    some = pairs._replace(
+        first=pairs.first[chosen], second=pairs.second[chosen], kinds=pairs.kinds[chosen], limits=pairs.limits[chosen]
+    )
+    return float(self_clearances(model, some, state, upper[None]).min())
 
 
 def arm_clearance(humanoid: Humanoid, step: JointStep, depth: int, moment: int, upper: Floats, side: int) -> float:

@@ -14,11 +14,11 @@ from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.canned import standing_posture
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.group.upper_body_model import upper_body_model
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body_model import upper_body_model
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner

@@ -11,7 +11,7 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.tangents import smooth_tangents
 from elbowroom.planning.exact.sweep import own_motion
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
-from elbowroom.planning.exact.sweep.own_samples import CLEAR, MOMENTS, ROOMS, STEPS, OwnParts, least_gaps
+from elbowroom.planning.exact.sweep.own_samples import CLEAR, MOMENTS, NEAR, STEPS, OwnParts, least_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
@@ -93,12 +93,12 @@ def test_looks_that_are_left_out_would_have_seen_nothing(wild: float) -> None:
         rates = rates + 10.0 * rng.uniform(-wild, wild, rates.shape)
         found = looked_at(parts, path.states, keys, rates, np.arange(path.horizon))
         for k in range(path.horizon):
-            for step, scratch in zip(STEPS, ROOMS, strict=True):
+            for step, scratch in zip(STEPS, NEAR, strict=True):
                 samples = np.arange(step, MOMENTS + 1, step) / MOMENTS * T
                 expected = least_of_looks(path, keys, rates, k, samples)
                 if expected.min() < 0.0 or expected.min() >= scratch:
                     break
-            near += 0.0 <= expected.min() < ROOMS[0]
+            near += 0.0 <= expected.min() < NEAR[0]
             if expected.min() < CLEAR[-1]:
                 touching += 1
                 np.testing.assert_allclose(found[expected < CLEAR[-1], k], expected[expected < CLEAR[-1]], atol=1e-6)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
-from elbowroom.planning.exact.refine.sampling import Pool, chosen, drawn_postures
+from elbowroom.planning.exact.lattice.drawing import drawn_postures
+from elbowroom.planning.exact.refine.sampling import Pool, chosen
 
 
 @pytest.mark.parametrize("group", LOCAL_GROUPS)

@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from elbowroom.body.dof import DofGroup
 from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
 
 WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
 
 def test_a_contact_happens_again_while_the_groups_before_are_the_same() -> None:
-    contact = Contact(0, 5, WAIST, ARM)
+    contact = Contact(DofGroup.LEFT_ARM, 5, WAIST, ARM)
     assert contact.happens(WAIST + 1e-9)
     assert not contact.happens(WAIST + 0.01)
 

@@ -7,15 +7,21 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, clamp, limits
+from elbowroom.body.dof import ARMS, CHILDREN, DOF, LOCAL_GROUPS, DofGroup, clamp, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import arm_capsules, body_model, posture_capsules
+from elbowroom.body.kinematics import body_model, group_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.axis_distances import arm_clearances, clear_pairs, lower_to_body
 from elbowroom.planning.model.self_contact import axis_distance
-from elbowroom.planning.model.self_pairs import EXEMPT, SKIN, body_from_chest, self_clearances, self_pairs
+from elbowroom.planning.model.self_pairs import (
+    EXEMPT,
+    OVERLAP,
+    seen_from_chest,
+    self_clearances,
+    self_pairs,
+)
 from elbowroom.planning.root.path import RootPath
 from shared_data import SHARED, needs_shared
 
@@ -67,38 +73,31 @@ def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
     q[:, DOF - uppers.shape[1] :] = uppers
     q[:, :3] = roots[:, :3]
     world, radii = posture_capsules(model, q, roots).astype(np.float64), humanoid.capsules.radii
-    first = DofGroup.WAIST.at.start
-    waists, *arms = (uppers[:, group.at.start - first : group.at.stop - first] for group in LOCAL_GROUPS)
-    bodies = np.ascontiguousarray(body_from_chest(model, pairs, waists, roots).transpose(2, 0, 1))
-    segments = [arm_capsules(model, group, arm) for group, arm in zip(LOCAL_GROUPS[1:], arms, strict=True)]
-    every = np.ones(len(pairs.rest), np.bool_)
-    table = arm_clearances(segments[0], segments[1], pairs.between)
+    parts = {group: np.ascontiguousarray(uppers[:, columns_of(group)]) for group in CHILDREN}
+    segments = {group: group_capsules(model, group, part) for group, part in parts.items()}
+    left, right = ARMS
+    table = arm_clearances(segments[left], segments[right], np.ascontiguousarray(pairs.allowed[right, left].T))
     for n in range(count):
-        least = []
-        for side, allowed in enumerate(pairs.allowed):
-            gaps = [
+        least = dict.fromkeys(CHILDREN, np.inf)
+        for (group, other), allowed in pairs.allowed.items():
+            capsules = pairs.capsules[other]
+            crossing = min(
                 coal_distance(world[a, :, n], radii[a], world[k, :, n], radii[k])
                 + (radii[a] + radii[k] - allowed[i, j])
-                for i, a in enumerate(pairs.arms[side])
-                for j, k in enumerate(pairs.rest)
+                for i, a in enumerate(pairs.capsules[group])
+                for j, k in enumerate(capsules)
                 if allowed[i, j] > EXEMPT
-            ]
-            least.append(min(gaps))
+            )
+            least[group] = min(least[group], crossing)
+            bodies = seen_from_chest(model, capsules, uppers[n : n + 1], roots[n : n + 1])[:, :, 0]
             gap = np.full(1, np.inf, np.float32)
-            lower_to_body(segments[side][:, :, n : n + 1].copy(), bodies[n], pairs.allowed[side], every, gap)
-            found = float(gap[0])
-            assert np.isclose(found, least[-1], atol=1e-4) or min(found, least[-1]) < -0.1
-        crossing = min(
-            coal_distance(world[a, :, n], radii[a], world[b, :, n], radii[b])
-            + radii[a]
-            + radii[b]
-            - pairs.between[i, j]
-            for i, a in enumerate(pairs.arms[0])
-            for j, b in enumerate(pairs.arms[1])
-        )
-        assert np.isclose(table[n, n], crossing, atol=1e-4) or min(table[n, n], crossing) < -0.1
+            own = segments[group][:, :, n : n + 1].copy()
+            lower_to_body(own, np.ascontiguousarray(bodies), allowed, np.ones(len(capsules), np.bool_), gap)
+            assert np.isclose(gap[0], crossing, atol=1e-4) or min(float(gap[0]), crossing) < -0.1
+            if (group, other) == (right, left):
+                assert np.isclose(table[n, n], crossing, atol=1e-4) or min(table[n, n], crossing) < -0.1
         whole = self_clearances(model, pairs, roots[n : n + 1], uppers[n : n + 1])[:, 0]
-        for mine, theirs in zip(whole, (*least, crossing), strict=True):
+        for mine, theirs in zip(whole, least.values(), strict=True):
             assert np.isclose(mine, theirs, atol=1e-4) or min(mine, theirs) < -0.1
 
 
@@ -113,7 +112,7 @@ def natural_clearance(humanoid: Humanoid) -> float:
 
 @pytest.mark.parametrize("height", [1.1, 1.72, 2.0])
 def test_the_natural_walk_is_free_of_itself(height: float) -> None:
-    assert natural_clearance(proportional_humanoid(height)) > 0.5 * SKIN
+    assert natural_clearance(proportional_humanoid(height)) > 0.5 * OVERLAP
 
 
 def _avatars() -> list[Path]:
@@ -123,7 +122,7 @@ def _avatars() -> list[Path]:
 @needs_shared
 @pytest.mark.parametrize("file", _avatars(), ids=lambda file: file.stem)
 def test_the_natural_walk_of_real_avatars_is_free_of_itself(file: Path) -> None:
-    assert natural_clearance(Humanoid.load(file)) > 0.5 * SKIN
+    assert natural_clearance(Humanoid.load(file)) > 0.5 * OVERLAP
 
 
 def test_arms_through_body_and_through_each_other_are_found() -> None:

@@ -26,6 +26,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.body.bones import PARENTS
+
 Floats = NDArray[np.float64]
 
 
@@ -60,7 +62,9 @@ class GroupSpec(NamedTuple):
     speed: float = np.inf  # rad/s
     acceleration: float = np.inf  # rad/s^2
     clear_of: tuple[str, ...] = ()  # groups whose parts it must not run into; they are searched before it
-    turned_back: tuple[str, ...] = ()  # joints at the end of a column that undo part of what it turns
+    shares: tuple[float, ...] = ()  # of a column's rotation that its joints take; shared out anew where some are absent
+    turned_back: tuple[str, ...] = ()  # joints on a column that undo part of its rotation, and
+    undone: float = 0.0  # the part that they undo together
 
 
 def _degrees(**ranges: tuple[float, float]) -> tuple[Component, ...]:
@@ -119,7 +123,9 @@ class DofGroup(Enum):
         samples=6,
         speed=3.4,  # a bend, turn or crouch by half a radian in 0.28 s
         acceleration=60.0,  # half a radian in 0.22 s
+        shares=(0.40, 0.35, 0.25),
         turned_back=("neck", "head"),
+        undone=0.65,  # so that the gaze stays ahead
     )
     LEFT_ARM = _arm("left", ("ROOT", "WAIST"))
     RIGHT_ARM = _arm("right", ("ROOT", "WAIST", "LEFT_ARM"))
@@ -194,8 +200,14 @@ _COLUMNS = {group: slice(group.at.start - _FIRST, group.at.stop - _FIRST) for gr
 
 
 def group_of_bone(bone: str) -> DofGroup:
-    """The lowest group that moves a bone; hips, legs and what no group turns belong to the root."""
-    return next((g for g in LOCAL_GROUPS if bone in (*g.value.bones, *g.value.turned_back)), DofGroup.ROOT)
+    """The group that turns a bone, or the nearest one above it that is turned; hips and legs belong to the root."""
+    at: str | None = bone
+    while at is not None:
+        for group in LOCAL_GROUPS:
+            if at in (*group.value.bones, *group.value.turned_back):
+                return group
+        at = PARENTS.get(at)
+    return DofGroup.ROOT
 
 
 def columns_of(group: DofGroup) -> slice:

@@ -6,6 +6,7 @@ waist lowers it; the chest frame is that of the last spine joint. Capsule arrays
 ay, az, bx, by, bz.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body import posing
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import ARMS, DOF, LOWERING, DofGroup
+from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, LOWERING, DofGroup, Turning
 from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
@@ -25,38 +26,47 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
-_SPINE_WEIGHTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
-_GAZE = 0.65  # the part of the waist's rotation that neck and head undo
 _SIDES = ("left", "right")
 _LEG_BONES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 
 
 class CapsuleSet(NamedTuple):
-    """The capsules of one group and the chain of joints that carries them."""
+    """The capsules of one group, or of the whole body, and the joints that carry them."""
 
     indices: Indices  # (C,) into the humanoid's capsules
-    joints: Indices  # (C,)
-    ends: Floats  # (C, 6) both end points in the joint's frame
     radii: NDArray[np.float32]  # (C,) metres
-    order: Indices  # joints to pose, parents first, without the frame they start from
+    posed: posing.CapsuleChain
+
+    @property
+    def joints(self) -> Indices:
+        """The joint that carries each capsule, (C,)."""
+        return self.posed.joints
 
 
 class BodyModel(NamedTuple):
     """All that kinematics needs of a humanoid, as arrays; made once by `body_model`."""
 
-    parents: Indices  # (J,)
-    offsets: Floats  # (J, 3) from the parent joint in T-pose; for the hips their place in the root frame
-    base: Floats  # (J, 4) local rotations of the joints that do not move: relaxed fingers, else identity
-    spine: Indices  # (S,) present spine joints, the last one carries the chest frame
-    spine_weights: Floats  # (S,) parts of the waist's rotation, sum 1
-    gaze: Indices  # (G,) neck if present, head
-    gaze_weights: Floats  # (G,) negative: they turn back
-    arms: Indices  # (2, 3) upper arm, forearm, hand; left first
-    legs: Indices  # (2, 4) thigh, shin, foot, toes; -1 where absent
+    figure: posing.Figure  # its joints, and what turns them
     leg_rest: Floats  # (2, 9) see `legs.leg_rest`
     gait: GaitShape
     body: CapsuleSet  # every capsule, in the humanoid's order
-    groups: dict[DofGroup, CapsuleSet]  # those of each group, its chain begins at the joint that it hangs on
+    groups: dict[DofGroup, CapsuleSet]
+    chains: dict[DofGroup, posing.Chain]  # of the local groups
+
+    @property
+    def parents(self) -> Indices:
+        """The parent (J,) of each joint."""
+        return self.figure.parents
+
+    @property
+    def offsets(self) -> Floats:
+        """Each joint's place (J, 3) from its parent in T-pose; for the hips their place in the root frame."""
+        return self.figure.offsets
+
+    @property
+    def base(self) -> Floats:
+        """Local rotations (J, 4) of the joints that do not move: relaxed fingers, else identity."""
+        return self.figure.base
 
     @property
     def roots(self) -> CapsuleSet:
@@ -71,65 +81,97 @@ class BodyModel(NamedTuple):
 def body_model(humanoid: Humanoid) -> BodyModel:
     """Measure a humanoid. The model belongs to this object: keep it beside the humanoid."""
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
-    spine = _bones(skeleton, DofGroup.WAIST)
-    gaze = [bone for bone in DofGroup.WAIST.value.turned_back if skeleton.has(bone)]
-    weights = np.array([_SPINE_WEIGHTS[bone] for bone in spine])
     parents = np.ascontiguousarray(skeleton.parents, np.int64)
     rest = np.ascontiguousarray(skeleton.positions, np.float64)
-    every = np.arange(len(capsules.names))
-    return BodyModel(
+    gait = gait_shape(skeleton)
+    figure = posing.Figure(
+        base=relaxed_rotations(skeleton),
         parents=parents,
         offsets=rest - np.where(parents[:, None] >= 0, rest[parents], 0.0),
-        base=relaxed_rotations(skeleton),
-        spine=_joints(skeleton, spine),
-        spine_weights=weights / weights.sum(),
-        gaze=_joints(skeleton, gaze),
-        gaze_weights=np.full(len(gaze), -_GAZE / len(gaze)),
-        arms=np.array([_joints(skeleton, list(arm.value.bones)) for arm in ARMS]),
+        columns=tuple(_column(skeleton, group) for group in LOCAL_GROUPS if group.value.turning is Turning.COLUMN),
+        arms=tuple(_arm(skeleton, group) for group in ARMS),
         legs=np.array([_joints(skeleton, [side + bone for bone in _LEG_BONES]) for side in _SIDES]),
+        chest=_end(skeleton, DofGroup.WAIST),
+    )
+    chains = {group: _chain(skeleton, capsules, figure, group, gait.half_leg) for group in LOCAL_GROUPS}
+    legs = capsules.of(DofGroup.ROOT)
+    sets = {
+        group: _capsule_set(capsules, capsules.of(group), posing.CapsuleChain(chain.order, chain.joints, chain.ends))
+        for group, chain in chains.items()
+    }
+    return BodyModel(
+        figure=figure,
         leg_rest=leg_rest(skeleton),
-        gait=gait_shape(skeleton),
-        body=_capsule_set(skeleton, capsules, every, 0),
-        groups={group: _group_capsules(skeleton, capsules, group) for group in DofGroup},
+        gait=gait,
+        body=_capsule_set(capsules, every := np.arange(len(capsules.names)), _posed(skeleton, capsules, every, 0)),
+        groups={DofGroup.ROOT: _capsule_set(capsules, legs, _posed(skeleton, capsules, legs, 0))} | sets,
+        chains=chains,
     )
 
 
-def _joints(skeleton: Skeleton, bones: list[str]) -> Indices:
+def _joints(skeleton: Skeleton, bones: Sequence[str]) -> Indices:
     return np.array([skeleton.index(bone) if skeleton.has(bone) else -1 for bone in bones], np.int64)
 
 
-def _bones(skeleton: Skeleton, group: DofGroup) -> list[str]:
-    """The joints that a group turns, as far as the skeleton has them."""
-    return [bone for bone in group.value.bones if skeleton.has(bone)]
+def _end(skeleton: Skeleton, group: DofGroup) -> int:
+    """The last joint that a group turns, of those that the skeleton has."""
+    return next(skeleton.index(bone) for bone in reversed(group.value.bones) if skeleton.has(bone))
 
 
-def _group_capsules(skeleton: Skeleton, capsules: Capsules, group: DofGroup) -> CapsuleSet:
-    """The capsules of a group, and its chain down to the joint that its children hang on."""
-    start = 0 if group.parent is None else skeleton.index(_bones(skeleton, group.parent)[-1])
-    end = skeleton.index(_bones(skeleton, group)[-1])
+def _column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
+    spec = group.value
+    present = [(bone, share) for bone, share in zip(spec.bones, spec.shares, strict=True) if skeleton.has(bone)]
+    back = [bone for bone in spec.turned_back if skeleton.has(bone)]
+    shares = np.array([share for _, share in present])
+    return posing.Column(
+        _joints(skeleton, [bone for bone, _ in present] + back),
+        np.concatenate([shares / shares.sum(), np.full(len(back), -spec.undone / max(len(back), 1))]),
+        group.at.start,
+    )
+
+
+def _arm(skeleton: Skeleton, group: DofGroup) -> posing.Arm:
+    mirror = -1.0 if group.label.startswith("right") else 1.0
+    return posing.Arm(_joints(skeleton, group.value.bones), mirror, group.at.start)
+
+
+def _chain(
+    skeleton: Skeleton, capsules: Capsules, figure: posing.Figure, group: DofGroup, half_leg: float
+) -> posing.Chain:
+    """The joints of a local group, down to the one that its children hang on."""
+    assert group.parent is not None
+    start, end = _end(skeleton, group.parent), _end(skeleton, group)
     carries = any(other.parent is group for other in DofGroup)
-    return _capsule_set(skeleton, capsules, capsules.of(group), start, [end] if carries else None)
+    posed = _posed(skeleton, capsules, capsules.of(group), start, [end] if carries else [])
+    column = _column(skeleton, DofGroup.WAIST if group.is_arm else group)
+    arm = _arm(skeleton, group if group.is_arm else ARMS[0])
+    return posing.Chain(
+        figure.base, figure.parents, figure.offsets, posed.order, posed.joints, posed.ends,
+        start, end, carries, group.is_arm, column, arm, half_leg,
+    )  # fmt: skip
 
 
-def _capsule_set(
-    skeleton: Skeleton, capsules: Capsules, indices: Indices, start: int, also: list[int] | None = None
-) -> CapsuleSet:
+def _posed(
+    skeleton: Skeleton, capsules: Capsules, indices: Indices, start: int, also: Sequence[int] = ()
+) -> posing.CapsuleChain:
     """The capsules at `indices` and the joints between joint `start` and them (and those in `also`)."""
     joints = capsules.joints[indices]
     needed: set[int] = set()
-    for joint in [*joints, *(also or [])]:
+    for joint in [*joints, *also]:
         at = int(joint)
         while at not in (start, -1):
             needed.add(at)
             at = int(skeleton.parents[at])
     ends = np.concatenate([capsules.starts[indices], capsules.ends[indices]], axis=1)
-    return CapsuleSet(
-        indices=np.asarray(indices, np.int64),
-        joints=np.ascontiguousarray(joints, np.int64),
-        ends=np.ascontiguousarray(ends, np.float64),
-        radii=capsules.radii[indices].astype(np.float32),
-        order=np.array(sorted(needed), np.int64),
+    return posing.CapsuleChain(
+        np.array(sorted(needed), np.int64),
+        np.ascontiguousarray(joints, np.int64),
+        np.ascontiguousarray(ends, np.float64),
     )
+
+
+def _capsule_set(capsules: Capsules, indices: Indices, posed: posing.CapsuleChain) -> CapsuleSet:
+    return CapsuleSet(np.asarray(indices, np.int64), capsules.radii[indices].astype(np.float32), posed)
 
 
 def _rows(values: ArrayLike, size: int) -> Floats:
@@ -150,9 +192,9 @@ def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
 
     The hips' rotation is the identity: the root's heading turns the whole body.
     """
-    m, posture = model, np.ascontiguousarray(q, np.float64)
-    legs = _lower_body(m, _rows(root, ROOT_STATE), posture[LOWERING : LOWERING + 1])[0][0]
-    return posing.pose_local(m.base, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs, posture, legs)
+    posture = np.ascontiguousarray(q, np.float64)
+    legs = _lower_body(model, _rows(root, ROOT_STATE), posture[LOWERING : LOWERING + 1])[0][0]
+    return posing.pose_local(model.figure, posture, legs)
 
 
 def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
@@ -171,49 +213,31 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
 
     The first three components of `q` are ignored: the root states say where the body stands.
     """
-    m, c, states, postures = model, model.body, _rows(roots, ROOT_STATE), _rows(q, DOF)
-    legs, sinks = _lower_body(m, states, postures[:, LOWERING])
-    return posing.pose_body(
-        m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights, m.arms, m.legs,
-        c.joints, c.ends, postures, states, legs, sinks,
-    )[0]  # fmt: skip
+    states, postures = _rows(roots, ROOT_STATE), _rows(q, DOF)
+    legs, sinks = _lower_body(model, states, postures[:, LOWERING])
+    return posing.pose_body(model.figure, model.body.posed, postures, states, legs, sinks)[0]
 
 
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:
     """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7) and lowerings, one or (N,)."""
-    m, c, states = model, model.roots, _rows(roots, ROOT_STATE)
-    legs, sinks = _lower_body(m, states, np.full(len(states), lowerings, np.float64))
-    return posing.pose_legs(m.base, m.parents, m.offsets, c.order, m.legs, c.joints, c.ends, states, legs, sinks)
+    states = _rows(roots, ROOT_STATE)
+    legs, sinks = _lower_body(model, states, np.full(len(states), lowerings, np.float64))
+    return posing.pose_legs(model.figure, model.roots.posed, states, legs, sinks)
 
 
-def _trunk(model: BodyModel, waist: ArrayLike) -> tuple[Segments, Floats, Floats]:
-    m, c = model, model.capsules_of(DofGroup.WAIST)
-    return posing.pose_trunk(
-        m.base, m.parents, m.offsets, c.order, m.spine, m.spine_weights, m.gaze, m.gaze_weights,
-        c.joints, c.ends, m.gait.half_leg, _rows(waist, DofGroup.WAIST.size),
-    )  # fmt: skip
+def group_capsules(model: BodyModel, group: DofGroup, configurations: ArrayLike) -> Segments:
+    """A local group's capsules (C, 6, N) for its configurations (N, d), in the frame that carries it.
 
-
-def trunk_capsules(model: BodyModel, waist: ArrayLike) -> Segments:
-    """The capsules of the group WAIST (C, 6, N) in the pelvis frame for waist configurations (N, 3)."""
-    return _trunk(model, waist)[0]
+    That is the pelvis frame for the waist, the chest frame for the groups that hang on the waist.
+    """
+    return posing.pose_chain(model.chains[group], _rows(configurations, group.size))[0]
 
 
 def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the last spine joint in the pelvis frame for waists (N, 3)."""
-    _, positions, rotations = _trunk(model, waist)
+    group = DofGroup.WAIST
+    _, positions, rotations = posing.pose_chain(model.chains[group], _rows(waist, group.size))
     return positions, rotations
-
-
-def arm_capsules(model: BodyModel, group: DofGroup, arm: ArrayLike) -> Segments:
-    """An arm's capsules (3, 6, N) in the chest frame for arm configurations (N, 4)."""
-    if not group.is_arm:
-        raise ValueError(f"{group.name} is not an arm")
-    m, c, side = model, model.capsules_of(group), ARMS.index(group)
-    return posing.pose_arm(
-        m.base, m.parents, m.offsets, c.order, int(m.spine[-1]), m.arms[side], 1.0 - 2.0 * side,
-        c.joints, c.ends, _rows(arm, group.size),
-    )  # fmt: skip
 
 
 def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:

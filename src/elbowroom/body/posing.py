@@ -50,20 +50,70 @@ def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) 
     out[k, 0], out[k, 1], out[k, 2], out[k, 3] = factor * x, factor * y, factor * z, np.cos(half)
 
 
+class Column(NamedTuple):
+    """A row of joints that share the rotation Ry(twist) Rx(bend)."""
+
+    joints: Indices  # (S,)
+    shares: Floats  # (S,) of its rotation vector that each takes; negative: it turns back
+    first: int  # the place of the bend in a configuration `q`; the twist is the next
+
+
+class Arm(NamedTuple):
+    """A shoulder and an elbow."""
+
+    joints: Indices  # (3,) upper arm, forearm, hand
+    mirror: float  # +1 left, -1 right
+    first: int  # the place of the flexion in a configuration `q`
+
+
+class Chain(NamedTuple):
+    """The joints of one group and the capsules on them, beginning at the joint that the group hangs on."""
+
+    base: Floats  # (J, 4) rotations of all joints in T-pose
+    parents: Indices  # (J,)
+    offsets: Floats  # (J, 3) metres
+    order: Indices  # the joints to pose, parents first, without the one that it begins at
+    joints: Indices  # (C,) joints that carry its capsules
+    ends: Floats  # (C, 6) capsule end points in their joints' frames
+    start: int  # the joint that it hangs on
+    end: int  # the joint that others hang on
+    carries: bool  # whether any do
+    is_arm: bool  # whether `arm` turns it; else `column` does
+    column: Column
+    arm: Arm
+    half_leg: float  # metres, the unit of a lowering
+
+
+class Figure(NamedTuple):
+    """All joints of a body, and what turns them."""
+
+    base: Floats  # as in `Chain`
+    parents: Indices
+    offsets: Floats
+    columns: tuple[Column, ...]
+    arms: tuple[Arm, ...]
+    legs: Indices  # (2, 4) thigh, shin, foot, toes; -1 where absent
+    chest: int  # the joint that head and arms hang on
+
+
+class CapsuleChain(NamedTuple):
+    """Capsules of a body and the joints between the hips and them."""
+
+    order: Indices  # the joints to pose, parents first, without the hips
+    joints: Indices  # (C,)
+    ends: Floats  # (C, 6)
+
+
 @helper
-def _set_trunk(
-    spine: Indices, spine_weights: Floats, gaze: Indices, gaze_weights: Floats, bend: float, twist: float, local: Floats
-) -> None:
-    """Spine, neck and head for a waist: each takes its part of the rotation vector of Ry(twist) Rx(bend)."""
+def _set_column(column: Column, bend: float, twist: float, local: Floats) -> None:
+    """The joints of a column: each takes its share of the rotation vector of Ry(twist) Rx(bend)."""
     cb, sb, ct, st = np.cos(0.5 * bend), np.sin(0.5 * bend), np.cos(0.5 * twist), np.sin(0.5 * twist)
     x, y, z, w = ct * sb, st * cb, -st * sb, ct * cb
     sine = np.sqrt(x * x + y * y + z * z)
     angle = 2.0 * np.arctan2(sine, w)
     factor = angle / sine if sine > 1e-9 else 2.0
-    for i in range(len(spine)):
-        _set_power(x * factor, y * factor, z * factor, spine_weights[i], local, spine[i])
-    for i in range(len(gaze)):
-        _set_power(x * factor, y * factor, z * factor, gaze_weights[i], local, gaze[i])
+    for i in range(len(column.joints)):
+        _set_power(x * factor, y * factor, z * factor, column.shares[i], local, column.joints[i])
 
 
 @helper
@@ -135,106 +185,58 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
 
 
 @helper
-def _set_body(
-    spine: Indices,
-    spine_weights: Floats,
-    gaze: Indices,
-    gaze_weights: Floats,
-    arms: Indices,
-    legs: Indices,
-    q: Floats,
-    leg_rotations: Floats,
-    local: Floats,
-    scratch: Floats,
-) -> None:
-    """Every joint that moves, for a posture `q` (14,) and legs (2, 4, 4)."""
-    _set_trunk(spine, spine_weights, gaze, gaze_weights, q[3], q[4], local)
-    _set_arm(arms[0], 1.0, q[6:10], local, scratch)
-    _set_arm(arms[1], -1.0, q[10:14], local, scratch)
-    _set_legs(legs, leg_rotations, local)
+def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, scratch: Floats) -> None:
+    """Every joint that moves, for a posture `q` (DOF,) and legs (2, 4, 4)."""
+    for column in figure.columns:
+        _set_column(column, q[column.first], q[column.first + 1], local)
+    for arm in figure.arms:
+        _set_arm(arm.joints, arm.mirror, q[arm.first :], local, scratch)
+    _set_legs(figure.legs, leg_rotations, local)
 
 
 @kernel
-def pose_local(
-    base: Floats,
-    spine: Indices,
-    spine_weights: Floats,
-    gaze: Indices,
-    gaze_weights: Floats,
-    arms: Indices,
-    legs: Indices,
-    q: Floats,
-    leg_rotations: Floats,
-) -> Floats:
-    """Local rotations (J, 4) of one posture `q` (14,), legs (2, 4, 4)."""
-    local = base.copy()
-    scratch = np.empty((2, 4))
-    _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q, leg_rotations, local, scratch)
+def pose_local(figure: Figure, q: Floats, leg_rotations: Floats) -> Floats:
+    """Local rotations (J, 4) of one posture `q` (DOF,), legs (2, 4, 4)."""
+    local = figure.base.copy()
+    _set_body(figure, q, leg_rotations, local, np.empty((2, 4)))
     return local
 
 
 @kernel
 def pose_body(
-    base: Floats,
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    spine: Indices,
-    spine_weights: Floats,
-    gaze: Indices,
-    gaze_weights: Floats,
-    arms: Indices,
-    legs: Indices,
-    joints: Indices,
-    ends: Floats,
-    q: Floats,
-    roots: Floats,
-    leg_rotations: Floats,
-    sinks: Floats,
+    figure: Figure, capsules: CapsuleChain, q: Floats, roots: Floats, leg_rotations: Floats, sinks: Floats
 ) -> tuple[Segments, Floats, Floats]:
-    """The body in the world for postures (N, 14), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2).
+    """The body in the world for postures (N, DOF), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2).
 
-    Returns capsules (C, 6, N), and place (N, 3) and rotation (N, 4) of the last spine joint.
+    Returns capsules (C, 6, N), and place (N, 3) and rotation (N, 4) of the chest's frame.
     """
-    out = np.empty((len(joints), 6, len(q)), np.float32)
+    out = np.empty((len(capsules.joints), 6, len(q)), np.float32)
     chest_places, chest_rotations = np.empty((len(q), 3)), np.empty((len(q), 4))
-    local, scratch, row = base.copy(), np.empty((2, 4)), np.empty((1, 6))
-    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
-    chest = spine[-1]
+    local, scratch, row = figure.base.copy(), np.empty((2, 4)), np.empty((1, 6))
+    rotations, places = np.empty(figure.base.shape), np.empty(figure.offsets.shape)
     for n in range(len(q)):
-        _set_body(spine, spine_weights, gaze, gaze_weights, arms, legs, q[n], leg_rotations[n], local, scratch)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, _FIRST)
-        _chain(order, parents, offsets, local, rotations, places)
-        _segments(joints, ends, rotations, places, row, n, out)
+        _set_body(figure, q[n], leg_rotations[n], local, scratch)
+        _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
+        _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
+        _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
         for i in range(3):
-            chest_places[n, i] = places[chest, i]
+            chest_places[n, i] = places[figure.chest, i]
         for i in range(4):
-            chest_rotations[n, i] = rotations[chest, i]
+            chest_rotations[n, i] = rotations[figure.chest, i]
     return out, chest_places, chest_rotations
 
 
 @kernel
-def pose_legs(
-    base: Floats,
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    legs: Indices,
-    joints: Indices,
-    ends: Floats,
-    roots: Floats,
-    leg_rotations: Floats,
-    sinks: Floats,
-) -> Segments:
+def pose_legs(figure: Figure, capsules: CapsuleChain, roots: Floats, leg_rotations: Floats, sinks: Floats) -> Segments:
     """Capsules (C, 6, N) of pelvis and legs in the world."""
-    out = np.empty((len(joints), 6, len(roots)), np.float32)
-    local, row = base.copy(), np.empty((1, 6))
-    rotations, places = np.empty(base.shape), np.empty(offsets.shape)
+    out = np.empty((len(capsules.joints), 6, len(roots)), np.float32)
+    local, row = figure.base.copy(), np.empty((1, 6))
+    rotations, places = np.empty(figure.base.shape), np.empty(figure.offsets.shape)
     for n in range(len(roots)):
-        _set_legs(legs, leg_rotations[n], local)
-        _place_hips(roots[n], offsets[0], sinks[n], rotations, places, _FIRST)
-        _chain(order, parents, offsets, local, rotations, places)
-        _segments(joints, ends, rotations, places, row, n, out)
+        _set_legs(figure.legs, leg_rotations[n], local)
+        _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
+        _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
+        _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
     return out
 
 
@@ -249,131 +251,64 @@ class PoseScratch(NamedTuple):
 
 
 @kernel
-def pose_scratch(base: Floats, offsets: Floats) -> PoseScratch:
-    """Room to pose chains of joints with the rotations `base` (J, 4) in T-pose."""
-    return PoseScratch(base.copy(), np.empty(base.shape), np.empty(offsets.shape), np.empty((2, 4)), np.empty((1, 6)))
-
-
-@kernel
-def pose_trunk_into(
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    spine: Indices,
-    spine_weights: Floats,
-    gaze: Indices,
-    gaze_weights: Floats,
-    joints: Indices,
-    ends: Floats,
-    half_leg: float,
-    waist: Floats,
-    count: int,
-    room: PoseScratch,
-    first: int,
-    out: Segments,
-    chest_places: Floats,
-    chest_rotations: Floats,
-) -> None:
-    """`pose_trunk` for the first `count` waists (N, 3), written to `out` (C, 6, M) from the place `first` on.
-
-    The chest's frames are written to the first rows of (N, 3) and (N, 4).
-    """
-    chest = spine[len(spine) - 1]
-    for n in range(count):
-        below, behind = hips_sink(half_leg, 0.0, waist[n, 2])
-        _place(_FIRST, room.rotations, room.places, 0.0, -below, -behind, 0.0)
-        _set_trunk(spine, spine_weights, gaze, gaze_weights, waist[n, 0], waist[n, 1], room.local)
-        _chain(order, parents, offsets, room.local, room.rotations, room.places)
-        _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)
-        for i in range(3):
-            chest_places[n, i] = room.places[chest, i]
-        for i in range(4):
-            chest_rotations[n, i] = room.rotations[chest, i]
-
-
-@kernel
-def pose_trunk(
-    base: Floats,
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    spine: Indices,
-    spine_weights: Floats,
-    gaze: Indices,
-    gaze_weights: Floats,
-    joints: Indices,
-    ends: Floats,
-    half_leg: float,
-    waist: Floats,
-) -> tuple[Segments, Floats, Floats]:
-    """Trunk capsules (C, 6, N), place (N, 3) and rotation (N, 4) of the last spine joint, all in the pelvis frame.
-
-    That frame is where the hips would be without lowering: waists (N, 3) of bend, twist and lowering move them in it.
-    """
-    out = np.empty((len(joints), 6, len(waist)), np.float32)
-    chest_places, chest_rotations = np.empty((len(waist), 3)), np.empty((len(waist), 4))
-    pose_trunk_into(
-        parents, offsets, order, spine, spine_weights, gaze, gaze_weights, joints, ends, half_leg, waist, len(waist),
-        pose_scratch(base, offsets), _FIRST, out, chest_places, chest_rotations,
-    )  # fmt: skip
-    return out, chest_places, chest_rotations
-
-
-@kernel
-def pose_arm_into(
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    chest: int,
-    arm_joints: Indices,
-    mirror: float,
-    joints: Indices,
-    ends: Floats,
-    arm: Floats,
-    count: int,
-    room: PoseScratch,
-    first: int,
-    out: Segments,
-) -> None:
-    """`pose_arm` for the first `count` arms (N, 4), written to `out` (C, 6, M) from the place `first` on."""
-    _place(chest, room.rotations, room.places, 0.0, 0.0, 0.0, 0.0)
-    for n in range(count):
-        _set_arm(arm_joints, mirror, arm[n], room.local, room.scratch)
-        _chain(order, parents, offsets, room.local, room.rotations, room.places)
-        _segments(joints, ends, room.rotations, room.places, room.row, first + n, out)
-
-
-@kernel
-def pose_arm(
-    base: Floats,
-    parents: Indices,
-    offsets: Floats,
-    order: Indices,
-    chest: int,
-    arm_joints: Indices,
-    mirror: float,
-    joints: Indices,
-    ends: Floats,
-    arm: Floats,
-) -> Segments:
-    """Arm capsules (C, 6, N) in the frame of the last spine joint for arm configurations (N, 4)."""
-    out = np.empty((len(joints), 6, len(arm)), np.float32)
-    pose_arm_into(
-        parents,
-        offsets,
-        order,
-        chest,
-        arm_joints,
-        mirror,
-        joints,
-        ends,
-        arm,
-        len(arm),
-        pose_scratch(base, offsets),
-        _FIRST,
-        out,
+def pose_scratch(chain: Chain) -> PoseScratch:
+    """What `pose_chain_into` works on."""
+    return PoseScratch(
+        chain.base.copy(),
+        np.empty(chain.base.shape),
+        np.empty(chain.offsets.shape),
+        np.empty((2, 4)),
+        np.empty((1, 6)),
     )
-    return out
+
+
+@kernel
+def pose_chain_into(
+    chain: Chain,
+    configurations: Floats,
+    count: int,
+    scratch: PoseScratch,
+    first: int,
+    out: Segments,
+    places: Floats,
+    turns: Floats,
+) -> None:
+    """`pose_chain` for the first `count` configurations (N, d), written to `out` (C, 6, M) from place `first` on.
+
+    If others hang on the chain their frames are written to the first rows of `places` (N, 3) and `turns` (N, 4).
+    Where `out` has no rows no capsules are posed.
+    """
+    _place(chain.start, scratch.rotations, scratch.places, 0.0, 0.0, 0.0, 0.0)
+    for n in range(count):
+        if chain.is_arm:
+            _set_arm(chain.arm.joints, chain.arm.mirror, configurations[n], scratch.local, scratch.scratch)
+        else:
+            _set_column(chain.column, configurations[n, 0], configurations[n, 1], scratch.local)
+            if configurations.shape[1] > 2:
+                below, behind = hips_sink(chain.half_leg, 0.0, configurations[n, 2])
+                _place(chain.start, scratch.rotations, scratch.places, 0.0, -below, -behind, 0.0)
+        _chain(chain.order, chain.parents, chain.offsets, scratch.local, scratch.rotations, scratch.places)
+        if len(out):
+            _segments(chain.joints, chain.ends, scratch.rotations, scratch.places, scratch.row, first + n, out)
+        if chain.carries:
+            for i in range(3):
+                places[n, i] = scratch.places[chain.end, i]
+            for i in range(4):
+                turns[n, i] = scratch.rotations[chain.end, i]
+
+
+@kernel
+def pose_chain(chain: Chain, configurations: Floats) -> tuple[Segments, Floats, Floats]:
+    """Capsules (C, 6, N) of a group, and place (N, 3) and rotation (N, 4) of the joint that others hang on.
+
+    All in the frame that carries the group, for its configurations (N, d). For the waist that is the pelvis frame,
+    where the hips would be without lowering; for its children the frame of the last spine joint.
+    """
+    count = len(configurations)
+    out = np.empty((len(chain.joints), 6, count), np.float32)
+    places, turns = np.empty((count, 3)), np.empty((count, 4))
+    pose_chain_into(chain, configurations, count, pose_scratch(chain), _FIRST, out, places, turns)
+    return out, places, turns
 
 
 @kernel

@@ -16,25 +16,14 @@ from elbowroom.body.legs import leg_rotations
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
 
 class WholeBody(NamedTuple):
     """What posing every capsule needs of a `BodyModel`, under the names that these things have there."""
 
-    base: Floats
-    parents: Indices
-    offsets: Floats
-    order: Indices
-    spine: Indices
-    spine_weights: Floats
-    gaze: Indices
-    gaze_weights: Floats
-    arms: Indices
-    legs: Indices
-    joints: Indices
-    ends: Floats
+    figure: posing.Figure
+    capsules: posing.CapsuleChain
     leg_rest: Floats
     gait_legs: Floats
     scale: float
@@ -43,36 +32,17 @@ class WholeBody(NamedTuple):
 
 def whole_body(model: BodyModel) -> WholeBody:
     """The same for kernels; the arrays are the model's own."""
-    return WholeBody(
-        model.base,
-        model.parents,
-        model.offsets,
-        model.body.order,
-        model.spine,
-        model.spine_weights,
-        model.gaze,
-        model.gaze_weights,
-        model.arms,
-        model.legs,
-        model.body.joints,
-        model.body.ends,
-        model.leg_rest,
-        model.gait.legs,
-        model.gait.scale,
-        model.gait.half_leg,
-    )
+    gait = model.gait
+    return WholeBody(model.figure, model.body.posed, model.leg_rest, gait.legs, gait.scale, gait.half_leg)
 
 
 @exact_kernel
 def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
-    """All capsules (C, 6, N) for postures (N, 14) and root states (N, 7), in the world.
+    """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), in the world.
 
     And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
     """
     feet, drops = foot_poses(body.gait_legs, body.scale, roots)
     sinks = hips_sinks(body.half_leg, drops, q[:, LOWERING].copy())
     legs = leg_rotations(body.leg_rest, feet, sinks)
-    return posing.pose_body(
-        body.base, body.parents, body.offsets, body.order, body.spine, body.spine_weights, body.gaze,
-        body.gaze_weights, body.arms, body.legs, body.joints, body.ends, q, roots, legs, sinks,
-    )  # fmt: skip
+    return posing.pose_body(body.figure, body.capsules, q, roots, legs, sinks)

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from elbowroom.body.dof import LOCAL, DofGroup
+from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
@@ -16,7 +16,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
 from elbowroom.planning.exact.joint.product import joint_path
-from elbowroom.planning.exact.joint.reachability import stepped_triples
+from elbowroom.planning.exact.joint.reachability import next_triples
 from elbowroom.planning.exact.lattice.postures import postures_of
 from elbowroom.planning.exact.memory.previous_plan import StartState, jolts
 from elbowroom.planning.exact.plan.ongoing import leads_to
@@ -24,12 +24,13 @@ from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_body_nodes import own_body_costs
+from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
 from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
+from elbowroom.planning.model.self_pairs import with_waist
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
@@ -75,18 +76,10 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     body, count = OwnBody(model, natural_walk()), len(path.states)
     postures = postures_of(limb_of(model, arm), np.zeros((1, arm.size)), 1.0)
     previous, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
-    goals, waists = np.zeros_like(bent), bent[:, : DofGroup.WAIST.size].copy()
+    goals, around = np.zeros_like(bent), with_waist(bent[:, columns_of(DofGroup.WAIST)])
     rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
-    own_body_costs(
-        body.own_body_nodes(0, postures, body.resting(0, postures)),
-        previous,
-        previous,
-        previous[0],
-        True,
-        goals,
-        waists,
-        path.states,
-    )
+    task = OwnBodyTask(previous, previous, previous[0], True, goals, around, path.states)
+    own_body_costs(body.own_body_nodes(arm, postures, body.resting(arm, postures)), task)
     OwnMotion(own_parts(model, body.pairs)).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
@@ -125,7 +118,7 @@ def rehearse_product() -> None:
     problem = Problem(costs, under, under, steps, steps, steps, np.ones(under.shape, np.bool_))
     joint_path(problem)
     joint_path(problem._replace(apart=np.zeros(under.shape, np.bool_)))
-    stepped_triples(problem, 0, np.ones((size, size, size), np.bool_))
+    next_triples(problem, 0, np.ones((size, size, size), np.bool_))
 
 
 def rehearse_proof(humanoid: Humanoid) -> None:

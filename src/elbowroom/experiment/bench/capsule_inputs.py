@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, clamp, limits
-from elbowroom.body.kinematics import arm_capsules, body_model
+from elbowroom.body.kinematics import body_model, group_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.layout import Nearby
@@ -83,7 +83,7 @@ def capsule_inputs(postures: int, boxes: int, seed: int) -> CapsuleInputs:
     model = body_model(proportional_humanoid())
     low, high = limits(DofGroup.LEFT_ARM).T
     arms = clamp(DofGroup.LEFT_ARM, rng.uniform(low, high, (postures, len(low))))
-    segments = arm_capsules(model, DofGroup.LEFT_ARM, arms)
+    segments = group_capsules(model, DofGroup.LEFT_ARM, arms)
     shoulder = segments[0, :3].mean(axis=1)
     towards = rng.normal(size=(boxes, 3))
     towards /= np.linalg.norm(towards, axis=1, keepdims=True)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
+from elbowroom.body.dof import DofGroup
 from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
@@ -47,10 +48,11 @@ class Poser:
         """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, 14), `roots` (N, 7)."""
         feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
-        _pose_trunk(self.skeleton, q[:, 3], q[:, 4], rotations)
-        _pose_arm(self.skeleton, "left", 1.0, q[:, 6:10], rotations)
-        _pose_arm(self.skeleton, "right", -1.0, q[:, 10:14], rotations)
-        lowered = 0.25 * self._gait.legs[:, -2:].sum() * q[:, 5:6]
+        bend, twist, lowering = q[:, DofGroup.WAIST.at].T
+        _pose_trunk(self.skeleton, bend, twist, rotations)
+        _pose_arm(self.skeleton, "left", 1.0, q[:, DofGroup.LEFT_ARM.at], rotations)
+        _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
+        lowered = 0.25 * self._gait.legs[:, -2:].sum() * lowering[:, None]
         moved = -(drops[:, None] + lowered) * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
         for side, name in enumerate(("left", "right")):
             _pose_leg(self.skeleton, name, feet[:, side], moved, rotations)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.memory.plan_memory import PlanMemory
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.extension import prolonged
 from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
 from elbowroom.planning.exact.plan.new_plan import NewPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
+from elbowroom.planning.exact.plan.plan_memory import PlanMemory
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort
 from elbowroom.planning.exact.settings import ExactSettings

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import ARMS, CHILDREN, DofGroup, clamp, side_by_side
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.root import ROOT_STATE
@@ -58,14 +58,14 @@ def _fitted(swing: Swing, model: BodyModel, pairs: SelfPairs) -> Swing:
 
 
 def _clear(swing: Swing, model: BodyModel, pairs: SelfPairs, lifts: Floats, eases: Floats) -> NDArray[np.bool_]:
-    """Whether left and right arm keep clear of the body and of each other at each key, (2, KEYS)."""
+    """Whether each arm, and those that must keep clear of it, keep clear at each key, (2, KEYS)."""
     roots = np.zeros((KEYS, ROOT_STATE))
     roots[:, 3], roots[:, 6] = swing.speed, np.arange(KEYS) / KEYS
     keys = _changed(swing, lifts, eases)
-    uppers = np.concatenate([keys[group] for group in LOCAL_GROUPS], axis=1)[:KEYS]
+    uppers = side_by_side(keys)[:KEYS]
     clear = self_clearances(model, pairs, roots, uppers) >= 0.0
-    both: NDArray[np.bool_] = clear[:2] & clear[2]
-    return both
+    beside = [[CHILDREN.index(other) for other in CHILDREN if other is arm or arm in other.clear_of] for arm in ARMS]
+    return np.stack([np.logical_and.reduce(clear[rows]) for rows in beside])
 
 
 def _smooth(change: Floats) -> Floats:
@@ -81,7 +81,7 @@ def _smooth(change: Floats) -> Floats:
 def _changed(swing: Swing, lifts: Floats, eases: Floats) -> dict[DofGroup, Floats]:
     """The keys with the arms eased towards rest and lifted, each (2, KEYS) of left and right arm."""
     keys = dict(swing.keys)
-    for group, lift, ease in zip(LOCAL_GROUPS[1:], lifts, eases, strict=True):
+    for group, lift, ease in zip(ARMS, lifts, eases, strict=True):
         rows = keys[group] + np.append(ease, ease[0])[:, None] * (resting(group) - keys[group])
         rows[:, _ABDUCTION] += np.append(lift, lift[0])
         keys[group] = clamp(group, rows)

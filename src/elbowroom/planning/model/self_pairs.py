@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import CHILDREN, DOF, LOCAL, DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
@@ -24,55 +24,66 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-SKIN = 0.02  # metres
+OVERLAP = 0.02  # metres
 EXEMPT = -1e3  # metres: a pair that is not looked at
 _SPEEDS = (0.0, 0.6, 1.1, 2.2)  # m/s of the natural walk
 _PHASES = 16
 
 
 class SelfPairs(NamedTuple):
-    """One avatar's own body: K parts that are not of an arm, and the arms' parts, as indices of its capsules."""
+    """One avatar's own body: the parts of its groups that must not run into each other, by the table of groups."""
 
-    rest: Indices  # (K,) pelvis and legs, trunk, neck, head
-    arms: tuple[Indices, Indices]  # (C,) left, right
-    allowed: tuple[Floats32, Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
-    between: Floats32  # (C, C) of left and right arm
+    capsules: dict[DofGroup, Indices]  # (C,) of each group
+    allowed: dict[tuple[DofGroup, DofGroup], Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
     first: Indices  # (P,) the same as a list of all pairs that are looked at: one capsule
     second: Indices  # (P,) and the other
-    kinds: Indices  # (P,) 0: left arm and body, 1: right arm and body, 2: the arms
+    kinds: Indices  # (P,) the number among `CHILDREN` of the group that has to keep clear
     limits: Floats32  # (P,) metres
+
+    def beside(self, group: DofGroup, others: tuple[DofGroup, ...]) -> tuple[Indices, Floats32]:
+        """The capsules (K,) of other groups, and how near those of a group may come to them, (C, K) metres."""
+        rows = [
+            self.allowed[group, other] if (group, other) in self.allowed else self.allowed[other, group].T
+            for other in others
+        ]
+        return np.concatenate([self.capsules[other] for other in others]), np.concatenate(rows, axis=1)
+
+
+def carriers_of(group: DofGroup) -> tuple[DofGroup, ...]:
+    """The groups, among those that a group must keep clear of, that are posed by the waist alone."""
+    return tuple(other for other in group.clear_of if other not in CHILDREN)
+
+
+def neighbours_of(group: DofGroup) -> tuple[DofGroup, ...]:
+    """The groups that a group must keep clear of, and those that must keep clear of it."""
+    return (*group.clear_of, *(other for other in CHILDREN if group in other.clear_of))
 
 
 def self_pairs(model: BodyModel, goals: GoalFunction | None = None) -> SelfPairs:
     """Measure the natural walk of a body, or what `goals` make of it."""
-    rest = np.concatenate([model.roots.indices, model.capsules_of(DofGroup.WAIST).indices])
-    joints = np.concatenate([model.roots.joints, model.capsules_of(DofGroup.WAIST).joints])
-    left, right = (model.capsules_of(arm).indices for arm in ARMS)
-    arms = left, right
     natural = _natural_walk(model, goals or natural_walk())
-    head = np.isin(joints, model.gaze)
-
-    def allowed(one: Indices, other: Indices) -> Floats32:
-        touching = model.body.radii[one][:, None] + model.body.radii[other]
-        distances = np.array([[clear_pairs(natural[a], natural[b]).min() for b in other] for a in one])
-        least: Floats32 = (np.minimum(distances, touching) - SKIN).astype(np.float32)
-        return least
-
-    limits = tuple(allowed(arm, rest) for arm in arms)
-    for limit in limits:
-        limit[0, ~head] = EXEMPT
-    between = allowed(*arms)
+    capsules = {group: model.capsules_of(group).indices for group in DofGroup}
+    allowed = {(group, other): _allowed(model, natural, group, other) for group in CHILDREN for other in group.clear_of}
     listed = [
-        (arm[c], rest[k], side, limit[c, k])
-        for side, (arm, limit) in enumerate(zip(arms, limits, strict=True))
+        (capsules[group][c], capsules[other][k], CHILDREN.index(group), limit[c, k])
+        for (group, other), limit in allowed.items()
         for c, k in np.argwhere(limit > EXEMPT)
     ]
-    listed += [(arms[0][c], arms[1][k], 2, between[c, k]) for c, k in np.ndindex(between.shape)]
     first, second, kinds, least = zip(*listed, strict=True)
-    return SelfPairs(
-        rest, arms, (limits[0], limits[1]), between, np.array(first), np.array(second),
-        np.array(kinds), np.array(least, np.float32),
-    )  # fmt: skip
+    return SelfPairs(capsules, allowed, np.array(first), np.array(second), np.array(kinds), np.array(least, np.float32))
+
+
+def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGroup) -> Floats32:
+    """How near the axes of two groups may come to each other, (C, K) metres, for the natural walk (all, 6, N)."""
+    one, two = model.capsules_of(group), model.capsules_of(other)
+    touching = one.radii[:, None] + two.radii
+    distances = np.array([[clear_pairs(natural[a], natural[b]).min() for b in two.indices] for a in one.indices])
+    least: Floats32 = (np.minimum(distances, touching) - OVERLAP).astype(np.float32)
+    if other not in CHILDREN:
+        column = model.chains[DofGroup.WAIST].column
+        turned_back = column.joints[column.shares < 0.0]
+        least[0, ~np.isin(two.joints, turned_back)] = EXEMPT  # its joint is rooted there
+    return least
 
 
 def _natural_walk(model: BodyModel, goals: GoalFunction) -> Floats32:
@@ -84,32 +95,39 @@ def _natural_walk(model: BodyModel, goals: GoalFunction) -> Floats32:
 
 
 def _postures(uppers: Floats) -> Floats:
-    """Configurations (N, DOF) at the origin for upper bodies (N, DOF - 3)."""
+    """Configurations (N, DOF) at the origin for upper bodies (N, LOCAL)."""
     out = np.zeros((len(uppers), DOF))
-    out[:, DOF - uppers.shape[1] :] = uppers
+    out[:, DofGroup.ROOT.size :] = uppers
     return out
 
 
-def body_from_chest(model: BodyModel, pairs: SelfPairs, waists: Floats, roots: Floats) -> Floats32:
-    """The parts that are not of an arm (K, 6, N) in the chest frame, for waists (N, d) and root states (N, 7)."""
+def with_waist(waists: Floats) -> Floats:
+    """Upper bodies (N, LOCAL) with these waists (N, d), all else zero."""
+    out = np.zeros((len(waists), LOCAL))
+    out[:, columns_of(DofGroup.WAIST)] = waists
+    return out
+
+
+def seen_from_chest(model: BodyModel, capsules: Indices, uppers: Floats, roots: Floats) -> Floats32:
+    """Some capsules (K, 6, N) in the chest frame, for upper bodies (N, LOCAL) and root states (N, 7)."""
     here = roots.copy()
     here[:, :3] = 0.0
-    uppers = np.zeros((len(waists), sum(group.size for group in LOCAL_GROUPS)))
-    uppers[:, : DofGroup.WAIST.size] = waists
-    capsules = posture_capsules(model, _postures(uppers), here)[pairs.rest]
-    return _into_frames(capsules, *compose(*pelvis_frames(model, here), *chest_frames(model, waists)))
+    postures = _postures(uppers)
+    chests = chest_frames(model, np.ascontiguousarray(postures[:, DofGroup.WAIST.at]))
+    segments = posture_capsules(model, postures, here)[capsules]
+    return _into_frames(segments, *compose(*pelvis_frames(model, here), *chests))
 
 
 def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: Floats) -> Floats32:
-    """How much nearer parts could come to each other, the nearest pair's, metres: shape (3, N).
+    """How much nearer parts could come to each other, the nearest pair's, metres: shape (len(CHILDREN), N).
 
-    Of left arm and body, right arm and body, left arm and right arm, for root states (N, 7) and upper bodies
-    (N, DOF - 3): waist, left arm, right arm. Negative: in contact.
+    A row holds the pairs of one group and those that it must keep clear of, for root states (N, 7) and upper bodies
+    (N, LOCAL). Negative: in contact.
     """
     here = roots.copy()
     here[:, :3] = 0.0
     capsules = posture_capsules(model, _postures(uppers), here)
-    return pair_clearances(capsules, pairs.first, pairs.second, pairs.kinds, pairs.limits, 3)
+    return pair_clearances(capsules, pairs.first, pairs.second, pairs.kinds, pairs.limits, len(CHILDREN))
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Why there is no way: the fewest obstacles that together leave no posture of a slice.
+"""Why there is no path: the fewest obstacles that together leave no posture of a slice.
 
 Each candidate posture of the upper body, a triple (w, l, r), is closed by what touches it: its waist by some
 obstacles, its left arm under that waist by some, its right arm by some, and by nothing in the scene where the arms
@@ -27,16 +27,16 @@ class SliceContacts(NamedTuple):
 
 
 @exact_kernel
-def _all_closed(contacts: SliceContacts, previous: Bools) -> bool:
-    """Whether the kept obstacles (B,) close every candidate."""
+def _all_closed(contacts: SliceContacts, left_in: Bools) -> bool:
+    """Whether the obstacles that are left in, flags (B,), close every candidate."""
     _, waists, lefts = contacts.left.shape
     rights = contacts.right.shape[2]
     left, right = np.empty(lefts, np.bool_), np.empty(rights, np.bool_)
     for w in range(waists):
         closed = False
         left[:], right[:] = False, False
-        for b in range(previous.shape[0]):
-            if previous[b]:
+        for b in range(left_in.shape[0]):
+            if left_in[b]:
                 closed |= contacts.waist[b, w]
                 left |= contacts.left[b, w]
                 right |= contacts.right[b, w]
@@ -52,12 +52,13 @@ def _all_closed(contacts: SliceContacts, previous: Bools) -> bool:
 
 @exact_kernel
 def _needed(contacts: SliceContacts) -> Bools:
-    previous = np.empty(contacts.waist.shape[0], np.bool_)
-    previous[:] = True
-    for b in range(previous.shape[0]):
-        previous[b] = False
-        previous[b] = not _all_closed(contacts, previous)
-    return previous
+    """Which obstacles (B,) are left when those that can be missed are taken away one after the other."""
+    left_in = np.empty(contacts.waist.shape[0], np.bool_)
+    left_in[:] = True
+    for b in range(left_in.shape[0]):
+        left_in[b] = False
+        left_in[b] = not _all_closed(contacts, left_in)
+    return left_in
 
 
 def blocking_obstacles(contacts: SliceContacts) -> Indices | None:

@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group.problem import Group
+from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
 from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.motion_bounds import (
     KinematicChain,
@@ -25,16 +26,15 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion
-from elbowroom.planning.exact.upper_body_model import PostureSet, UpperBodyModel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-_CACHED = 5  # times the horizon: results of key intervals that are kept
+_CACHED = 5  # times the horizon: as many results of key intervals are remembered
 
 
 class GroupCache(NamedTuple):
-    """What the searches of one group look at and write down, whatever they are asked for."""
+    """One group and the results that its searches use and add to."""
 
     group: Group
     roots: RootSweeps
@@ -43,10 +43,10 @@ class GroupCache(NamedTuple):
 
 
 class PlanCaches(NamedTuple):
-    """All results, with room for plans of so many key intervals."""
+    """All results, of plans over at most `horizon` key intervals."""
 
     groups: Mapping[DofGroup, GroupCache]
-    own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the arms
+    own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the groups that hang on the waist
     own_motion: OwnMotion
     horizon: int
 
@@ -71,14 +71,14 @@ def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horiz
     waists = sweeps[DofGroup.WAIST]
     made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
     groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
-    own_nodes = {group: _own_nodes(model, group, sets[group]) for group in LOCAL_GROUPS[1:]}
+    own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
     return PlanCaches(groups, own_nodes, OwnMotion(model.own_parts), horizon)
 
 
 def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:
     """The same with another posture set for a group; its sweeps stay, as others' results are known by them."""
     old = caches.groups[group]
-    cache = old._replace(group=_group(made, _new_tables(made, caches.horizon), old.group.ways))
+    cache = old._replace(group=_group(made, _new_tables(made, caches.horizon), old.group.sweeps))
     own_nodes = dict(caches.own_nodes)
     if group in own_nodes:
         own_nodes[group] = _own_nodes(model, group, made)
@@ -98,12 +98,12 @@ def _new_sweeps(horizon: int) -> Mapping[DofGroup, LimbSweeps]:
     return {group: new_limb_sweeps(count, group.size, carries=group is DofGroup.WAIST) for group in LOCAL_GROUPS}
 
 
-def _own_nodes(model: UpperBodyModel, arm: DofGroup, made: PostureSet) -> OwnBodyNodes:
-    return model.own_body.own_body_nodes(LOCAL_GROUPS.index(arm) - 1, made.postures, made.resting)
+def _own_nodes(model: UpperBodyModel, group: DofGroup, made: PostureSet) -> OwnBodyNodes:
+    return model.own_body.own_body_nodes(group, made.postures, made.resting)
 
 
 @exact_kernel
 def begin_root_sweeps(cache: GroupCache, states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The `root_sweeps` of a new plan: the slots (n,) between key states (n+1, 7), each with its stamp (n,)."""
+    """The `root_sweeps` of a new plan: cache entries (n,) between key states (n+1, 7), each with its stamp (n,)."""
     begin_round(cache.roots.entries)
     return root_sweeps(cache.roots, cache.chain, states, interval, stamps)

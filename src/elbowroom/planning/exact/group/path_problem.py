@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.planning.exact.group.caches import PlanCaches
-from elbowroom.planning.exact.group.problem import GroupTask
-from elbowroom.planning.exact.joint.guide import Guide
+from elbowroom.planning.exact.group.problem import GroupTask, Guide
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState
 from elbowroom.planning.root.path import RootPath
@@ -18,21 +17,21 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
-_NONE = np.zeros((0, 0), np.float32)  # of one who only asks for the postures of key times alone
+_NONE = np.zeros((0, 0), np.float32)  # where only the extra nodes are asked for
 
 
 class PathProblem(NamedTuple):
-    """One root path to be dressed."""
+    """What the upper body is asked for along one root path."""
 
     path: RootPath
     goals: Floats  # (n+1, 11)
     last: PreviousPlan | None  # the last plan
     previous: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
     begins: StartState
-    roots: Longs  # (n,) slots of the root ways
-    near: Along
-    anew: RequiredMargins  # clearances that are asked for, apart from what the last plan was allowed
-    required: RequiredMargins  # with that
+    roots: Longs  # (n,) cache entries of the root's sweeps
+    near: Along  # the obstacles
+    anew: RequiredMargins  # clearances that are asked for, whatever the last plan was allowed
+    required: RequiredMargins  # the same, less where the last plan was allowed less
 
     @staticmethod
     def of(
@@ -55,16 +54,16 @@ class PathProblem(NamedTuple):
         return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.required))
 
     def task(
-        self, group: DofGroup, carriers: Longs, extra: Floats32 | None = None, follow: Guide | None = None
+        self, group: DofGroup, carriers: Longs, added: Floats32 | None = None, follow: Guide | None = None
     ) -> GroupTask:
-        """What one group has to do, on carriers' ways in the slots `carriers` (n,).
+        """What one group has to do on its carriers' sweeps, cache entries `carriers` (n,).
 
-        `extra` (n+1, W+OWN) is added to the prices of its nodes; it may `follow` a guide, which has prices of its own.
+        `added` (n+1, W+EXTRA) is added to the costs of its nodes; it may `follow` a guide, which adds costs too.
         """
-        at, number, begins = columns_of(group), LOCAL_GROUPS.index(group), self.begins
+        at, number, begins = columns_of(group), SEARCH_ORDER.index(group), self.begins
         previous = self.previous[:, at] if follow is None else follow.keys
-        own = _NONE if extra is None else extra
-        costs = own if follow is None else follow.extra if extra is None else follow.extra + own
+        own = _NONE if added is None else added
+        costs = own if follow is None else follow.added if added is None else follow.added + own
         return GroupTask(
             np.ascontiguousarray(self.goals[:, at]),
             np.ascontiguousarray(previous),
@@ -83,5 +82,5 @@ class PathProblem(NamedTuple):
 
 
 def no_costs(caches: PlanCaches, group: DofGroup, horizon: int) -> Floats32:
-    """Nothing (n+1, W+OWN) to be added to the prices of a group's nodes."""
+    """Zeros (n+1, W+EXTRA), to be added to the costs of a group's nodes."""
     return np.zeros((horizon + 1, caches.group(group).postures.moves.shape[1] + EXTRA), np.float32)

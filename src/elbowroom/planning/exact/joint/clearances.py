@@ -1,8 +1,8 @@
-"""What the joint step looks up: clearances of arm postures under many waists.
+"""Clearances of a child's postures under many waists, for the joint step.
 
-An arm's capsules stand still in the chest frame, so each waist of a slice brings its own obstacles, moved into the
-chest frame that this waist makes, at the moments around the key time. This is the dear part of the joint step;
-therefore it is done slice by slice and waist by waist, as far as it is asked for.
+A child's capsules stand still in the chest frame, so each waist of a slice brings its own obstacles, moved into the
+chest frame that this waist makes, at the moments around the key time. This is the costly part of the joint
+step; so it is done slice by slice and waist by waist, as far as it is asked for.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ FAR = np.float32(1e3)  # metres: nothing near
 
 
 class Lanes(NamedTuple):
-    """Postures in blocks of sixteen: those of the graph, and behind them those of one key time alone."""
+    """Postures in blocks of sixteen: those of the group, and behind them the extra nodes of one key time."""
 
     lanes: Floats32  # (B, C, 7, 16)
     balls: Floats  # (B, C, 4)
@@ -37,7 +37,7 @@ def clearances_under(
     """The least clearances (F, 16 B) of all postures over some moments, in each of F chains of frames.
 
     `places` (F, m, 3) and `turns` (F, m, 4) are the carrier's frames in the world at the moments; only `chosen` (F,)
-    chains are looked at, what is beyond some 6 cm may be left out. Also the capsules that were checked.
+    chains are checked, and obstacles beyond some 6 cm may be left out. Also the number of capsules checked.
     """
     blocks, lanes = postures.lanes.shape[0], postures.lanes.shape[3]
     out = np.empty((places.shape[0], blocks, lanes), np.float32)

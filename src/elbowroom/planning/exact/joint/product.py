@@ -1,17 +1,18 @@
-"""Waist, left arm and right arm at once: the cheapest way through the product of their postures, exactly.
+"""Waist, left arm and right arm at once: the cheapest path through the product of their postures, exactly.
 
-The arms hang on the waist, so a posture of the whole upper body is a triple (w, l, r) that costs p(w) + p(w, l) +
-p(w, r), infinite where it is not free; arm may also run into arm, a table (l, r). Steps are the groups' own, and their
+The arms hang on the waist, so a posture of the whole upper body is a triple (w, l, r) that costs c(w) + c(w, l) +
+c(w, r), infinite where it is not free; arm may also run into arm, a table (l, r). Edges are the groups' own, and their
 costs add up. So the least cost over all predecessors falls apart into three small minimisations,
 
-    V'(w', l', r') = p(w', l', r') + min_w (S(w, w') + min_l (S(l, l') + min_r (S(r, r') + V(w, l, r)))),
+    V'(w', l', r') = c(w', l', r') + min_w (E(w, w') + min_l (E(l, l') + min_r (E(r, r') + V(w, l, r)))),
 
-instead of one over the whole product. Even so, fifty waists and two hundred postures an arm are two million triples a
-slice. Few of them matter: what a way through one posture costs at least is known from the group alone (the other
-groups at their best). The product is therefore first searched among the best K postures of each group and slice; a
-way that is found there costs U, and whatever could not be part of a cheaper one is left out for good. If none is found,
-K grows. If the first few K find none, it is asked whether there is any (`joint_reach`).
-The answer is that of the whole product: the same feasibility, the same optimum.
+instead of one over the whole product. A child that nothing but the waist can hinder enters as its least cost under
+each waist, within c(w). Even so, fifty waists and two hundred postures an arm are two million triples a slice. Few of
+them matter: what a path through one posture costs at least is known from the group alone (the others at their best).
+The product is therefore first searched among the best K postures of each group and slice; a path that is found there
+costs U, and whatever could not be part of a cheaper one is left out for good. If none is found, K grows. If the first
+few K find none, it is asked whether there is any (`reachability`). The answer is that of the whole product: the same
+feasibility, the same optimum.
 """
 
 from typing import NamedTuple
@@ -30,16 +31,16 @@ Indices = NDArray[np.int64]
 
 _FIRST = 8  # postures of each group and slice that are tried at first
 _GROWTH = 3
-_FEW = 24  # postures of each: if so many lead nowhere, it is asked first whether any way does
+_FEW = 24  # postures of each: if so many lead nowhere, it is asked first whether any path exists
 _ROUNDING = 1e-4  # squared radians: more than the rounding of a sum in single precision
 
 
 class JointPath(NamedTuple):
-    """The outcome."""
+    """How a search of the product ended."""
 
     status: PlanStatus
-    reach: Reach | None  # how deep the ways lead, where it was proved that none leads to the end: EXHAUSTED
-    cost: float  # of the cheapest way to the last depth; infinite unless FOUND
+    reach: Reach | None  # how deep paths lead, where it was proved that none leads to the end: EXHAUSTED
+    cost: float  # of the cheapest path to the last depth; infinite unless FOUND
     nodes: Indices  # (n+1, 3) waist, left and right posture at each depth; (0, 3) unless FOUND
     states: int  # triples that were settled
 
@@ -48,27 +49,27 @@ _NONE = np.empty((0, 3), np.int64)
 
 
 def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
-    """The cheapest way from depth 0 to the last, or the proof that there is none.
+    """The cheapest path from depth 0 to the last, or the proof that there is none.
 
     At most `budget` triples are settled; the proof is made once the first few selections have found nothing.
     """
     bounds = bounds_of(problem)
     everyone = [np.isfinite(through) for through in bounds.through]
     possible = all(bool(mask.any(axis=1).all()) for mask in everyone)
-    states, previous, proved = 0, _FIRST, False
+    states, count, proved = 0, _FIRST, False
     while True:
-        if not proved and (not possible or previous > _FEW):
+        if not proved and (not possible or count > _FEW):
             deepest, proved = reach(problem), True
-            if deepest.depth < len(problem.waist_steps):
+            if deepest.depth < len(problem.waist_edges):
                 return JointPath(PlanStatus.EXHAUSTED, deepest, np.inf, _NONE, states)
-        chosen = [_cheapest(through, previous) for through in bounds.through]
+        chosen = [_cheapest(through, count) for through in bounds.through]
         states += _size(chosen)
         if states > budget:
             return _stopped(states)
         cost, nodes = sweep(problem, *chosen)
         if np.isfinite(cost):
             break
-        previous *= _GROWTH
+        count *= _GROWTH
     needed = [through <= cost + _ROUNDING for through in bounds.through]
     if not all(bool((mask >= need).all()) for mask, need in zip(chosen, needed, strict=True)):
         states += _size(needed)
@@ -82,15 +83,16 @@ def _stopped(states: int) -> JointPath:
     return JointPath(PlanStatus.OUT_OF_BUDGET, None, np.inf, _NONE, states)
 
 
-def _cheapest(through: Floats32, previous: int) -> Bools:
-    """The `kept` cheapest postures of every slice, and what costs the same as the dearest of them."""
-    if previous >= through.shape[1]:
+def _cheapest(through: Floats32, count: int) -> Bools:
+    """The `count` cheapest postures of every slice, and what costs the same as the dearest of them, (n+1, V)."""
+    if count >= through.shape[1]:
         return np.isfinite(through)
-    most = np.partition(through, previous - 1, axis=1)[:, previous - 1 : previous]
+    most = np.partition(through, count - 1, axis=1)[:, count - 1 : count]
     chosen: Bools = np.isfinite(through) & (through <= most)
     return chosen
 
 
 def _size(chosen: list[Bools]) -> int:
+    """The number of triples in all slices."""
     waist, left, right = (mask.sum(axis=1, dtype=np.int64) for mask in chosen)
     return int((waist * left * right).sum())

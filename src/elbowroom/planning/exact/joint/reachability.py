@@ -1,8 +1,8 @@
-"""How deep any way leads through the product of postures: sets of triples, the right arm's postures as bits.
+"""How deep any path leads through the product of postures: sets of triples, the right arm's postures as bits.
 
-That there is no way at all can only be said when every triple was looked at. Reaching needs no costs: a slice is one
-bit for each triple, 64 at a time, and a step is the union of neighbours' sets. In the open, where the sets under many
-waists and left postures are equal, the same union is not made twice.
+That there is no path at all can only be said when every triple was checked. Reaching needs no costs: a slice is one
+bit for each triple, 64 at a time, and following edges is the union of neighbours' sets. In the open, where the sets
+under many waists and left postures are equal, the same union is not made twice.
 """
 
 from typing import NamedTuple
@@ -42,7 +42,7 @@ def _packed(flags: Bools) -> Bits:
 
 @exact_kernel
 def _open(costs: Floats32) -> Bools:
-    """Which prices or steps (N, R) are finite."""
+    """Which costs (N, R) are finite."""
     out = np.empty(costs.shape, np.bool_)
     for n in range(costs.shape[0]):
         for r in range(costs.shape[1]):
@@ -68,19 +68,20 @@ def _free(problem: Problem, depth: int) -> Bits:
 
 
 @exact_kernel
-def _keep(known: Bits, free: Bits) -> bool:
-    """Keep those triples of `known` that are free; whether there are any."""
-    previous = np.uint64(0)
+def _intersect(known: Bits, free: Bits) -> bool:
+    """Leave in `known` the triples that are free; whether there are any."""
+    any_left = np.uint64(0)
     for w in range(known.shape[0]):
         for n in range(known.shape[1]):
             for i in range(known.shape[2]):
                 known[w, n, i] &= free[w, n, i]
-                previous |= known[w, n, i]
-    return bool(previous != 0)
+                any_left |= known[w, n, i]
+    return bool(any_left != 0)
 
 
 @exact_kernel
 def _same(first: Bits, second: Bits) -> bool:
+    """Whether two sets (words,) are equal."""
     differing = np.uint64(0)
     for i in range(first.shape[0]):
         differing |= first[i] ^ second[i]
@@ -88,8 +89,8 @@ def _same(first: Bits, second: Bits) -> bool:
 
 
 @helper
-def _stepped(known: Bits, steps: Bits) -> Bits:
-    """The right arm's step: of each set (W, L, words) the union of its members' neighbours, rows `steps` (R, words)."""
+def _along_right(known: Bits, edges: Bits) -> Bits:
+    """Along the right arm's edges: of each set (W, L, words) the union of its members' neighbours, rows (R, words)."""
     out = np.empty(known.shape, np.uint64)
     last, union = np.empty(known.shape[2], np.uint64), np.empty(known.shape[2], np.uint64)
     last[:], union[:] = 0, 0
@@ -99,29 +100,29 @@ def _stepped(known: Bits, steps: Bits) -> Bits:
             if not _same(here, last):
                 for i in range(union.shape[0]):
                     last[i], union[i] = here[i], 0
-                for r in range(steps.shape[0]):
+                for r in range(edges.shape[0]):
                     if here[r // _WORD] >> np.uint64(r % _WORD) & np.uint64(1):
                         for i in range(union.shape[0]):
-                            union[i] |= steps[r, i]
+                            union[i] |= edges[r, i]
             for i in range(union.shape[0]):
                 out[w, n, i] = union[i]
     return out
 
 
 @helper
-def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
-    """The steps of left arm and waist: unions of sets (W, L, words)."""
+def _along_others(known: Bits, waist_edges: Bools, left_edges: Bools) -> Bits:
+    """Along the edges of left arm and waist: unions of sets (W, L, words)."""
     half, out = np.empty(known.shape, np.uint64), np.empty(known.shape, np.uint64)
     half[:], out[:] = 0, 0
     for n in range(known.shape[1]):
         for target in range(known.shape[1]):
-            if left_steps[n, target]:
+            if left_edges[n, target]:
                 for w in range(known.shape[0]):
                     for i in range(known.shape[2]):
                         half[w, target, i] |= known[w, n, i]
     for w in range(known.shape[0]):
         for target in range(known.shape[0]):
-            if waist_steps[w, target]:
+            if waist_edges[w, target]:
                 for n in range(known.shape[1]):
                     for i in range(known.shape[2]):
                         out[target, n, i] |= half[w, n, i]
@@ -130,6 +131,7 @@ def _merged(known: Bits, waist_steps: Bools, left_steps: Bools) -> Bits:
 
 @exact_kernel
 def _unpacked(bits: Bits, size: int) -> Bools:
+    """The words (W, L, words) as flags (W, L, R), R being `size`."""
     out = np.empty((bits.shape[0], bits.shape[1], size), np.bool_)
     for w in range(bits.shape[0]):
         for n in range(bits.shape[1]):
@@ -140,14 +142,14 @@ def _unpacked(bits: Bits, size: int) -> Bools:
 
 @exact_kernel
 def _after(problem: Problem, depth: int, known: Bits) -> Bits:
-    """The triples of the next slice to which a step leads from `known`, free or not."""
-    stepped = _stepped(known, _packed(_open(problem.right_steps[depth])))
-    return _merged(stepped, _open(problem.waist_steps[depth]), _open(problem.left_steps[depth]))
+    """The triples of the next slice to which edges lead from `known`, free or not."""
+    reached = _along_right(known, _packed(_open(problem.right_edges[depth])))
+    return _along_others(reached, _open(problem.waist_edges[depth]), _open(problem.left_edges[depth]))
 
 
 @exact_kernel
-def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
-    """The triples (W, L, R) of the next slice to which a step leads from some of these, free or not."""
+def next_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
+    """The triples (W, L, R) of the next slice to which edges lead from some of these, free or not."""
     waist, left, right = triples.shape
     bits = _packed(triples.reshape(waist * left, right)).reshape(waist, left, (right + _WORD - 1) // _WORD)
     return _unpacked(_after(problem, depth, bits), right)
@@ -155,15 +157,15 @@ def stepped_triples(problem: Problem, depth: int, triples: Bools) -> Bools:
 
 @exact_kernel
 def reach(problem: Problem) -> Reach:
-    """The deepest slice to which a way leads, every triple of every slice looked at."""
+    """The deepest slice to which a path leads, every triple of every slice checked."""
     size = problem.right.shape[2]
-    depth, last = _START, problem.waist_steps.shape[0]
+    depth, last = _START, problem.waist_edges.shape[0]
     known = _free(problem, depth)
-    if not _keep(known, known):
+    if not _intersect(known, known):
         return Reach(-1, _unpacked(known, size))
     while depth < last:
         after = _after(problem, depth, known)
-        if not _keep(after, _free(problem, depth + 1)):
+        if not _intersect(after, _free(problem, depth + 1)):
             break
         depth, known = depth + 1, after
     return Reach(depth, _unpacked(known, size))

@@ -1,9 +1,10 @@
-"""The joint step along a root path: the product of waist, left arm and right arm, filled in as far as it is needed.
+"""The joint step along a root path: the product of waist and arms, filled in as far as it is needed.
 
-What arms cost under a waist has to be looked up for every waist. So the waists that are cheapest by themselves are
-filled in first, and the product among them is searched exactly (`joint`). A way that is found costs U: every waist
-through which a way could be cheaper, were nothing near its arms, is filled in too and the product searched again. So
-the answer is that of all waists, though most were never looked at; and there is none only when all of them were.
+What the waist's children cost under a waist has to be computed for every waist. So the waists that are cheapest by
+themselves are filled in first, and the product among them is searched exactly (`product`). A path that is found
+costs U: every waist through which a path could be cheaper, were nothing near its children, is filled in too and the
+product searched again. So the answer is that of all waists, though most were never filled in; and there is none only
+when all of them were.
 """
 
 from functools import cached_property
@@ -12,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import ARMS, SEARCH_ORDER
 from elbowroom.body.kinematics import chest_frames
 from elbowroom.jit import kernel
-from elbowroom.planning.exact.joint.bounds import Problem, way_costs
+from elbowroom.planning.exact.joint.bounds import Problem, path_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
 from elbowroom.planning.exact.joint.product import JointPath, joint_path
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
@@ -23,6 +25,7 @@ from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.axis_distances import arm_clearances
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import pose
+from elbowroom.planning.model.self_pairs import carriers_of, with_waist
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import PlanStatus
 from elbowroom.world.obstacles.layout import Spans
@@ -33,16 +36,21 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
+# The groups whose postures are combined, by their numbers in the order of search: the waist, and those of its children
+# that may run into each other. Every other child is as well as it can be under each waist.
+PRODUCT = (0, *(SEARCH_ORDER.index(arm) for arm in ARMS))
+_PAIR = PRODUCT[1:]
+_ALONE = tuple(g for g in range(1, len(SEARCH_ORDER)) if g not in PRODUCT)
 _FIRST = 8  # waists of each slice that are filled in at first
 _GROWTH = 3
-_ALIKE = 0.1  # radians, of both ends together: steps so near to one that touches are ruled out with it
+_ALIKE = 0.1  # radians, of both ends together: edges so near to one that touches are closed with it
 _INFINITE = np.float32(np.inf)
 
 
 class JointSettings(NamedTuple):
     """What a joint step prefers and where it ends."""
 
-    step: float  # weight of steps
+    step: float  # weight of edges
     near: float  # weight of lacking comfort
     comfort: float  # metres
     budget: int = 4_000_000  # triples settled
@@ -50,12 +58,12 @@ class JointSettings(NamedTuple):
 
 
 class GroupNodes(NamedTuple):
-    """The nodes of a group: W postures, the last ones repeated to whole blocks, and E of each key time alone."""
+    """The nodes of a group: W postures, the last one repeated to whole blocks, and E extra ones of each key time."""
 
     postures: Postures
-    own: Floats  # (n+1, E, d)
-    base: Floats32  # (n+1, W+E) their prices; an arm's apart from what is near; infinite: not to be used
-    prices_alone: Floats32  # (n+1, W+E) the same, for the waist too apart from what is near
+    extras: Floats  # (n+1, E, d)
+    base: Floats32  # (n+1, W+E) their costs; a child's as if nothing were near; infinite: not to be used
+    costs_alone: Floats32  # (n+1, W+E) the same, for the waist too as if nothing were near
     goals: Floats  # (n+1, d)
     margins: Floats  # (n+1,) metres of clearance that a node needs
 
@@ -75,27 +83,29 @@ class JointStep:
     def __init__(
         self,
         body: OwnBody,
-        waist: GroupNodes,
-        arms: tuple[GroupNodes, GroupNodes],
+        nodes: tuple[GroupNodes, ...],
         around: Surroundings,
         settings: JointSettings,
     ) -> None:
-        self.nodes = (waist, *arms)
+        """The `nodes` of all groups in the order of search."""
+        self.nodes = nodes
         self.around, self.settings = around, settings
         self.checks, self.states = 0, 0
         self._body = body
-        depths, waists = waist.base.shape
+        depths, waists = nodes[0].base.shape
         self.filled = np.zeros((depths, waists), np.bool_)
-        self.costs = [np.full((depths, waists, arm.base.shape[1]), _INFINITE, np.float32) for arm in arms]
+        # What the nodes of the pair cost under each waist, and what the other children cost there at least.
+        self.costs = [np.full((depths, waists, nodes[g].base.shape[1]), _INFINITE, np.float32) for g in _PAIR]
+        self._others = np.zeros((depths, waists), np.float32)
         self._lanes: dict[tuple[int, int], Lanes] = {}
-        self._alone: dict[int, Floats32] = {}  # what ways of a group cost by themselves
+        self._alone: dict[int, Floats32] = {}  # what paths of a group cost by themselves
 
     def search(self, go_on: GoOn = keep_going) -> JointPath:
         """The cheapest path for all three groups; nodes count as in `GroupNodes`. `go_on` is called now and then."""
-        for g in range(len(self.nodes)):
+        for g in PRODUCT:
             if g not in self._alone:
-                self._alone[g] = way_costs(self.nodes[g].base, self.steps[g])
-        alone = self._alone[0] + self._alone[1].min() + self._alone[2].min()
+                self._alone[g] = path_costs(self.nodes[g].base, self.edges[g])
+        alone = self._alone[0] + self._alone[_PAIR[0]].min() + self._alone[_PAIR[1]].min()
         count = _FIRST
         while True:
             whole = count >= alone.shape[1]
@@ -103,63 +113,69 @@ class JointStep:
             if not whole:
                 wanted &= alone <= np.partition(alone, count - 1, axis=1)[:, count - 1 : count]
             go_on()
-            way = self._among(wanted)
-            if way.status is PlanStatus.FOUND:
+            path = self._among(wanted)
+            if path.status is PlanStatus.FOUND:
                 break
-            if whole or way.status is PlanStatus.OUT_OF_BUDGET or self._spent:
-                return way
+            if whole or path.status is PlanStatus.OUT_OF_BUDGET or self._spent:
+                return path
             count *= _GROWTH
-        needed = np.isfinite(alone) & (alone <= way.cost)
+        needed = np.isfinite(alone) & (alone <= path.cost)
         if (self.filled >= needed).all():
-            return way
+            return path
         go_on()
         better = self._among(self.filled | needed)
-        return way if better.status is PlanStatus.OUT_OF_BUDGET else better
+        return path if better.status is PlanStatus.OUT_OF_BUDGET else better
 
     @property
     def _spent(self) -> bool:
         return self.checks > self.settings.checks
 
     def _among(self, waists: Bools) -> JointPath:
-        """The cheapest way among some waists (n+1, W+E), filled in first."""
+        """The cheapest path among some waists (n+1, W+E), filled in first."""
         for depth in range(len(waists)):
             self.fill(depth, waists[depth])
-        way = joint_path(self.problem(), self.settings.budget - self.states)
-        self.states += way.states
-        return way
+        path = joint_path(self.problem(), self.settings.budget - self.states)
+        self.states += path.states
+        return path
 
     def problem(self) -> Problem:
         """The product as far as it is filled in."""
-        waist = np.where(self.filled, self.nodes[0].base, _INFINITE)
-        return Problem(waist, self.costs[0], self.costs[1], self.steps[0], self.steps[1], self.steps[2], self.apart)
+        waist = np.where(self.filled, self.nodes[0].base + self._others, _INFINITE)
+        of_waist, of_left, of_right = (self.edges[g] for g in PRODUCT)
+        return Problem(waist, self.costs[0], self.costs[1], of_waist, of_left, of_right, self.apart)
 
     def fill(self, depth: int, waists: Bools) -> None:
-        """Look up the arms under some waists (W+E,) of a slice, those that are not yet known."""
+        """Compute the children's costs under some waists (W+E,) of a slice, those that are not known yet."""
         chosen = np.flatnonzero(waists & ~self.filled[depth] & np.isfinite(self.nodes[0].base[depth]))
         if not len(chosen):
             return
         self.filled[depth, chosen] = True
         inner = self.configurations(0, depth)[chosen]
         frames = self.chests(depth, inner)
-        for side, group in enumerate(self.nodes[1:]):
-            lanes = self.lanes(1 + side, depth)
-            every = np.ones(len(chosen), np.bool_)
+        for g in range(1, len(self.nodes)):
+            group, lanes, every = self.nodes[g], self.lanes(g, depth), np.ones(len(chosen), np.bool_)
             clear, checks = clearances_under(lanes, *frames, span_of(self.around.obstacles, depth), every)
             self.checks += checks
             clear = clear[:, : group.base.shape[1]]
             if depth > 0:
-                clear[self.touches_body(side, depth, chosen)] = -np.inf
+                clear[self.touches_body(g, depth, chosen)] = -np.inf
             lack = np.maximum(np.float32(self.settings.comfort) - clear, np.float32(0.0))
-            price = group.base[depth] + np.float32(self.settings.near) * np.minimum(lack, 1.0) ** 2
-            price[clear < group.margins[depth]] = _INFINITE
-            self.costs[side][depth, chosen] = price
+            cost = group.base[depth] + np.float32(self.settings.near) * np.minimum(lack, 1.0) ** 2
+            cost[clear < group.margins[depth]] = _INFINITE
+            if g in _PAIR:
+                self.costs[_PAIR.index(g)][depth, chosen] = cost
+            else:
+                self._others[depth, chosen] += cost.min(axis=1)
 
-    def touches_body(self, side: int, depth: int, waists: Indices) -> Bools:
-        """Which nodes of an arm touch the body under some waists (F,) of a slice, (F, W+E)."""
+    def touches_body(self, g: int, depth: int, waists: Indices) -> Bools:
+        """Which nodes of a child touch what the waist alone poses under some waists (F,) of a slice, (F, W+E)."""
+        lanes, size, group = self.lanes(g, depth), self.nodes[g].base.shape[1], SEARCH_ORDER[g]
+        out = np.zeros((len(waists), size), np.bool_)
+        carriers = carriers_of(group)
+        if not carriers:
+            return out
         states = np.repeat(self.around.states[depth : depth + 1], len(waists), axis=0)
-        parts = self._body.parts(side, self.configurations(0, depth)[waists], states, None)
-        lanes, size = self.lanes(1 + side, depth), self.nodes[1 + side].base.shape[1]
-        out = np.empty((len(waists), size), np.bool_)
+        parts = self._body.parts(group, carriers, with_waist(self.configurations(0, depth)[waists]), states)
         for row, axes in enumerate(parts.axes):
             out[row] = touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
         return out
@@ -167,7 +183,7 @@ class JointStep:
     def configurations(self, group: int, depth: int) -> Floats:
         """The configurations (W+E, d) of a group's nodes at a depth."""
         nodes = self.nodes[group]
-        return np.concatenate([_padded(nodes.postures), nodes.own[depth]])
+        return np.concatenate([_padded(nodes.postures), nodes.extras[depth]])
 
     def chests(self, depth: int, waists: Floats) -> tuple[Floats, Floats]:
         """The chest's frames (F, m, 3), (F, m, 4) in the world under waists (F, d), at a slice's moments."""
@@ -183,25 +199,25 @@ class JointStep:
     def lanes(self, group: int, depth: int) -> Lanes:
         """All of a group's nodes at a depth as lanes."""
         if (group, depth) not in self._lanes:
-            known, own = self.nodes[group].postures, self.nodes[group].own[depth]
-            lanes, balls = blocks_of(pose(known.limb, own), known.limb.radii)
+            known, extras = self.nodes[group].postures, self.nodes[group].extras[depth]
+            lanes, balls = blocks_of(pose(known.limb, extras), known.limb.radii)
             both = np.concatenate([known.lanes, lanes]), np.concatenate([known.balls, balls])
             self._lanes[group, depth] = Lanes(*both, known.reach)
         return self._lanes[group, depth]
 
     def close(self, group: int, depth: int, nodes: Indices) -> None:
-        """Rule out the step of a group between two nodes (2,) from `depth` to the next, and those that are like it."""
+        """Close the edge of a group between two nodes (2,) from `depth` to the next, and those that are like it."""
         near = []
         for at, node in enumerate(nodes):
             known = self.configurations(group, depth + at)
             near.append(np.sum((known - known[node]) ** 2, axis=1))
-        self.steps[group][depth][near[0][:, None] + near[1] <= _ALIKE * _ALIKE] = np.inf
+        self.edges[group][depth][near[0][:, None] + near[1] <= _ALIKE * _ALIKE] = np.inf
         self._alone.pop(group, None)
 
     @cached_property
-    def steps(self) -> list[Floats32]:
-        """What the groups' steps cost, each (n, W+E, W+E)."""
-        return [_steps(group, self.settings.step) for group in self.nodes]
+    def edges(self) -> list[Floats32]:
+        """What the groups' edges cost, each (n, W+E, W+E)."""
+        return [_edge_costs_of(group, self.settings.step) for group in self.nodes]
 
     @cached_property
     def apart(self) -> Bools:
@@ -212,16 +228,25 @@ class JointStep:
 
     @cached_property
     def _known_apart(self) -> tuple[list[Floats32], Bools]:
-        segments = [_padded_segments(group.postures) for group in self.nodes[1:]]
-        return segments, arm_clearances(segments[0], segments[1], self._body.pairs.between) >= SPARE
+        segments = [_padded_segments(self.nodes[g].postures) for g in _PAIR]
+        return segments, arm_clearances(segments[0], segments[1], self._between) >= SPARE
+
+    @cached_property
+    def _between(self) -> Floats32:
+        """How near the axes of the pair's capsules may come to each other, (C, C) metres."""
+        left, right = (SEARCH_ORDER[g] for g in _PAIR)
+        return np.ascontiguousarray(self._body.pairs.beside(left, (right,))[1])
 
     def apart_at(self, depth: int) -> Bools:
         """Which arms keep clear of each other in a slice, (L, R)."""
         segments, known = self._known_apart
-        own = [np.ascontiguousarray(pose(group.postures.limb, group.own[depth])) for group in self.nodes[1:]]
+        own = [
+            np.ascontiguousarray(pose(group.postures.limb, group.extras[depth]))
+            for group in (self.nodes[g] for g in _PAIR)
+        ]
         apart = np.empty((self.costs[0].shape[2], self.costs[1].shape[2]), np.bool_)
         apart[: known.shape[0], : known.shape[1]] = known
-        every, between = np.concatenate([segments[1], own[1]], axis=2), self._body.pairs.between
+        every, between = np.concatenate([segments[1], own[1]], axis=2), self._between
         apart[known.shape[0] :] = arm_clearances(own[0], every, between) >= SPARE
         apart[: known.shape[0], known.shape[1] :] = arm_clearances(segments[0], own[1], between) >= SPARE
         return apart
@@ -234,21 +259,22 @@ def _padded(postures: Postures) -> Floats:
 
 
 def _padded_segments(postures: Postures) -> Floats32:
+    """The capsules (C, 6, W), the last posture's repeated to whole blocks."""
     width = len(postures.lanes) * BLOCK
     return np.ascontiguousarray(postures.segments[:, :, np.minimum(np.arange(width), postures.segments.shape[2] - 1)])
 
 
-def _steps(group: GroupNodes, weight: float) -> Floats32:
-    """What steps cost, (n, W+E, W+E): `weight` times the squared change of the deviation from the goal."""
+def _edge_costs_of(group: GroupNodes, weight: float) -> Floats32:
+    """What edges cost, (n, W+E, W+E): `weight` times the squared change of the deviation from the goal."""
     longest = group.postures.step**2 * (1.0 + 1e-6)
-    known = np.repeat(_padded(group.postures)[None], len(group.own), axis=0)
-    nodes = np.concatenate([known, group.own], axis=1)
-    return _step_costs(nodes, group.own.shape[1], group.postures.moves, group.goals, longest, weight)
+    known = np.repeat(_padded(group.postures)[None], len(group.extras), axis=0)
+    nodes = np.concatenate([known, group.extras], axis=1)
+    return _edge_costs(nodes, group.extras.shape[1], group.postures.moves, group.goals, longest, weight)
 
 
 @kernel
-def _step_costs(nodes: Floats, extra: int, moves: Floats32, goals: Floats, longest: float, weight: float) -> Floats32:
-    """`_steps` for nodes (n+1, W+E, d), the last `extra` of a key time alone; `moves` (V, W) are squared lengths."""
+def _edge_costs(nodes: Floats, extra: int, moves: Floats32, goals: Floats, longest: float, weight: float) -> Floats32:
+    """`_edge_costs_of` for nodes (n+1, W+E, d), the last `extra` are extra nodes; `moves` (V, W) squared lengths."""
     count, size = nodes.shape[1], nodes.shape[2]
     width = count - extra
     out, slopes = np.empty((nodes.shape[0] - 1, count, count), np.float32), np.empty((2, count))
@@ -256,11 +282,11 @@ def _step_costs(nodes: Floats, extra: int, moves: Floats32, goals: Floats, longe
         square = 0.0
         slopes[:] = 0.0
         for j in range(size):
-            way = goals[t + 1, j] - goals[t, j]
-            square += weight * way * way
+            change = goals[t + 1, j] - goals[t, j]
+            square += weight * change * change
             for i in range(2):
                 for v in range(count):
-                    slopes[i, v] += 2.0 * weight * way * nodes[t + i, v, j]
+                    slopes[i, v] += 2.0 * weight * change * nodes[t + i, v, j]
         for v in range(count):
             row = out[t, v]
             for u in range(count):

@@ -13,12 +13,12 @@ Bools = NDArray[np.bool_]
 
 
 class ClosedEdges(NamedTuple):
-    """A table of edges for each key interval in which paths touched; there is room for M of them."""
+    """A table of edges for each key interval in which paths touched, M of them."""
 
     tables: Longs  # (n,) the number of each interval's table; -1: all its edges are open
     closed: Bools  # (M, W+E, W+E) which edges are closed
-    seen: Bools  # (M, W+E, W+E) which edges were looked at
-    slack: Floats  # (M,) squared radians: how much dearer paths were looked at
+    seen: Bools  # (M, W+E, W+E) which edges were checked
+    slack: Floats  # (M,) squared radians: how much dearer paths were checked
 
 
 @exact_kernel
@@ -36,12 +36,12 @@ def with_tables(edges: ClosedEdges, touches: Bools) -> ClosedEdges:
     used = 0
     for k in range(touches.shape[0]):
         used = max(used, edges.tables[k] + 1)
-    needed, room = used, edges.slack.shape[0]
+    needed, held = used, edges.slack.shape[0]
     for k in range(touches.shape[0]):
         if touches[k] and edges.tables[k] < 0:
             edges.tables[k] = needed
             needed += 1
-    if needed <= room:
+    if needed <= held:
         return edges
     shape = (needed, edges.closed.shape[1], edges.closed.shape[2])
     more = ClosedEdges(edges.tables, np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros(needed))

@@ -1,8 +1,8 @@
-"""What the cheapest way through a time lattice to each node costs: dynamic programming, each node settled once.
+"""What the cheapest path through a time lattice to each node costs: dynamic programming, each node settled once.
 
-A step from a to b costs w |b - a - g|^2 (`lattice`), and that is |b - a|^2 + 2 a.g + |g|^2 - 2 b.g: the first part is a
-table that never changes, the others belong to the source or to the target alone. What is left of a row is the (min, +)
-product of a vector with a constant matrix, in which every target is a lane.
+An edge from a to b costs w |b - a - g|^2 (`lattice`), and that is w (|b - a|^2 + 2 a.g + |g|^2 - 2 b.g): the first part
+is a table that never changes, the others belong to the source or to the target alone. What is left of a row is the
+(min, +) product of a vector with a constant matrix, in which every target is a lane.
 """
 
 from typing import Any
@@ -16,12 +16,12 @@ from elbowroom.planning.exact.lattice.lattice import (
     HOLD,
     Lattice,
     Work,
+    extra_edge_square,
     least_in,
-    measure_own,
-    own_move,
+    measure_extras,
     slopes_of,
 )
-from elbowroom.planning.exact.lattice.paths import kept_way, own_way
+from elbowroom.planning.exact.lattice.paths import cost_of_previous, cost_through_extras
 
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
@@ -30,7 +30,7 @@ Bools = NDArray[np.bool_]
 _SLACK = 1e-3  # squared radians: more than the rounding of a sum
 _INFINITE = np.float32(np.inf)
 _FIRST = plain(0)  # lane, depth
-_GLANCE = 0.25  # squared radians: how much dearer than the least prices a way may be at a glance
+_NARROW = 0.25  # squared radians: how much dearer than the least node costs a path may be in a narrow search
 
 
 @exact_kernel
@@ -48,7 +48,7 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
 def _relax_open(
     out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Bools
 ) -> None:
-    """`_relax` where some steps are closed."""
+    """`_relax` where some edges are `closed` (N,)."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
     for b in range(np.uint64(out.shape[0])):
         cost = _INFINITE if closed[b] else start + factor * row[b]
@@ -59,8 +59,10 @@ def _relax_open(
 
 @helper
 def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
-    """The costs of the nodes at `depth + 1` from those at `depth`, as far as they are no more than `most`; how many
-    nodes have a way."""
+    """Settle the nodes at `depth + 1` from those at `depth` that cost no more than `most`.
+
+    Returns how many nodes there have a path.
+    """
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
     out, origins = work.costs[depth + 1], work.parents[depth + 1]
     targets, target_origins = out[:width], origins[:width]
@@ -90,18 +92,18 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
             _relax(targets[low:high], target_origins[low:high], base[node], row[low:high], lattice.weight, node)
     for f in range(EXTRA):
         if lattice.cost[depth + 1, width + f] < _INFINITE:
-            out[width + f], origins[width + f] = _settle_own(lattice, work, depth, f, base)
+            out[width + f], origins[width + f] = _settle_extra(lattice, work, depth, f, base)
     slopes_of(lattice, depth, depth + 1, base)
-    price, count = lattice.cost[depth + 1], 0
+    added, count = lattice.cost[depth + 1], 0
     for node in range(np.uint64(width + EXTRA)):
-        out[node] += price[node] - base[node]
+        out[node] += added[node] - base[node]
         count += out[node] < _INFINITE
     return count
 
 
 @exact_kernel
-def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
-    """The least cost of a step to an own posture of the next depth, and where it comes from."""
+def _settle_extra(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
+    """The least cost of reaching extra node `f` of the next depth, without its own, and the node before it."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
     best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
     mask = lattice.masks[depth]
@@ -109,8 +111,8 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
     for node in range(width + EXTRA):
         if base[node] >= best or (mask >= 0 and closed[node, width + f]):
             continue
-        move = row[node] if node < width else np.float32(own_move(lattice, depth, node - width, f))
-        cost = base[node] + weight * move
+        square = row[node] if node < width else np.float32(extra_edge_square(lattice, depth, node - width, f))
+        cost = base[node] + weight * square
         if cost < best:
             best, origin = cost, node
     return best, origin
@@ -118,9 +120,9 @@ def _settle_own(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32
 
 @exact_kernel
 def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
-    """Settle the lattice from depth `begin` on, without nodes through which no way costs at most `most`.
+    """Settle the lattice from depth `begin` on, without nodes through which no path costs at most `most`.
 
-    Returns the greatest depth that has a way and the number of nodes that have one.
+    Returns the greatest depth that is reached and the number of nodes that have a path.
     """
     work.most[0] = most
     if begin == 0:
@@ -136,28 +138,28 @@ def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple
 
 
 @exact_kernel
-def cheapest_path(lattice: Lattice, work: Work, begin: int, glance: bool) -> tuple[int, int]:
-    """Settle the lattice from depth `begin` on, 0 at first; later the least depth at which steps were closed.
+def cheapest_path(lattice: Lattice, work: Work, begin: int, narrow: bool) -> tuple[int, int]:
+    """Settle the lattice from depth `begin` on: 0 at first, later the least depth at which edges were closed.
 
-    Returns the greatest depth that has a way and the number of nodes that have one. Nodes from which even the least
-    prices of the depths to come would cost more than a way that is known are left out. At a `glance` ways are looked
-    for first that cost little more than these prices: what is found there is the cheapest, and most nodes are left out;
-    `widen` makes up for it.
+    Returns the greatest depth that is reached and the number of nodes that have a path. Nodes from which even the least
+    node costs of the depths to come add up to more than a known path costs are left out. A `narrow` search first allows
+    little more than these least costs: a path that it finds is the cheapest, and most nodes are left out; `widen`
+    settles them later.
     """
     depths, least, nodes = lattice.goals.shape[0], work.least, 0
     if begin == 0:
-        measure_own(lattice, work)
-    most = min(own_way(lattice, work.few), kept_way(lattice)) + _SLACK
+        measure_extras(lattice, work)
+    most = min(cost_through_extras(lattice), cost_of_previous(lattice)) + _SLACK
     least[depths - 1] = 0.0
     for depth in range(depths - 2, -1, -1):
-        price = least_in(lattice.cost[depth + 1])
-        least[depth] = least[depth + 1] + (price if price < _INFINITE else 0.0)
+        cost = least_in(lattice.cost[depth + 1])
+        least[depth] = least[depth + 1] + (cost if cost < _INFINITE else 0.0)
     if most > work.most[0]:
         begin = 0  # what was left out may be needed
     work.most[1] = most
-    if glance and least[0] + _GLANCE < most:
-        reached, nodes = _settle_from(lattice, work, _FIRST, least[0] + _GLANCE)
-        if reached == depths - 1 and least_in(work.costs[reached]) + _SLACK < least[0] + _GLANCE:
+    if narrow and least[0] + _NARROW < most:
+        reached, nodes = _settle_from(lattice, work, _FIRST, least[0] + _NARROW)
+        if reached == depths - 1 and least_in(work.costs[reached]) + _SLACK < least[0] + _NARROW:
             return reached, nodes
     reached, count = _settle_from(lattice, work, begin, most)
     return reached, nodes + count
@@ -165,7 +167,7 @@ def cheapest_path(lattice: Lattice, work: Work, begin: int, glance: bool) -> tup
 
 @exact_kernel
 def widen(lattice: Lattice, work: Work) -> int:
-    """Settle also what was left out at a glance, if it was one; the number of nodes that have a way."""
+    """Settle also what a narrow search left out, if it was one; the number of nodes that have a path."""
     if work.most[0] == work.most[1]:
         return 0
     _, nodes = _settle_from(lattice, work, _FIRST, work.most[1])
@@ -174,21 +176,21 @@ def widen(lattice: Lattice, work: Work) -> int:
 
 @exact_kernel
 def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> None:
-    """The costs `left` of the nodes at the depths from the last down to `until`.
+    """The costs `onward` of the nodes at the depths from the last down to `until`.
 
-    Nodes that no way of at most the cost `most` leads through are left out.
+    Nodes that no path of at most the cost `most` leads through are left out.
     """
     size, width, weight = lattice.postures.shape[0], lattice.moves.shape[1], lattice.weight
     base, slopes, origins, column, limit = work.base, work.slopes, work.origins, work.closed, np.float32(most)
-    work.left[lattice.goals.shape[0] - 1] = 0.0
+    work.onward[lattice.goals.shape[0] - 1] = 0.0
     for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
-        out, after, known = work.left[depth], work.left[depth + 1], work.costs[depth + 1]
-        targets, price, mask = out[:width], lattice.cost[depth + 1], lattice.masks[depth]
+        out, after, known = work.onward[depth], work.onward[depth + 1], work.costs[depth + 1]
+        targets, added, mask = out[:width], lattice.cost[depth + 1], lattice.masks[depth]
         closed = lattice.closed[mask]
         out[:] = _INFINITE
         square = np.float32(slopes_of(lattice, depth, depth + 1, slopes))
         for node in range(np.uint64(width + EXTRA)):
-            base[node] = after[node] + price[node] - slopes[node] + square
+            base[node] = after[node] + added[node] - slopes[node] + square
             base[node] = base[node] if known[node] + after[node] <= limit else _INFINITE
         for node in range(width + EXTRA):
             if base[node] == _INFINITE:
@@ -204,8 +206,9 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
                 _relax(targets[low:high], origins[low:high], base[node], row[low:high], weight, node)
             for e in range(EXTRA):
                 if work.costs[depth, width + e] < _INFINITE and not (mask >= 0 and closed[width + e, node]):
-                    move = work.squares[depth, e, node] if node < size else own_move(lattice, depth, e, node - width)
-                    cost = np.float32(base[node] + weight * move)
+                    length = work.squares[depth, e, node]
+                    length = length if node < size else np.float32(extra_edge_square(lattice, depth, e, node - width))
+                    cost = np.float32(base[node] + weight * length)
                     out[width + e] = min(out[width + e], cost)
         slopes_of(lattice, depth, depth, slopes)
         for node in range(np.uint64(width + EXTRA)):

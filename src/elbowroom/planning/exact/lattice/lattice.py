@@ -1,10 +1,10 @@
-"""A time lattice: what there is at each key time, what it costs, and what a step to the next one costs.
+"""A time lattice: its nodes at each key time, what they cost, and what an edge to the next key time costs.
 
-The nodes of a depth are the V postures of a group, W with the lanes that fill up the last block, and OWN postures of
-that key time alone: the goal itself, what the last plan had there, and the like. A step leads from a node to a free
-node of the next depth at most `step` radians away. A node costs its own price, a step costs w |d - g|^2: the squared
-change of the deviation from the goal, d being the way of the posture and g that of the goal. So a group that follows
-its goal pays nothing, and evading begins and ends gently.
+The nodes of a depth are the V postures of a group, W with the lanes that fill up the last block, and EXTRA nodes whose
+postures belong to that key time alone: the goal itself, what the last plan had there, and the like. An edge leads from
+a node to a free node of the next depth at most `step` radians away, and costs w |d - g|^2: the squared change of the
+deviation from the goal, d being the change of the posture and g that of the goal. So a group that follows its goal
+pays nothing, and evading begins and ends gently.
 """
 
 from typing import Any, NamedTuple
@@ -20,48 +20,47 @@ Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-EXTRA = 4  # postures of a key time alone
-GOAL, KEPT, HOLD, BACK = range(EXTRA)  # the goal, what the last plan had, the start, on the way from there to the goal
+EXTRA = 4  # extra nodes of a key time
+GOAL, PREVIOUS, HOLD, BACK = range(EXTRA)  # the goal, what the last plan had, the start, between start and goal
 _ROUNDING = 1.0 + 1e-6
 _INFINITE = np.float32(np.inf)
 
 
 class Lattice(NamedTuple):
-    """One group's problem along one root path. Nodes 0..W-1 are the postures, W..W+OWN-1 those of a key time alone."""
+    """One group's problem along one root path. Nodes 0..W-1 are the postures, W..W+EXTRA-1 the extra ones."""
 
     postures: Floats  # (V, d) radians
     columns: Floats32  # (d, W) the same by components, the last repeated
-    moves: Floats32  # (V, W) squared length of each step, infinite where there is none
-    spans: Longs  # (V, 2) the lanes of `moves` beyond which all of a posture's steps are infinite
-    own: Floats  # (n+1, OWN, d); in row 0 HOLD is the start
+    moves: Floats32  # (V, W) squared length of each edge, infinite where there is none
+    spans: Longs  # (V, 2) the lanes of `moves` beyond which all of a posture's edges are infinite
+    extras: Floats  # (n+1, EXTRA, d) postures of the extra nodes; in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
-    cost: Floats32  # (n+1, W+OWN) of each node; infinite where it is not free; row 0 is not used
-    masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its steps are open
-    closed: Bools  # (M, W+OWN, W+OWN) which steps are closed
+    cost: Floats32  # (n+1, W+EXTRA) of each node, squared radians; infinite: not free; row 0 is not used
+    masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its edges are open
+    closed: Bools  # (M, W+EXTRA, W+EXTRA) which edges are closed
     previous: Longs  # (n+1,) the nodes that the last plan had
-    step: float  # radians
+    step: float  # radians, the longest edge
     weight: float  # w
 
 
 class Work(NamedTuple):
-    """What is known of the cheapest ways."""
+    """What is known of the cheapest paths, and scratch memory; of one search after the other."""
 
-    costs: Floats32  # (n+1, W+OWN) of the cheapest way from the start to each node
-    parents: Ints  # (n+1, W+OWN) the node before it on that way
-    left: Floats32  # (n+1, W+OWN) of the cheapest way from each node on to the end
-    squares: Floats32  # (n+1, OWN, W) squared distances of a key time's own postures from the others
-    most: Floats  # (2,) dearer ways were left out; what it would be after more than a glance
-    least: Floats  # (n+1,) what a way on from each depth costs at least
-    base: Floats32  # (W+OWN,) scratch, as is what follows
-    slopes: Floats32  # (W+OWN,)
+    costs: Floats32  # (n+1, W+EXTRA) of the cheapest path from the start to each node
+    parents: Ints  # (n+1, W+EXTRA) the node before it on that path
+    onward: Floats32  # (n+1, W+EXTRA) of the cheapest path from each node on to the end
+    squares: Floats32  # (n+1, EXTRA, W) squared distances of the extra nodes from the postures
+    most: Floats  # (2,) dearer paths were left out by the last search; by one that is not narrow
+    least: Floats  # (n+1,) what a path on from each depth costs at least
+    base: Floats32  # (W+EXTRA,) scratch, as is what follows
+    slopes: Floats32  # (W+EXTRA,)
     closed: Bools  # (W,)
-    origins: Ints  # (W+OWN,)
-    few: Floats  # (2, OWN)
+    origins: Ints  # (W+EXTRA,)
 
 
 @exact_kernel
 def new_work(depths: int, nodes: int) -> Work:
-    """What a search works on, for a lattice with `depths` rows of `nodes` nodes."""
+    """Memory for lattices of `depths` key times with `nodes` nodes each."""
     return Work(
         np.empty((depths, nodes), np.float32),
         np.empty((depths, nodes), np.int32),
@@ -73,7 +72,6 @@ def new_work(depths: int, nodes: int) -> Work:
         np.empty(nodes, np.float32),
         np.empty(nodes - EXTRA, np.bool_),
         np.empty(nodes, np.int32),
-        np.empty((2, EXTRA)),
     )
 
 
@@ -81,7 +79,7 @@ def new_work(depths: int, nodes: int) -> Work:
 def component_of(lattice: Lattice, depth: int, node: int, i: int) -> float:
     """One component of the configuration of a node."""
     width = lattice.moves.shape[1]
-    return float(lattice.postures[node, i] if node < width else lattice.own[depth, node - width, i])
+    return float(lattice.postures[node, i] if node < width else lattice.extras[depth, node - width, i])
 
 
 @exact_kernel
@@ -95,52 +93,50 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
 
 
 @exact_kernel
-def measure_own(lattice: Lattice, work: Work) -> None:
-    """Distances of each key time's own postures from all others; too long a step is infinite."""
+def measure_extras(lattice: Lattice, work: Work) -> None:
+    """The squared distances of the extra nodes from the postures; infinite where an edge would be too long."""
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
     longest = np.float32(lattice.step * lattice.step * _ROUNDING)
-    for depth in range(lattice.own.shape[0]):
+    for depth in range(lattice.extras.shape[0]):
         for e in range(EXTRA):
             if lattice.cost[depth, width + e] == _INFINITE and (depth > 0 or e != HOLD):
                 continue
             row = work.squares[depth, e]
-            squares_from(lattice.columns, lattice.own[depth, e], row)
+            squares_from(lattice.columns, lattice.extras[depth, e], row)
             for v in range(np.uint64(width)):
                 row[v] = row[v] if row[v] <= longest else _INFINITE
             row[size:] = _INFINITE
 
 
 @exact_kernel
-def own_move(lattice: Lattice, depth: int, e: int, f: int) -> float:
-    """The squared length of the step between own postures of two successive depths; infinite if it is too long."""
+def extra_edge_square(lattice: Lattice, depth: int, e: int, f: int) -> float:
+    """The squared length of the edge from extra node `e` at `depth` to `f` at the next; infinite if it is too long."""
     total = 0.0
-    for i in range(lattice.own.shape[2]):
-        total += (lattice.own[depth + 1, f, i] - lattice.own[depth, e, i]) ** 2
+    for i in range(lattice.extras.shape[2]):
+        total += (lattice.extras[depth + 1, f, i] - lattice.extras[depth, e, i]) ** 2
     return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
 @exact_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
-    """2 w q.g into `out` (W+OWN,) for the nodes q of `row`; returns w |g|^2; g is the goal's way from `depth` on."""
+    """2 w q.g into `out` (W+EXTRA,) for the nodes q of `row`; returns w |g|^2, g the goal's change after `depth`."""
     width, weight = lattice.moves.shape[1], lattice.weight
     square, known = 0.0, out[:width]
     out[:] = 0.0
     for i in range(lattice.goals.shape[1]):
-        way = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
-        square += weight * way * way
-        if way == 0.0:
-            continue
-        factor, column = np.float32(2.0 * weight * way), lattice.columns[i]
+        change = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
+        square += weight * change * change
+        factor, column = np.float32(2.0 * weight * change), lattice.columns[i]
         for v in range(np.uint64(width)):
             known[v] += factor * column[v]
         for e in range(EXTRA):
-            out[width + e] += factor * np.float32(lattice.own[row, e, i])
+            out[width + e] += factor * np.float32(lattice.extras[row, e, i])
     return square
 
 
 @exact_kernel
-def step_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
-    """What a step from a node at `depth` to one of the next costs; infinite if there is none."""
+def edge_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
+    """What the edge from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
     mask = lattice.masks[depth]
     if mask >= 0 and lattice.closed[mask, source, target]:

@@ -20,14 +20,14 @@ Longs = NDArray[np.int64]
 Ints = NDArray[np.int32]
 
 BLOCK = 16  # lanes of the widest vector register
-BETWEEN = 5  # postures between two, at equal parts of a key interval
+BETWEEN = 5  # samples of an edge, at equal parts of a key interval
 _TIMES = np.arange(1, BETWEEN + 1) / (BETWEEN + 1.0)
-ON_WAY = _TIMES**2 * (3.0 - 2.0 * _TIMES)  # how far they are on the way: it begins and ends at rest
+ON_EDGE = _TIMES**2 * (3.0 - 2.0 * _TIMES)  # the share of the edge done then: it begins and ends at rest
 _SPARE = 0.15  # metres: a posture between the known ones may reach so much farther
 
 
 class Postures(NamedTuple):
-    """Postures of a limb and the steps between them; `step` is the longest, staying is one."""
+    """Postures of a limb and the edges between them, staying among them; none is longer than `step`."""
 
     limb: Limb
     configurations: Floats  # (V, d) radians
@@ -35,16 +35,16 @@ class Postures(NamedTuple):
     segments: Floats32  # (C, 6, V) capsules in the limb's frame, metres
     lanes: Floats32  # (B, C, 7, 16) the same by blocks, with radii; the last block repeats the last posture
     balls: Floats  # (B, C, 4) centre and radius
-    moves: Floats32  # (V, W) squared length of each step, infinite where there is none
-    spans: Longs  # (V, 2) the first lane of the first block that a step leads to, and the end of the last
-    pairs: Ints  # (V, V) number of the pair that a step joins; -1 for none and for staying
-    between: Floats32  # (P, BETWEEN, C, 6) capsules on the way from the lower number of a pair to the higher
+    moves: Floats32  # (V, W) squared length of each edge, infinite where there is none
+    spans: Longs  # (V, 2) the first lane of the first block that an edge leads to, and the end of the last
+    pairs: Ints  # (V, V) number of the pair that an edge joins; -1 for none and for staying
+    between: Floats32  # (P, BETWEEN, C, 6) capsules on the edge from the lower number of a pair to the higher
     step: float  # radians
     reach: float  # metres: no capsule gets farther from the limb's frame
 
 
 def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
-    """Link `configurations` (V, d) that are at most `step` apart, unless the way leads through the trunk."""
+    """Join `configurations` (V, d) that are at most `step` apart, unless the edge leads through the trunk."""
     known = np.ascontiguousarray(configurations, np.float64)
     points = known[_neighbourly(pose(limb, known))]
     segments = pose(limb, points)
@@ -52,11 +52,11 @@ def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
     reach = float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE
     lanes, balls = blocks_of(segments, limb.radii)
     low, high = _near_pairs(points, step * step)
-    ways = [pose(limb, points[low] + share * (points[high] - points[low])) for share in ON_WAY]
-    clear = np.all([clear_of_trunk(way, limb.trunk, limb.allowed) for way in ways], axis=0)
-    between = np.ascontiguousarray(np.stack(ways)[..., clear].transpose(3, 0, 1, 2))
+    samples = [pose(limb, points[low] + share * (points[high] - points[low])) for share in ON_EDGE]
+    clear = np.all([clear_of_trunk(sample, limb.trunk, limb.allowed) for sample in samples], axis=0)
+    between = np.ascontiguousarray(np.stack(samples)[..., clear].transpose(3, 0, 1, 2))
     low, high = low[clear], high[clear]
-    moves, pairs = _steps(points, low, high, len(lanes) * BLOCK)
+    moves, pairs = _edges(points, low, high, len(lanes) * BLOCK)
     filled = np.minimum(np.arange(len(lanes) * BLOCK), len(points) - 1)
     columns = np.ascontiguousarray(points[filled].T, np.float32)
     return Postures(
@@ -107,7 +107,8 @@ def _near_pairs(points: Floats, reach: float) -> tuple[Ints, Ints]:
     return low[:count].copy(), high[:count].copy()
 
 
-def _steps(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32, Ints]:
+def _edges(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32, Ints]:
+    """The tables `moves` (V, width) and `pairs` (V, V) of `Postures`, for pairs low < high of points (V, d)."""
     moves = np.full((len(points), width), np.inf, np.float32)
     pairs = np.full((len(points), len(points)), -1, np.int32)
     squares = np.sum((points[high] - points[low]) ** 2, axis=1)
@@ -119,7 +120,7 @@ def _steps(points: Floats, low: Ints, high: Ints, width: int) -> tuple[Floats32,
 
 
 def spans_of(moves: Floats32) -> Longs:
-    """The `spans` (V, 2) of the steps `moves` (V, W): nothing outside of them has to be looked at."""
+    """The `spans` (V, 2) of edges with squared lengths `moves` (V, W): outside of them there are none."""
     reached = np.any(np.isfinite(moves).reshape(len(moves), -1, BLOCK), axis=2)
     ends = reached.shape[1] - np.argmax(reached[:, ::-1], axis=1)
     return np.stack([np.argmax(reached, axis=1), ends], axis=1) * BLOCK

@@ -1,4 +1,4 @@
-"""The curve through a way's key postures: how fast it passes each of them, and what that asks of the joints.
+"""The curve through a path's key postures: how fast it passes each of them, and what that asks of the joints.
 
 Cubic Hermite segments, as `interpolation.hermite` plays them. The velocity at a key posture is the mean of the slopes
 before and after it. With slopes s and their changes d = s' - s, the acceleration at a segment's ends is then
@@ -17,8 +17,9 @@ from elbowroom.jit import exact_kernel, helper
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-_SAMPLES = 16  # parts of an interval at whose ends its speed is looked at
-_PAST = 8.0 / 27.0  # of velocity times interval: with this much room at both its ends a segment leaves no range
+_SAMPLES = 16  # parts of an interval at whose ends its speed is sampled
+# Of velocity times interval: a segment whose ends are so far inside a joint's range leaves it nowhere.
+_PAST = 8.0 / 27.0
 
 
 @exact_kernel
@@ -68,7 +69,7 @@ def _middle(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, inter
 def peak_speed(a: Floats, velocity: Floats, b: Floats, next_velocity: Floats, interval: float) -> float:
     """A speed, over all components together, that a segment nowhere exceeds; from rest to rest 0.4 % more than it has.
 
-    Its velocity is a parabola: between two looks it leaves the chord of its ends by at most |second derivative| h^2/8.
+    Its velocity is a parabola: between two samples it leaves the chord by at most |second derivative| h^2/8.
     """
     most, bend = 0.0, 0.0
     for i in range(a.shape[0]):

@@ -18,20 +18,21 @@ from elbowroom.planning.stillness import SAME
 Floats = NDArray[np.float64]
 
 _LITTLE = 0.15  # radians
+_GROUPS = len(LOCAL_GROUPS)
 _WAIST = DofGroup.WAIST.size  # components, the first of an upper body
 
 
 class RequiredMargins(NamedTuple):
-    """Clearances that a plan asked for, in metres; rows: waist, left arm, right arm."""
+    """Clearances that a plan asked for, in metres; rows: the groups in the order of their search."""
 
-    margins: Floats  # (3, n+1) of postures around key times
-    motion_margins: Floats  # (3, n) of the motion in the key intervals
+    margins: Floats  # (G, n+1) of postures around key times
+    motion_margins: Floats  # (G, n) of the motion in the key intervals
 
     def since(self, first: int, horizon: int) -> "RequiredMargins":
         """From the key time `first` on, over `horizon` intervals; infinite where the plan did not reach."""
         margins, motion_margins = self.margins[:, first:], self.motion_margins[:, first:]
         if margins.shape[1] <= horizon:
-            beyond = np.full((3, horizon + 1), np.inf)
+            beyond = np.full((len(margins), horizon + 1), np.inf)
             margins, motion_margins = (
                 np.concatenate([margins, beyond], axis=1),
                 np.concatenate([motion_margins, beyond], axis=1),
@@ -75,14 +76,16 @@ class PreviousPlan(NamedTuple):
     def freely(keys: Floats) -> "PreviousPlan":
         """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
         return PreviousPlan(
-            keys, len(keys), RequiredMargins(np.full((3, len(keys)), np.inf), np.full((3, len(keys) - 1), np.inf))
+            keys,
+            len(keys),
+            RequiredMargins(np.full((_GROUPS, len(keys)), np.inf), np.full((_GROUPS, len(keys) - 1), np.inf)),
         )
 
 
 def required_margins(settings: ExactSettings, interval: float, count: int) -> RequiredMargins:
     """What is asked for in the next key intervals, so many of `interval` seconds: less soon than later."""
     shares = settings.soon_share + (1.0 - settings.soon_share) * (interval * np.arange(count + 1)) / settings.soon
-    row = np.minimum(shares, 1.0)[None].repeat(len(LOCAL_GROUPS), axis=0)
+    row = np.minimum(shares, 1.0)[None].repeat(_GROUPS, axis=0)
     return RequiredMargins(settings.margin * row, settings.motion_margin * row[:, :-1])
 
 

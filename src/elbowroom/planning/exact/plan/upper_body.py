@@ -8,19 +8,19 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.group.caches import begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import Weights
-from elbowroom.planning.exact.memory.plan_memory import PlanMemory
+from elbowroom.planning.exact.group.upper_body_model import UpperBodyModel, upper_body_model
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState, required_margins
+from elbowroom.planning.exact.plan.plan_memory import PlanMemory
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch, UpperPlan
-from elbowroom.planning.exact.refine.blocked import arms_for, waists_for
+from elbowroom.planning.exact.refine.blocked import Known, children_for, waists_for
 from elbowroom.planning.exact.refine.sampling import RefinementSettings
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.upper_body_model import UpperBodyModel, upper_body_model
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -129,15 +129,15 @@ class UpperBodyPlanner:
         return bool(changed)
 
     def _reaching(self, search: UpperBodySearch) -> Iterator[tuple[DofGroup, Floats]]:
-        """Postures for the slices from the blocked one on: of the waist, and of the arm that was blocked."""
+        """Postures for the slices from the blocked one on: of the waist, and of the child that was blocked."""
         blocked, failed, model = search.blocked_slice(), search.blocked[0], self.model
         last = min(blocked.depth + self._refinement.slices, search.path.horizon + 1)
         for depth in range(blocked.depth, last):
             for number in sorted({0, failed}):
-                group = LOCAL_GROUPS[number]
+                group = SEARCH_ORDER[number]
                 here = blocked._replace(depth=depth, goal=search.goals[depth, columns_of(group)])
-                limb, reach, known = model.limbs[group], model.reaches[group], self.memory.known(group)
+                known = Known(group, model.limbs[group], model.reaches[group], self.memory.known(group))
                 if number == 0:
-                    yield group, waists_for(limb, reach, known, here, self._refinement)
+                    yield group, waists_for(known, here, self._refinement)
                 else:
-                    yield group, arms_for(model.own_body, number - 1, limb, reach, known, here, self._refinement)
+                    yield group, children_for(model.own_body, known, here, self._refinement)

@@ -5,6 +5,7 @@ of the left one too. Where an arm has no way, the waist's last way is tried, und
 joint step decides.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from time import perf_counter_ns
@@ -13,21 +14,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
+from elbowroom.body.dof import CHILDREN, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.planning.exact.certificate.blockade import blockade
-from elbowroom.planning.exact.group.arms import Arms, Ways
 from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.path_problem import PathProblem, no_costs
-from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights, extra_postures
-from elbowroom.planning.exact.joint.guide import Guide, arm_nodes, guide, surroundings, waist_nodes
-from elbowroom.planning.exact.joint.step import JointSettings, JointStep, Surroundings
-from elbowroom.planning.exact.lattice.lattice import EXTRA, KEPT
+from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, Weights, extras_of
+from elbowroom.planning.exact.group.upper_body_model import UpperBodyModel
+from elbowroom.planning.exact.joint.guide import child_nodes, guide, surroundings, waist_nodes
+from elbowroom.planning.exact.joint.step import PRODUCT, JointSettings, JointStep, Surroundings
+from elbowroom.planning.exact.lattice.lattice import EXTRA, PREVIOUS
 from elbowroom.planning.exact.memory.previous_plan import RequiredMargins, jolts
+from elbowroom.planning.exact.plan.children import ChildSearch, GroupPaths
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
-from elbowroom.planning.exact.upper_body_model import UpperBodyModel
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -67,7 +68,7 @@ class UpperBodySearch:
 
     def __post_init__(self) -> None:
         self.margins: RequiredMargins | None = None  # of the way that was found
-        self._arms = Arms(self.caches, self.problem, self.model.settings.self_rounds)
+        self._children = ChildSearch(self.caches, self.problem, self.model.settings.self_rounds)
         self.evidence_log = EvidenceLog(self.caches, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
@@ -105,61 +106,64 @@ class UpperBodySearch:
         evidence, joint = self.evidence_log.evidence(), self.evidence_log.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
 
-    def _margins(self, found: Ways) -> RequiredMargins:
+    def _margins(self, found: GroupPaths) -> RequiredMargins:
         """The clearances that were asked for: less where the start has less."""
-        most, settings = [way.most for way in found.ways], self.model.settings
+        most, settings = [way.most for way in found.paths], self.model.settings
         enough = min(most) >= max(settings.margin, settings.motion_margin)
         return self.problem.required if enough else self.problem.required.at_most(most)
 
-    def _cost(self, found: Ways) -> float:
+    def _cost(self, found: GroupPaths) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""
         away = found.keys - self.goals
         return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
-    def apart(self) -> Ways:
+    def apart(self) -> GroupPaths:
         """Each group by itself."""
         self._waist = self._waist_path(self._crouching)
         found = self._under(self._waist)
-        self.blocked = len(found.ways), min(found.reached + 1, self.path.horizon)
+        self.blocked = len(found.paths), min(found.reached + 1, self.path.horizon)
         return found
 
-    def _under(self, waist: GroupPath, guides: list[Guide] | None = None) -> Ways:
+    def _under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide] | None = None) -> GroupPaths:
         """The arms under a way of the waist."""
-        found = self._arms.under(waist, guides, self.evidence_log)
+        found = self._children.under(waist, guides or {}, self.evidence_log)
         if found.failed is not None:
             self.deepest = max(self.deepest, found.reached)
         return found
 
-    def with_previous_waist(self) -> Ways:
+    def with_previous_waist(self) -> GroupPaths:
         """The waist held to the last plan's way while there is one."""
         costs = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
-        _, _, previous = extra_postures(self.caches.group(DofGroup.WAIST), task)
+        previous = extras_of(self.caches.group(DofGroup.WAIST), task).previous
         costs[np.arange(len(costs)), previous] = 0.0
         waist = self._waist_path(costs + self._crouching)
         return self._under(waist)
 
-    def together(self, rounds: int) -> Ways:
+    def together(self, rounds: int) -> GroupPaths:
         """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
         waist = self._waist
         assert waist is not None
         if waist.reached < self.path.horizon:
-            return Ways((), waist, waist.reached)
+            return GroupPaths((), waist, waist.reached)
         step = self.joint_step(waist)
-        ways = Ways((), waist, 0)
+        ways = GroupPaths((), waist, 0)
         for _ in range(rounds):
             began = perf_counter_ns()
             answer = step.search(self.evidence_log.go_on)
             self.evidence_log.enter_joint(step, answer.status, perf_counter_ns() - began)
             if answer.status is not PlanStatus.FOUND:
                 break
-            guides = [guide(nodes, answer.nodes[:, g]) for g, nodes in enumerate(step.nodes)]
-            way = self._waist_path(self._crouching, guides[0])
+            guides = {
+                SEARCH_ORDER[g]: guide(step.nodes[g], answer.nodes[:, column]) for column, g in enumerate(PRODUCT)
+            }
+            way = self._waist_path(self._crouching, guides[DofGroup.WAIST])
             ways = self._under(way, guides)
-            if len(ways.ways) == len(LOCAL_GROUPS):
+            if len(ways.paths) == len(SEARCH_ORDER):
                 break
-            failed, at = len(ways.ways), min(ways.reached, self.path.horizon - 1)
-            step.close(failed, at, answer.nodes[at : at + 2, failed])
+            failed, at = len(ways.paths), min(ways.reached, self.path.horizon - 1)
+            column = PRODUCT.index(failed) if failed in PRODUCT else 0
+            step.close(PRODUCT[column], at, answer.nodes[at : at + 2, column])
         return ways
 
     def blockade(self) -> Blockade:
@@ -172,7 +176,7 @@ class UpperBodySearch:
         number, depth = self.blocked
         waist = self._waist
         assert waist is not None
-        at, known = columns_of(LOCAL_GROUPS[number]), self.caches.group(DofGroup.WAIST).postures.configurations
+        at, known = columns_of(SEARCH_ORDER[number]), self.caches.group(DofGroup.WAIST).postures.configurations
         costs = waist.cost[depth, : len(known)]
         order = np.argsort(costs, kind="stable")
         waists = known[order[np.isfinite(costs[order])]]
@@ -190,16 +194,15 @@ class UpperBodySearch:
     def joint_step(self, waist: GroupPath) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
         caches, task = self.caches, self.problem.task(DofGroup.WAIST, self.problem.roots)
-        arms = []
-        for group in LOCAL_GROUPS[1:]:
-            arm_task, most = self.problem.task(group, waist.entries), np.inf
+        children = []
+        for group in CHILDREN:
+            child_task, most = self.problem.task(group, waist.entries), np.inf
             if waist.reached == self.path.horizon:
-                most = self._room_at_start(group, arm_task, waist)
-            arms.append(arm_nodes(caches.group(group), arm_task, self.weights.keeping, most))
+                most = self._room_at_start(group, child_task, waist)
+            children.append(child_nodes(caches.group(group), child_task, self.weights.keeping, most))
         return JointStep(
             self.model.own_body,
-            waist_nodes(caches.group(DofGroup.WAIST), task, waist, self.weights.keeping),
-            (arms[0], arms[1]),
+            (waist_nodes(caches.group(DofGroup.WAIST), task, waist, self.weights.keeping), *children),
             self._surroundings(),
             JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
         )
@@ -214,7 +217,7 @@ class UpperBodySearch:
         previous, closed = self.problem.previous[:, at], costs.copy()
         if follow is not None:
             previous = follow.keys
-            closed[:, closed.shape[1] - EXTRA + KEPT] = 0.0
+            closed[:, closed.shape[1] - EXTRA + PREVIOUS] = 0.0
 
         def lowerings() -> Floats:
             lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
@@ -237,7 +240,7 @@ class UpperBodySearch:
         caches, root = self.caches, self.problem.roots[0]
         places, turns = caches.roots.places[root], caches.roots.turns[root]
         if group is not DofGroup.WAIST:
-            carriers = caches.group(DofGroup.WAIST).ways
+            carriers = caches.group(DofGroup.WAIST).sweeps
             places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
         postures, obstacles = caches.group(group).postures, span_of(self.problem.near.spans, 0)
         clearance, _ = held_clearance(postures, task.start, places, turns, obstacles, HELD_AT_START)

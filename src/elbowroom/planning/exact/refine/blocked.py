@@ -5,22 +5,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import chest_frames
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
 from elbowroom.planning.exact.joint.step import Surroundings
+from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import blocks_of
-from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen, drawn_postures
+from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import Limb, pose
+from elbowroom.planning.model.self_pairs import carriers_of, with_waist
 from elbowroom.world.obstacles.rows import span_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-_WAISTS = 6  # waists of a blocked slice under which arms are tried
+_WAISTS = 6  # waists of a blocked slice under which their children are tried
 
 
 class Blocked(NamedTuple):
@@ -30,26 +32,35 @@ class Blocked(NamedTuple):
     around: Surroundings
     goal: Floats  # (d,)
     margin: float  # metres of clearance that a posture needs
-    waists: Floats  # (F, d) that are free there, the best first; for an arm
+    waists: Floats  # (F, d) that are free there, the best first
 
 
-def waists_for(limb: Limb, reach: float, known: Floats, blocked: Blocked, settings: RefinementSettings) -> Floats:
-    """Waist postures (k, d) that are free in a blocked slice and unlike the `known` (V, d)."""
-    drawn = drawn_postures(DofGroup.WAIST, blocked.goal, settings.drawn, settings.near)
+class Known(NamedTuple):
+    """What is known of a group whose postures are refined."""
+
+    group: DofGroup
+    limb: Limb
+    reach: float  # metres: none of its capsules gets farther from the frame that carries it
+    postures: Floats  # (V, d) that it has already
+
+
+def waists_for(known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
+    """Waist postures (k, d) that are free in a blocked slice and unlike those that are known."""
+    limb = known.limb
+    drawn = drawn_postures(known.group, blocked.goal, settings.drawn, settings.near)
     places, turns = blocked.around.places[blocked.depth][None], blocked.around.turns[blocked.depth][None]
-    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
+    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), known.reach)
     clear, _ = clearances_under(
         lanes, places, turns, span_of(blocked.around.obstacles, blocked.depth), np.ones(1, np.bool_)
     )
     free = clear[0, : len(drawn)] >= blocked.margin
-    return _worth(drawn, free, known, blocked.goal, settings)
+    return _worth(drawn, free, known.postures, blocked.goal, settings)
 
 
-def arms_for(
-    body: OwnBody, side: int, limb: Limb, reach: float, known: Floats, blocked: Blocked, settings: RefinementSettings
-) -> Floats:
-    """Arm postures (k, d) that are free in a blocked slice under one of its waists, and unlike the `known` (V, d)."""
-    drawn = drawn_postures(LOCAL_GROUPS[1 + side], blocked.goal, settings.drawn, settings.near)
+def children_for(body: OwnBody, known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
+    """A child's postures (k, d) that are free in a blocked slice under one of its waists, and unlike the known."""
+    limb, carriers = known.limb, carriers_of(known.group)
+    drawn = drawn_postures(known.group, blocked.goal, settings.drawn, settings.near)
     waists = blocked.waists[:_WAISTS]
     if not len(waists):
         return drawn[:0]
@@ -60,18 +71,19 @@ def arms_for(
         np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
         np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
     )  # fmt: skip
-    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), reach)
+    lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), known.reach)
     clear, _ = clearances_under(
         lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4),
         span_of(blocked.around.obstacles, blocked.depth), np.ones(len(waists), np.bool_),
     )  # fmt: skip
-    states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
-    parts = body.parts(side, waists, states, None)
-    free = np.zeros(len(drawn), np.bool_)
-    for row, axes in enumerate(parts.axes):
-        kept_off = ~touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)
-        free |= (clear[row] >= blocked.margin)[: len(drawn)] & kept_off[: len(drawn)]
-    return _worth(drawn, free, known, blocked.goal, settings)
+    free: Bools = clear[:, : len(drawn)] >= blocked.margin
+    if carriers:
+        states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
+        parts = body.parts(known.group, carriers, with_waist(waists), states)
+        for row, axes in enumerate(parts.axes):
+            free[row] &= ~touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[: len(drawn)]
+    under_any: Bools = free.sum(axis=0) > 0
+    return _worth(drawn, under_any, known.postures, blocked.goal, settings)
 
 
 def _worth(drawn: Floats, free: Bools, known: Floats, goal: Floats, settings: RefinementSettings) -> Floats:

@@ -1,10 +1,9 @@
-"""More postures, only where the search is blocked: sampled evenly, kept if they are free there and differ.
+"""More postures, only where the search is blocked: drawn evenly, taken in if they are free there and differ.
 
-A graph of clips reaches what the clips show. Where a slice leaves no way, postures are drawn in the limits of the
-joints, half of them all over and half near the goal, by an additive recurrence that fills space evenly (M. Roberts,
-"The unreasonable effectiveness of quasirandom sequences", 2018): no chance is left in it, the same slice gives the same
-postures. Those that are free there, of obstacles and of the body itself, are taken in, the ones nearest to the goal
-first, and none that is like another. They stay for the plans to come until newer ones need their place.
+A graph of clips reaches what the clips show. Where a slice leaves no path, postures are drawn within the limits of the
+joints, half of them all over and half near the goal (`drawn_postures`). Those that are free there, of obstacles and of
+the body itself, are taken in, the ones nearest to the goal first, and none that is like another. They stay for the
+plans to come until newer ones need their place.
 """
 
 from typing import NamedTuple
@@ -12,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup, clamp, limits
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
@@ -21,34 +19,14 @@ Indices = NDArray[np.int64]
 
 
 class RefinementSettings(NamedTuple):
-    """How many postures are drawn and kept for a blocked slice."""
+    """How many postures are drawn and taken in for a blocked slice."""
 
     drawn: int = 512
     taken: int = 24  # at most, of each group and slice
     apart: float = 0.2  # radians between any two
     near: float = 0.8  # radians to either side of the goal in which half of them are drawn
-    slices: int = 3  # that are looked at from the blocked one on
+    slices: int = 3  # for which postures are drawn, from the blocked one on
     capacity: int = 64  # added postures that a group remembers
-
-
-def drawn_postures(group: DofGroup, around: Floats, count: int, spread: float) -> Floats:
-    """`count` postures (count, d) within the limits: one half all over, the other within `spread` of `around` (d,)."""
-    low, high = limits(group).T
-    even = _even(count, group.size)
-    half = count // 2
-    everywhere = low + even[:half] * (high - low)
-    nearby = around + spread * (2.0 * even[half:] - 1.0)
-    return clamp(group, np.concatenate([nearby, everywhere]))
-
-
-def _even(count: int, size: int) -> Floats:
-    """Points (count, size) of the additive recurrence with the powers of the generalised golden ratio."""
-    ratio = 2.0
-    for _ in range(60):
-        ratio = (1.0 + ratio) ** (1.0 / (size + 1.0))
-    steps = ratio ** -np.arange(1.0, size + 1.0)
-    points: Floats = (0.5 + np.arange(1.0, count + 1.0)[:, None] * steps) % 1.0
-    return points
 
 
 def chosen(postures: Floats, costs: Floats, known: Floats, apart: float, most: int) -> Indices:
@@ -59,6 +37,7 @@ def chosen(postures: Floats, costs: Floats, known: Floats, apart: float, most: i
 
 @exact_kernel
 def _spread(postures: Floats, costs: Floats, order: Indices, known: Floats, apart: float, most: int) -> Indices:
+    """`chosen`, going through the postures in an order (N,)."""
     taken, count = np.empty(most, np.int64), 0
     for n in order:
         if count == most or costs[n] == np.inf:
@@ -90,7 +69,7 @@ class Pool:
         return held
 
     def add(self, postures: Floats) -> bool:
-        """Take in postures (N, d), in place of the oldest where there is no room; whether any was new."""
+        """Take in postures (N, d), in place of the oldest beyond the capacity; whether there were any."""
         if not len(postures):
             return False
         self.postures = np.concatenate([self.postures, postures[: self._capacity]])[-self._capacity :]

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
-from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_WAY, Postures
+from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_EDGE, Postures
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import pose_into
@@ -28,10 +28,10 @@ _ONE = plain(1)  # posture
 def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
     width = lattice.moves.shape[1]
-    posture = lattice.postures[node] if node < width else lattice.own[depth, node - width]
+    posture = lattice.postures[node] if node < width else lattice.extras[depth, node - width]
     squares_from(lattice.columns, posture, out[:width])
     for e in range(EXTRA):
-        out[width + e] = squared_distance(lattice.own[depth, e], posture)
+        out[width + e] = squared_distance(lattice.extras[depth, e], posture)
 
 
 @exact_kernel
@@ -65,7 +65,7 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
-        end[b] = work.left[depth + 1, b] + lattice.cost[depth + 1, b] - end[b]
+        end[b] = work.onward[depth + 1, b] + lattice.cost[depth + 1, b] - end[b]
     for a in range(np.uint64(nodes)):
         base[a] = costs[a] + base[a] + square
     least, first, likely, few = least_in(end), least_in(base), work.origins, 0
@@ -83,7 +83,7 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
             if not start + end[b] <= limit or seen[a, b] or closed[a, b] or a == b:
                 continue
             if b >= width:
-                own, posture = lattice.own[depth + 1, b - width], lattice.own[depth, max(a - width, 0)]
+                own, posture = lattice.extras[depth + 1, b - width], lattice.extras[depth, max(a - width, 0)]
                 posture = lattice.postures[a] if a < width else posture
                 move = np.float32(squared_distance(own, posture))
                 move = move if move <= lattice.step * lattice.step else _INFINITE
@@ -106,7 +106,7 @@ def _posed_between(
 
     The lanes beyond the `count` steps repeat the last.
     """
-    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_WAY[part], scratch.checks.lanes
+    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_EDGE[part], scratch.checks.lanes
     pairs, filled = postures.pairs, min(count - first, BLOCK)
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
@@ -117,8 +117,8 @@ def _posed_between(
                 for i in range(6):
                     lanes[c, i, n] = on_way[c, i]
         else:
-            start = lattice.postures[a] if a < width else lattice.own[depth, a - width]
-            end = lattice.postures[b] if b < width else lattice.own[depth + 1, b - width]
+            start = lattice.postures[a] if a < width else lattice.extras[depth, a - width]
+            end = lattice.postures[b] if b < width else lattice.extras[depth + 1, b - width]
             for i in range(start.shape[0]):
                 scratch.configurations[0, i] = start[i] + share * (end[i] - start[i])
             pose_into(postures.limb, scratch.limb, scratch.configurations, _ONE, n, lanes)

@@ -87,14 +87,15 @@ def new_limb_sweeps(count: int, size: int, *, carries: bool) -> LimbSweeps:
     )
 
 
-def chain_of(model: BodyModel, waist: Limb, arm_reach: float) -> KinematicChain:
-    """The chain of a body whose arms reach `arm_reach` from the chest frame."""
-    stem = sum(float(np.linalg.norm(model.offsets[joint])) for joint in model.spine)
+def chain_of(model: BodyModel, waist: Limb, reach: float) -> KinematicChain:
+    """The chain of a body of which nothing that hangs on the waist gets farther than `reach` from the chest frame."""
+    column = waist.chain.column
+    spine, shares = column.joints[column.shares > 0.0], column.shares[column.shares > 0.0]
+    stem = _stretch(model.offsets, spine)
     lever = _ROTATION * sum(
-        float(weight) * (_stretch(model.offsets, model.spine[i + 1 :]) + arm_reach)
-        for i, weight in enumerate(model.spine_weights)
+        float(share) * (_stretch(model.offsets, spine[i + 1 :]) + reach) for i, share in enumerate(shares)
     )
-    span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + arm_reach
+    span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + reach
     gait = model.gait
     return KinematicChain(
         gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, _lift(model)
@@ -117,18 +118,18 @@ def levers_of(model: BodyModel, limb: Limb) -> Floats:
     and twist turn each spine joint by its part, neck and head back by theirs; the third lowers all. Arm: the
     swing turns it about the shoulder, the third component about the upper arm's own axis, the fourth about the elbow.
     """
-    return _trunk_levers(model, limb) if limb.is_waist else _arm_levers(model, limb)
+    return _arm_levers(model, limb) if limb.chain.is_arm else _column_levers(model, limb)
 
 
-def _trunk_levers(model: BodyModel, limb: Limb) -> Floats:
-    levers = np.zeros((len(limb.joints), 3))
-    levers[:, 1] = _lift(model)
-    turning = dict(zip(model.spine.tolist(), np.abs(model.spine_weights).tolist(), strict=True))
-    turning |= dict(zip(model.gaze.tolist(), np.abs(model.gaze_weights).tolist(), strict=True))
-    for c, joint in enumerate(limb.joints):
-        ends = limb.ends[c].reshape(2, 3)
+def _column_levers(model: BodyModel, limb: Limb) -> Floats:
+    chain = limb.chain
+    levers = np.zeros((len(chain.joints), 3))
+    levers[:, 1] = _lift(model) if chain.carries else 0.0
+    turning = dict(zip(chain.column.joints.tolist(), np.abs(chain.column.shares).tolist(), strict=True))
+    for c, joint in enumerate(chain.joints):
+        ends = chain.ends[c].reshape(2, 3)
         far, speed, at = float(np.linalg.norm(ends, axis=1).max()), 0.0, int(joint)
-        while at > 0:
+        while at != chain.start:
             speed += turning.get(at, 0.0) * far
             far += float(np.linalg.norm(model.offsets[at]))
             at = int(model.parents[at])
@@ -137,11 +138,12 @@ def _trunk_levers(model: BodyModel, limb: Limb) -> Floats:
 
 
 def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
-    levers = np.zeros((len(limb.joints), 3))
-    shoulder, elbow = int(limb.arm_joints[0]), int(limb.arm_joints[1])
+    chain = limb.chain
+    levers = np.zeros((len(chain.joints), 3))
+    shoulder, elbow = int(chain.arm.joints[0]), int(chain.arm.joints[1])
     forearm = model.offsets[elbow]
-    for c, joint in enumerate(limb.joints):
-        ends = limb.ends[c].reshape(2, 3)
+    for c, joint in enumerate(chain.joints):
+        ends = chain.ends[c].reshape(2, 3)
         far, at = float(np.linalg.norm(ends, axis=1).max()), int(joint)
         if at == shoulder:
             levers[c] = far, float(np.hypot(ends[:, 1], ends[:, 2]).max()), 0.0

@@ -1,20 +1,20 @@
-"""The kernels of `OwnBody`: an arm's postures held against the parts of the body, by blocks of sixteen."""
+"""The kernels of `OwnBody`: a group's postures held against the parts of the body, by blocks of sixteen."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body import posing
 from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
-from elbowroom.planning.exact.lattice.postures import BLOCK
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.row_contents import is_natural, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget
 from elbowroom.planning.model.axis_distances import lower_to_axis, lower_to_body
+from elbowroom.planning.model.limb import pose
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -22,29 +22,32 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the way to the next keeps it too
-_LOCAL = int(DofGroup.WAIST.at.start)
+_LOCAL = DofGroup.ROOT.size
 
 
 class OwnBodyNodes(NamedTuple):
-    """An arm's postures and the rest of the body, with room for H surroundings in which they were looked at."""
+    """A group's postures and the rest of the body, and H surroundings in which they were looked at."""
 
     body: WholeBody
-    order: Indices  # the arm, as in `Limb`
-    arm_joints: Indices
-    mirror: float
-    joints: Indices
-    ends: Floats
     wanted: Indices  # (P,) capsules that it must keep away from
     allowed: Floats32  # (C, P) metres: how near the axes may come
-    configurations: Floats  # (V, d) as in `Postures`, also
-    columns: Floats32  # (d, W), and
-    step: float
-    lanes: Floats32  # (B, C, 7, 16)
-    balls: Floats  # (B, C, 4)
+    postures: Postures
     resting: Bools  # (W,) which of them touch the walking body
     known: RowIndex  # the surroundings, by their content
     axes: Floats32  # (H, P, 6) the parts in the chest frame
     marks: Bools  # (H, W) which postures come too near to them
+
+
+class OwnBodyTask(NamedTuple):
+    """One group's nodes along a path, and the body around them."""
+
+    goals: Floats  # (n+1, d) of the group
+    previous: Floats  # (n+1, d) what the last plan had
+    start: Floats  # (d,)
+    settled: bool  # whether it goes on from a path that is proven
+    walk: Floats  # (n+1, 11) the goals of all groups, zero where a group is not posed yet
+    uppers: Floats  # (n+1, 11) the groups that are posed already, zero elsewhere
+    states: Floats  # (n+1, 7) of the root
 
 
 @exact_kernel
@@ -101,28 +104,19 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 
 
 @exact_kernel
-def own_body_costs(
-    own_body_nodes: OwnBodyNodes,
-    goals: Floats,
-    previous: Floats,
-    start: Floats,
-    settled: bool,
-    walk: Floats,
-    uppers: Floats,
-    states: Floats,
-) -> Floats32:
-    """What an arm's nodes (n+1, W + OWN) cost for the body's sake: nothing, or infinity.
+def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
+    """What a group's nodes (n+1, W + EXTRA) cost for the body's sake: nothing, or infinity.
 
-    The arm's task has `goals` (n+1, d), `kept` (n+1, d), a `start` (d,) and is `settled` or not. The groups before it
-    are at `uppers` (n+1, waist and, for the right arm, the left one), the root at `states` (n+1, 7). Where they are as
-    the goals of all groups, `walk` (n+1, 11), have them the arm's goal is free.
+    Where the groups before it are as their goals have them the group's goal is free.
     """
-    it = own_body_nodes
-    width = it.resting.shape[0]
-    own, needed, _ = extra_nodes(it.configurations, it.columns, it.step, goals, previous, start, settled)
+    it, uppers, states = own_body_nodes, task.uppers, task.states
+    width, known = it.resting.shape[0], it.postures
+    own, needed, _ = extra_nodes(
+        known.configurations, known.columns, known.step, task.goals, task.previous, task.start, task.settled
+    )
     natural, contents = np.empty(own.shape[0], np.bool_), np.empty((own.shape[0], it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
-        natural[t] = is_natural(uppers[t], walk[t])
+        natural[t] = is_natural(uppers[t], task.walk[t])
     set_contents(states, uppers, contents)
     rows, fresh = np.empty(own.shape[0], np.int64), np.empty(own.shape[0], np.int64)
     rows = rows[: _to_look_at(natural, needed, rows)]
@@ -163,7 +157,7 @@ def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
 
 @exact_kernel
 def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
-    """Write down the `places` (R,) of what surrounds the arm at `rows` (R,), and the `fresh` ones; their number."""
+    """Write down the `places` (R,) of what surrounds the group at `rows` (R,), and the `fresh` ones; their number."""
     if known.taken[0] + rows.shape[0] > known.rows.shape[0]:
         forget(known)
     count = 0
@@ -178,7 +172,7 @@ def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indic
 
 @helper
 def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
-    """Keep what surrounds the arm at `fresh` rows, and which postures come too near to it."""
+    """Keep what surrounds the group at `fresh` rows, and which postures come too near to it."""
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
     for n in range(fresh.shape[0]):
         t = rows[fresh[n]]
@@ -190,7 +184,7 @@ def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, pl
     for n in range(fresh.shape[0]):
         place = places[fresh[n]]
         _from_chest(capsules, it.wanted, n, chests[n], turns[n], it.axes[place])
-        marks = touches_body(it.lanes, it.balls, it.axes[place], it.allowed, SPARE)
+        marks = touches_body(it.postures.lanes, it.postures.balls, it.axes[place], it.allowed, SPARE)
         for v in range(marks.shape[0]):
             it.marks[place, v] = marks[v]
 
@@ -213,7 +207,7 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
 @helper
 def _own_gaps(it: OwnBodyNodes, own: Floats, rows: Indices, places: Indices) -> Floats32:
     """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
-    body, extra, size = it.body, own.shape[1], own.shape[2]
+    extra, size = own.shape[1], own.shape[2]
     gaps = np.empty((rows.shape[0], extra), np.float32)
     postures, every = np.empty((gaps.size, size)), np.empty(it.wanted.shape[0], np.bool_)
     gaps[:], every[:] = np.inf, True
@@ -221,18 +215,7 @@ def _own_gaps(it: OwnBodyNodes, own: Floats, rows: Indices, places: Indices) -> 
         for e in range(extra):
             for j in range(size):
                 postures[i * extra + e, j] = own[rows[i], e, j]
-    segments = posing.pose_arm(
-        body.base,
-        body.parents,
-        body.offsets,
-        it.order,
-        body.spine[-1],
-        it.arm_joints,
-        it.mirror,
-        it.joints,
-        it.ends,
-        postures,
-    )
+    segments = pose(it.postures.limb, postures)
     mine = np.empty((segments.shape[0], 6, extra), np.float32)
     for i in range(rows.shape[0]):
         for c in range(segments.shape[0]):

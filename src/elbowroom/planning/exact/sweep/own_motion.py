@@ -1,6 +1,6 @@
 """Whether a shown motion runs into the avatar's own body, at any moment.
 
-It is looked at as closely as need be (`own_looks`). An interval that was looked at for an earlier plan is known by its
+It is sampled as closely as need be (`own_samples`). An interval that was sampled for an earlier plan is known by its
 content. It is one compiled call.
 """
 
@@ -22,17 +22,17 @@ from elbowroom.planning.root.path import RootPath
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-_UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last looks
-_AFAR = 2.0  # times as much room is left far ahead: what was free from afar stays free when it is near
+_UNSEEN = 2e-4  # metres by which parts may come nearer between two of the last samples
+_AFAR = 2.0  # times as much is left far ahead: what was free from afar stays free when it is near
 _SOON = 4  # key intervals ahead until which a motion is near
 ROOM = 512  # intervals that can be remembered; when half of them are, all are forgotten before the next plan
 
 
 class Seen(NamedTuple):
-    """Key intervals that were looked at, by the content of both their ends."""
+    """Key intervals that were sampled, by the content of both their ends."""
 
     known: RowIndex
-    arms: Indices  # (S,) the arm that comes nearest, and
+    groups: Indices  # (S,) the number of the group that comes nearest to what it must keep clear of, and
     gaps: Floats  # (S,) its gap, metres
 
 
@@ -42,7 +42,7 @@ def own_parts(model: BodyModel, pairs: SelfPairs) -> OwnParts:
 
 
 class OwnMotion:
-    """One avatar's motion among its own parts, and the key intervals of it that were looked at."""
+    """One avatar's motion among its own parts, and the key intervals of it that were sampled."""
 
     def __init__(self, parts: OwnParts) -> None:
         self._parts = parts
@@ -50,11 +50,11 @@ class OwnMotion:
         self._seen = Seen(known, np.empty(ROOM, np.int64), np.empty(ROOM))
 
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
-        """The arm, 0 or 1, that runs into the body in each interval (n,) of a shown motion, or -1.
+        """The group, by its number in `CHILDREN`, that runs into the body in each interval (n,) of a motion, or -1.
 
         `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times, the first of which
         is `ahead` key intervals from now. Where both ends of an interval are as the `goals` (n+1, 11) have them, it
-        does not touch. It leaves room for what no look sees, and farther ahead as much again.
+        does not touch. A gap less than what no sample shows touches too, and farther ahead one of twice that.
         """
         return _contacts(self._parts, self._seen, path.states, keys, rates, goals, path.interval, ahead)
 
@@ -85,16 +85,18 @@ def _contacts(
             missing[count] = k
             count += 1
         elif _touches(it.gaps[place], ahead + k):
-            out[k] = it.arms[place]
+            out[k] = it.groups[place]
     if not count:
         return out
     gaps = least_gaps(parts, states, keys, rates, interval, missing[:count])
     for i in range(count):
-        k, left, right = missing[i], gaps[0, i], min(gaps[1, i], gaps[2, i])
+        k, nearest = missing[i], 0
+        for g in range(1, gaps.shape[0]):
+            nearest = g if gaps[g, i] < gaps[nearest, i] else nearest
         place = admit(it.known, names[k * width : (k + 2) * width])
-        it.arms[place], it.gaps[place] = 0 if left <= right else 1, min(left, right)
+        it.groups[place], it.gaps[place] = nearest, gaps[nearest, i]
         if _touches(it.gaps[place], ahead + k):
-            out[k] = it.arms[place]
+            out[k] = nearest
     return out
 
 

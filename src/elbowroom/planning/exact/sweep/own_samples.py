@@ -1,8 +1,8 @@
-"""Looks at a shown motion, close enough to tell where it runs into the avatar's own body: one entry for a plan.
+"""Samples of a shown motion, close enough to tell where it runs into the avatar's own body: one entry for a plan.
 
-A key interval has 72 moments. Of some of them it is known that nothing touches, without a look: between two looks every
-part goes nearly straight, and how nearly is seen from the looks beside. Parts that a plane keeps apart at both looks
-are apart between them by as much, less what both their ways bend. So most intervals are looked at six times only.
+A key interval has 72 moments. Of some of them it is known that nothing touches, without a sample: between two samples
+every part goes nearly straight, and how nearly is seen from the samples beside. Parts that a plane keeps apart at both
+samples are apart between them by as much, less what both their paths bend. So most intervals are sampled six times.
 """
 
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF
+from elbowroom.body.dof import CHILDREN, DOF
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.jit import exact_kernel, helper
@@ -22,15 +22,18 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-# Between moments so many apart there is a look, and the room in metres that all of them have to leave: where there is
-# less it is looked at more often. Between two looks dt apart a gap bends by less than a dt^2 / 8: at a = 340 m/s^2,
-# what waist and arm may do to a hand, and turning, 26 mm, 3 mm and 0.2 mm.
+# Moments so many apart are sampled, and where any of them leaves less than so many metres more are. Between two samples
+# dt apart a gap bends by less than a dt^2 / 8: at a = 340 m/s^2, what waist and arm may do to a hand, and turning,
+# 26 mm, 3 mm and 0.2 mm.
 MOMENTS = 72
 STEPS = np.array([12, 4, 1])
-ROOMS = np.array([0.04, 0.003, 0.0])
-CLEAR = np.array([0.003, 4e-4])  # metres: what is surely left between two looks is not looked at more closely
-_FAR = 0.06  # metres: what is as far at both of two looks does not come near between them
-_BENT = 0.5  # of the second difference of three looks: a way between two of them bends by an eighth if it bends evenly
+NEAR = np.array([0.04, 0.003, 0.0])
+CLEAR = np.array([0.003, 4e-4])  # metres: what is surely left between two samples is not sampled more closely
+_GROUPS = len(CHILDREN)
+_FAR = 0.06  # metres: what is as far at both of two samples does not come near between them
+_BENT = (
+    0.5  # of the second difference of three samples: a path between two of them bends by an eighth if it bends evenly
+)
 
 
 class OwnParts(NamedTuple):
@@ -43,80 +46,81 @@ class OwnParts(NamedTuple):
     limits: Floats32
 
 
+class _Samples(NamedTuple):
+    """The samples of K chosen intervals, as far as they are made, M at most."""
+
+    at: Indices  # (K, MOMENTS+1) the sample of each moment, -1 for none
+    moments: Indices  # (M, 2) the interval's place among the chosen, and the moment
+    segments: Floats32  # (M, C, 6) capsules, metres
+    gaps: Floats32  # (M, P) of the pairs, metres; infinite where a pair is far at all samples before
+    near: Bools  # (P,) pairs that are not far at all samples
+
+
 @helper
 def least_gaps(
     parts: OwnParts, states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices
 ) -> Floats32:
-    """The least gaps (3, K) of left arm and body, right arm and body, and both arms, in chosen intervals (K,).
+    """The least gaps (len(CHILDREN), K) of each group and what it must keep clear of, in chosen intervals (K,).
 
     Upper bodies lead through `keys` (n+1, 11) with `rates` (n+1, 11), roots through `states` (n+1, 7). A gap of less
-    than 0.4 mm is the least of all moments; of more room it is the least that was seen.
+    than 0.4 mm is the least of all moments; a wider one is the least that was sampled.
     """
-    own, count = parts, chosen.shape[0]
-    least, at = np.empty((3, count), np.float32), np.empty((count, MOMENTS + 1), np.int64)
-    samples = np.empty((at.size, 2), np.int64)
-    segments = np.empty((at.size, own.body.joints.shape[0], 6), np.float32)
-    gaps = np.empty((at.size, own.first.shape[0]), np.float32)
-    near = np.empty(own.first.shape[0], np.bool_)
-    least[:], at[:], near[:] = np.inf, -1, True
-    known, made = 0, _first_looks(chosen, at, samples)
+    count, pairs = chosen.shape[0], parts.first.shape[0]
+    most = count * (MOMENTS + 1)
+    it = _Samples(
+        np.empty((count, MOMENTS + 1), np.int64),
+        np.empty((most, 2), np.int64),
+        np.empty((most, parts.body.capsules.joints.shape[0], 6), np.float32),
+        np.empty((most, pairs), np.float32),
+        np.empty(pairs, np.bool_),
+    )
+    least = np.empty((_GROUPS, count), np.float32)
+    least[:], it.at[:], it.near[:] = np.inf, -1, True
+    known, made = 0, _first_samples(it, chosen)
     for level in range(STEPS.shape[0]):
-        postures, roots = _shown(states, keys, rates, interval, chosen, samples[known:made])
-        capsules, _, _ = posed_body(own.body, postures, roots)
-        _measure(
-            capsules, own.first, own.second, own.limits, own.kinds, samples[known:made], near, segments[known:made],
-            gaps[known:made], least,
-        )  # fmt: skip
+        postures, roots = _shown(states, keys, rates, interval, chosen, it.moments[known:made])
+        capsules, _, _ = posed_body(parts.body, postures, roots)
+        _measure(parts, capsules, it, known, least)
         if level == STEPS.shape[0] - 1:
             break
         known = made
         for i in range(count):
-            low = min(least[0, i], least[1, i], least[2, i])
-            if low >= 0.0 and low < ROOMS[level]:
-                made = _closer_looks(own, segments, gaps, near, level, i, at, samples, made)
+            low = least[0, i]
+            for g in range(1, _GROUPS):
+                low = min(low, least[g, i])
+            if low >= 0.0 and low < NEAR[level]:
+                made = _closer_samples(parts, it, level, i, made)
         if made == known:
             break
     return least
 
 
 @exact_kernel
-def _first_looks(chosen: Indices, at: Indices, samples: Indices) -> int:
-    """Write down the looks (M, 2), an interval's place among the chosen and a moment, that come first; their number."""
+def _first_samples(it: _Samples, chosen: Indices) -> int:
+    """Write down the samples that come first; their number."""
     made = 0
     for i in range(chosen.shape[0]):
         if i > 0 and chosen[i] == chosen[i - 1] + 1:
-            at[i, 0] = at[i - 1, MOMENTS]
-        for moment in range(0 if at[i, 0] < 0 else STEPS[0], MOMENTS + 1, STEPS[0]):
-            at[i, moment], samples[made, 0], samples[made, 1] = made, i, moment
+            it.at[i, 0] = it.at[i - 1, MOMENTS]
+        for moment in range(0 if it.at[i, 0] < 0 else STEPS[0], MOMENTS + 1, STEPS[0]):
+            it.at[i, moment], it.moments[made, 0], it.moments[made, 1] = made, i, moment
             made += 1
     return made
 
 
 @exact_kernel
-def _closer_looks(
-    own: OwnParts,
-    segments: Floats32,
-    gaps: Floats32,
-    near: Bools,
-    level: int,
-    i: int,
-    at: Indices,
-    samples: Indices,
-    made: int,
-) -> int:
-    """Write down the looks that an interval needs after those of a level; the number of all."""
+def _closer_samples(parts: OwnParts, it: _Samples, level: int, i: int, made: int) -> int:
+    """Write down the samples that interval `i` needs after those of a level; the number of all."""
     step, finer = STEPS[level], STEPS[level + 1]
     for moment in range(0, MOMENTS, step):
-        a, b = at[i, moment], at[i, moment + step]
+        a, b = it.at[i, moment], it.at[i, moment + step]
         if a < 0 or b < 0:
             continue
-        before = at[i, moment - step] if moment > 0 else -1
-        after = at[i, moment + 2 * step] if moment + step < MOMENTS else -1
-        if not _clear_between(
-            own.first, own.second, own.limits, segments, gaps, near, before, a, b, after, CLEAR[level]
-        ):
+        before = it.at[i, moment - step] if moment > 0 else -1
+        after = it.at[i, moment + 2 * step] if moment + step < MOMENTS else -1
+        if not _clear_between(parts, it, before, a, b, after, CLEAR[level]):
             for between in range(moment + finer, moment + step, finer):
-                at[i, between], samples[made, 0], samples[made, 1] = made, i, between
+                it.at[i, between], it.moments[made, 0], it.moments[made, 1] = made, i, between
                 made += 1
     return made
 
@@ -125,7 +129,7 @@ def _closer_looks(
 def _shown(
     states: Floats, keys: Floats, rates: Floats, interval: float, chosen: Indices, samples: Indices
 ) -> tuple[Floats, Floats]:
-    """Postures (N, 14) at the origin and root states (N, 7) there, for `looks` (N, 2) into chosen intervals."""
+    """Postures (N, DOF) at the origin and root states (N, 7) there, for `samples` (N, 2) of chosen intervals."""
     count, first = samples.shape[0], DOF - keys.shape[1]
     postures, roots = np.zeros((count, DOF)), np.empty((count, ROOT_STATE))
     for n in range(count):
@@ -140,74 +144,58 @@ def _shown(
 
 
 @helper
-def _measure(
-    capsules: Floats32,
-    first: Indices,
-    second: Indices,
-    limits: Floats32,
-    kinds: Indices,
-    samples: Indices,
-    near: Bools,
-    segments: Floats32,
-    gaps: Floats32,
-    least: Floats32,
-) -> None:
-    """Put capsules (C, 6, N) into `segments` (N, C, 6), and the gaps of pairs that are `near` (P,) into `gaps` (N, P).
+def _measure(parts: OwnParts, capsules: Floats32, it: _Samples, known: int, least: Floats32) -> None:
+    """Enter the capsules (C, 6, N) of the samples from `known` on, and the gaps of pairs that are near.
 
-    The `least` (3, K) of each kind are lowered to them, but for looks (N, 2) at the start of an interval. Pairs that
-    are far at all looks are near no more; their gaps are infinite from then on.
+    The `least` (len(CHILDREN), K) of each kind are lowered to them, but for samples at the start of an interval. Pairs
+    that are far at all of these samples are near no more; their gaps are infinite from then on.
     """
+    count = capsules.shape[2]
     for c in range(capsules.shape[0]):
         for j in range(6):
-            for n in range(capsules.shape[2]):
-                segments[n, c, j] = capsules[c, j, n]
-    for p in range(near.shape[0]):
-        if not near[p]:
-            for n in range(gaps.shape[0]):
-                gaps[n, p] = np.inf
+            for n in range(count):
+                it.segments[known + n, c, j] = capsules[c, j, n]
+    for p in range(it.near.shape[0]):
+        if not it.near[p]:
+            for n in range(count):
+                it.gaps[known + n, p] = np.inf
             continue
-        found, kind, nearest = clear_pairs(capsules[first[p]], capsules[second[p]]), kinds[p], np.inf
-        for n in range(gaps.shape[0]):
-            gap = found[n] - limits[p]
-            gaps[n, p], nearest = gap, min(nearest, gap)
-            if samples[n, 1] > 0:
-                least[kind, samples[n, 0]] = min(least[kind, samples[n, 0]], gap)
-        near[p] = nearest < _FAR
+        found, kind, nearest = clear_pairs(capsules[parts.first[p]], capsules[parts.second[p]]), parts.kinds[p], np.inf
+        for n in range(count):
+            gap, i = found[n] - parts.limits[p], it.moments[known + n, 0]
+            it.gaps[known + n, p], nearest = gap, min(nearest, gap)
+            if it.moments[known + n, 1] > 0:
+                least[kind, i] = min(least[kind, i], gap)
+        it.near[p] = nearest < _FAR
 
 
 @helper
-def _clear_between(
-    first: Indices,
-    second: Indices,
-    limits: Floats32,
-    segments: Floats32,
-    gaps: Floats32,
-    near: Bools,
-    before: int,
-    a: int,
-    b: int,
-    after: int,
-    scratch: float,
-) -> bool:
-    """Whether pairs that are `near` (P,) surely keep `room` between looks `a` and `b`; -1: none `before` or `after`."""
-    for p in range(near.shape[0]):
-        if not near[p] or min(gaps[a, p], gaps[b, p]) >= _FAR:
+def _clear_between(parts: OwnParts, it: _Samples, before: int, a: int, b: int, after: int, margin: float) -> bool:
+    """Whether the near pairs surely keep a `margin` (metres) between samples a and b; -1: none `before` or `after`."""
+    for p in range(it.near.shape[0]):
+        if not it.near[p] or min(it.gaps[a, p], it.gaps[b, p]) >= _FAR:
             continue
-        one, other, bent = first[p], second[p], 0.0
+        one, other, bent = parts.first[p], parts.second[p], 0.0
         if before >= 0:
-            bent = _second_difference(segments, one, before, a, b) + _second_difference(segments, other, before, a, b)
+            bent = _bend_of_both(it.segments, one, other, before, a, b)
         if after >= 0:
-            here = _second_difference(segments, one, a, b, after) + _second_difference(segments, other, a, b, after)
-            bent = max(bent, here)
-        least = scratch + limits[p] + _BENT * bent
-        if _kept_apart(segments, one, other, a, b) < least and _kept_apart(segments, one, other, b, a) < least:
+            bent = max(bent, _bend_of_both(it.segments, one, other, a, b, after))
+        least = margin + parts.limits[p] + _BENT * bent
+        if _kept_apart(it.segments, one, other, a, b) < least and _kept_apart(it.segments, one, other, b, a) < least:
             return False
     return True
 
 
 @helper
+def _bend_of_both(segments: Floats32, one: int, other: int, before: int, at: int, after: int) -> float:
+    """The second differences of two capsules added up, metres."""
+    first = _second_difference(segments, one, before, at, after)
+    return first + _second_difference(segments, other, before, at, after)
+
+
+@helper
 def _second_difference(segments: Floats32, c: int, before: int, at: int, after: int) -> float:
-    """How far the ends of capsule `c` at a look are from halfway between two others, twice that, metres."""
+    """How far the ends of capsule `c` at a sample are from halfway between two others, twice that, metres."""
     most = 0.0
     for end in range(0, 6, 3):
         x = segments[before, c, end] - 2.0 * segments[at, c, end] + segments[after, c, end]
@@ -219,7 +207,7 @@ def _second_difference(segments: Floats32, c: int, before: int, at: int, after: 
 
 @helper
 def _kept_apart(segments: Floats32, one: int, other: int, at: int, then: int) -> float:
-    """How wide a gap (metres) planes keep open between the axes of two capsules at both of two looks.
+    """How wide a gap (metres) planes keep open between the axes of two capsules at both of two samples.
 
     The planes are perpendicular to the shortest way between the two at the first.
     """

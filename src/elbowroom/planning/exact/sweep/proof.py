@@ -98,7 +98,7 @@ def _between(before: Floats32, after: Floats32, sway: float, moved: Floats, shar
 
 @helper
 def _frames_between(
-    scratch: Scratch, chain: KinematicChain, is_waist: bool, carrier: Carrier, waist: Ends, count: int
+    scratch: Scratch, chain: KinematicChain, on_root: bool, carrier: Carrier, waist: Ends, count: int
 ) -> None:
     """The carrier's frames at the first `count` of the room's parts of an interval, into the room.
 
@@ -114,7 +114,7 @@ def _frames_between(
         sample = min(int(shares[n] * SWEEP), SWEEP - 1)
         part = shares[n] * SWEEP - sample
         places[n, 1] = heights[sample, 1] + part * (heights[sample + 1, 1] - heights[sample, 1])
-    if not is_waist:
+    if not on_root:
         configurations_into(waist, interval, shares, count, scratch.waists)
         carry_frames(chain.waist, scratch.stem, scratch.waists, count)
         compose_into(places, scratch.turns, scratch.stem.places, scratch.stem.turns, count, places, scratch.turns)
@@ -144,7 +144,7 @@ def _refined(
 
     Parts for which the bound is not enough are halved, up to `HALVINGS` times, sixteen looks at once.
     """
-    is_waist, interval, moved, sway = postures.limb.is_waist, carrier.states[0], scratch.moves, carrier.sway
+    on_root, interval, moved, sway = postures.limb.chain.carries, carrier.states[0], scratch.moves, carrier.sway
     columns, found, parts, shares = scratch.coarse.T, scratch.found.T, scratch.parts, scratch.shares
     open_parts, now, proven, checks, share = _NONE, _NONE, np.inf, 0, 1.0
     for i in range(SWEEP):
@@ -161,7 +161,7 @@ def _refined(
             batch = min(BLOCK, open_parts - begin)
             for n in range(batch):
                 shares[n] = parts.at[now, begin + n] + share / SWEEP
-            _frames_between(scratch, chain, is_waist, carrier, waist, batch)
+            _frames_between(scratch, chain, on_root, carrier, waist, batch)
             configurations_into(ends, interval, shares, batch, scratch.configurations)
             checks += _samples(scratch, postures, False, batch, scratch.places, scratch.turns, obstacles, scratch.found)
             for n in range(batch):
@@ -212,13 +212,13 @@ def limb_sweep_in(
         return int(at), 0
     if at < 0:
         at = admit(ways.entries, scratch.key)
-    is_waist, interval, count = postures.limb.is_waist, carrier.states[0], SWEEP + 1
+    on_root, interval, count = postures.limb.chain.carries, carrier.states[0], SWEEP + 1
     places, turns = carrier.places, carrier.turns
     for i in range(count):
         scratch.shares[i] = i / SWEEP
     configurations_into(ends, interval, scratch.shares, count, scratch.configurations)
     moves_into(ends, interval, SWEEP, scratch.rates, scratch.moves)
-    if is_waist:
+    if on_root:
         pose_into(postures.limb, scratch.limb, scratch.configurations, count, _NONE, scratch.segments)
         carry(
             chain,
@@ -231,7 +231,7 @@ def limb_sweep_in(
             ways.turns[at],
             ways.sway[at],
         )
-    checks = _samples(scratch, postures, is_waist, count, places, turns, obstacles, scratch.coarse)
+    checks = _samples(scratch, postures, on_root, count, places, turns, obstacles, scratch.coarse)
     least = least_of(scratch.coarse, scratch.checks.apart)
     ways.least[at], ways.proven[at] = least, _UNKNOWN
     if least < wanted:

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, limits
+from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
-from elbowroom.planning.exact.refine.sampling import drawn_postures
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, chain_of, levers_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
@@ -42,7 +42,7 @@ class PostureSet(NamedTuple):
     limits: Floats  # (d, 2) of the joints, radians
     speed: float  # the greatest over all components together, rad/s, and
     acceleration: float  # rad/s^2
-    resting: Bools  # (W,) which of an arm's postures touch the naturally walking body; none of the waist's
+    resting: Bools  # (W,) which postures touch the naturally walking body
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +68,8 @@ class UpperBodyModel:
         limbs = {group: limb_of(body, group) for group in LOCAL_GROUPS}
         points = {group: _points(limb, motions.clips(group), settings) for group, limb in limbs.items()}
         reaches = {group: _reach(group, limb) for group, limb in limbs.items()}
-        own_body, arms = OwnBody(body, goals), LOCAL_GROUPS[1:]
-        chain = chain_of(body, limbs[DofGroup.WAIST], max(reaches[arm] for arm in arms))
+        own_body = OwnBody(body, goals)
+        chain = chain_of(body, limbs[DofGroup.WAIST], max(reaches[group] for group in CHILDREN))
         sets: dict[DofGroup, PostureSet] = {}
         parts = own_parts(body, own_body.pairs)
         made = UpperBodyModel(settings, interval, body, goals, limbs, points, reaches, sets, chain, own_body, parts)
@@ -82,8 +82,8 @@ class UpperBodyModel:
         postures = postures_of(limb, points, settings.mean_speed_of(group) * self.interval)
         postures = postures._replace(reach=self.reaches[group])
         resting = np.zeros(postures.moves.shape[1], np.bool_)
-        if group is not DofGroup.WAIST:
-            resting = self.own_body.resting(LOCAL_GROUPS.index(group) - 1, postures)
+        if group.clear_of:
+            resting = self.own_body.resting(group, postures)
         speed, acceleration = settings.speed_of(group), settings.acceleration_of(group)
         return PostureSet(postures, levers_of(self.body, limb), limits(group), speed, acceleration, resting)
 

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.planning.exact.group.caches import PlanCaches, new_caches, with_set
+from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
 from elbowroom.planning.exact.plan.attempts import AttemptOrder
 from elbowroom.planning.exact.plan.full_plan import StandingPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans
 from elbowroom.planning.exact.refine.sampling import Pool, RefinementSettings
-from elbowroom.planning.exact.upper_body_model import PostureSet, UpperBodyModel
 from elbowroom.planning.result import Blockade
 
 Floats = NDArray[np.float64]

@@ -1,0 +1,130 @@
+"""The paths of the groups that hang on the waist, under its path: clear of the obstacles and of the body."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import CHILDREN, LOCAL, SEARCH_ORDER, DofGroup, columns_of, side_by_side
+from elbowroom.planning.exact.group.caches import PlanCaches
+from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
+from elbowroom.planning.exact.group.path_problem import PathProblem
+from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, extras_of
+from elbowroom.planning.exact.lattice.lattice import EXTRA
+from elbowroom.planning.exact.plan.evidence import EvidenceLog
+from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body between key times
+_NO_KEYS = np.zeros((0, LOCAL))
+
+
+class GroupPaths(NamedTuple):
+    """The paths of the groups, in the order of their search, as far as they were found; and the one that ended it."""
+
+    paths: tuple[GroupPath, ...]
+    failed: GroupPath | None
+    reached: int  # the key time that all groups reached
+    keys: Floats = _NO_KEYS  # (n+1, 11) the upper body's key postures if none failed, and
+    velocities: Floats = _NO_KEYS  # (n+1, 11) its velocities there
+
+    @staticmethod
+    def joined(paths: list[GroupPath], reached: int) -> "GroupPaths":
+        """The paths of all groups."""
+        keys = side_by_side({group: path.keys for group, path in zip(SEARCH_ORDER, paths, strict=True)})
+        velocities = side_by_side({group: path.velocities for group, path in zip(SEARCH_ORDER, paths, strict=True)})
+        return GroupPaths(tuple(paths), None, reached, keys, velocities)
+
+
+class ChildSearch:
+    """Searches the paths of the waist's children along one root path."""
+
+    def __init__(self, caches: PlanCaches, problem: PathProblem, rounds: int) -> None:
+        """At most `rounds` motions may turn out to run into the body."""
+        self._caches, self._problem, self._rounds = caches, problem, rounds
+        self._contacts: list[Contact] = []  # of all motions along this path
+
+    def under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
+        """The children's paths under the waist's; those that have a guide follow it."""
+        horizon = self._problem.path.horizon
+        if waist.reached < horizon:
+            return GroupPaths((), waist, waist.reached)
+        paths, first, whole, touching = [waist], 0, bool(self._contacts), 0
+        for _ in range(self._rounds):
+            del paths[1 + first :]
+            for group in CHILDREN[first:]:
+                path = self._path(group, paths, guides.get(group), evidence_log, whole=whole)
+                if path.reached < horizon:
+                    return GroupPaths(tuple(paths), path, path.reached)
+                paths.append(path)
+            found = GroupPaths.joined(paths, horizon)
+            contact = self._self_contact(found)
+            if contact is None:
+                return found
+            first, touching, whole = *contact, True
+            self._remember(paths, *contact)
+        return GroupPaths(tuple(paths[:-1]), paths[-1], touching)
+
+    def _path(
+        self,
+        group: DofGroup,
+        paths: list[GroupPath],
+        follow: Guide | None,
+        evidence_log: EvidenceLog,
+        *,
+        whole: bool,
+    ) -> GroupPath:
+        """The path of one group among those of the groups before it; if `whole`, the body is where these have it."""
+        resting = None if whole else self._resting(group)
+        task = self._problem.task(group, paths[0].entries, resting, follow)
+        if whole:
+            costs = self._own_body_costs(group, paths, task)
+            task = task._replace(added=costs if follow is None else costs + task.added)
+        return evidence_log.search(group, task)
+
+    def _resting(self, group: DofGroup) -> Floats32:
+        """Infinite where a node touches the naturally walking body, (n+1, W+EXTRA)."""
+        resting = self._caches.own_nodes[group].resting
+        costs = np.zeros((len(self._problem.goals), len(resting) + EXTRA), np.float32)
+        costs[:, : len(resting)][:, resting] = np.inf
+        return costs
+
+    def _own_body_costs(self, group: DofGroup, paths: list[GroupPath], task: GroupTask) -> Floats32:
+        """Infinite where a node touches the body as the groups before have it, or is near to one that did."""
+        problem, made = self._problem, self._caches.group(group)
+        around, walk = self._around(paths), np.zeros_like(problem.goals)
+        for other, _ in zip(SEARCH_ORDER, paths, strict=False):
+            walk[:, columns_of(other)] = problem.goals[:, columns_of(other)]
+        costs = own_body_costs(
+            self._caches.own_nodes[group],
+            OwnBodyTask(task.goals, task.previous, task.start, task.settled, walk, around, problem.path.states),
+        )
+        for contact in self._contacts:
+            t = contact.depth
+            if contact.group is group and contact.happens(around[t]):
+                extras = extras_of(made, task).postures[t]
+                rule_out_near(costs[t], made.postures.configurations, extras, contact.posture, _ALIKE)
+        return costs
+
+    def _around(self, paths: list[GroupPath]) -> Floats:
+        """The upper body (n+1, 11) of the groups that have a path, zero elsewhere."""
+        around = np.zeros_like(self._problem.goals)
+        for group, path in zip(SEARCH_ORDER, paths, strict=False):
+            around[:, columns_of(group)] = path.keys
+        return around
+
+    def _remember(self, paths: list[GroupPath], child: int, interval: int) -> None:
+        """Remember what a child did at both ends of an interval in which it ran into the body."""
+        around = self._around(paths[: 1 + child])
+        for t in range(max(interval, 1), interval + 2):
+            posture = paths[1 + child].keys[t].copy()
+            self._contacts.append(Contact(CHILDREN[child], t, around[t], posture))
+
+    def _self_contact(self, found: GroupPaths) -> tuple[int, int] | None:
+        """The child and the first interval in which the shown motion runs into the body, or None."""
+        problem, keys, rates = self._problem, found.keys, found.velocities
+        children = self._caches.own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        return next(((child, k) for k, child in enumerate(children.tolist()) if child >= 0), None)
