@@ -239,6 +239,32 @@ def _rehang(content: dict[str, list[dict[str, list[int]]]], node: int, parent: i
     content["nodes"][parent]["children"].append(node)
 
 
+_WORDS = {
+    "hips": "pelvis",
+    "spine": "spine",
+    "chest": "chest",
+    "upperChest": "upperChest",
+    "neck": "neck",
+    "head": "head",
+}
+_LIMBS = {"Shoulder": "clavicle", "UpperArm": "armUpper", "LowerArm": "armLower", "Hand": "hand",
+          "UpperLeg": "legUpper", "LowerLeg": "legLower", "Foot": "foot", "Toes": "toe"}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["{}{}0001_bind_JNT", "{}{}_joint", "rig:{}{}_JNT", "{}{}Bone"])
+def test_words_that_only_say_that_it_is_a_joint_are_passed_over(name: str) -> None:
+    def called(bone: str) -> str:
+        side = {"left": "L_", "right": "R_"}.get(bone.removesuffix(bone.removeprefix("left").removeprefix("right")), "")
+        stem = bone.removeprefix("left").removeprefix("right")
+        return name.format(side, _WORDS.get(bone) or _LIMBS[stem])
+
+    nodes = _nodes(called)
+    mapping = map_bones(nodes)
+    _found_right(nodes, mapping.nodes)
+    assert mapping.nodes.keys() >= REQUIRED
+    assert "topology" not in mapping.how.values()
+
+
 def _trunk_first(names: dict[str, str]) -> bytes:
     """A figure whose pelvis, with the legs on it, hangs on the first bone of the trunk."""
     glb = build(Recipe(names=names))

@@ -13,6 +13,7 @@ from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
 from elbowroom.body.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
+from hanim_builder import HanimRecipe, build_hanim
 from odd_bodies import box_body
 from shared_data import SHARED, needs_shared
 
@@ -160,6 +161,45 @@ def test_a_vrm_of_no_walkers_size_is_refused_and_can_be_scaled(unit: float, tmp_
         load_with_surface(path)
     humanoid, surface = load_with_surface(path, LoadSettings(height=1.7))
     assert crown_of(humanoid, surface) == pytest.approx(1.7)
+
+
+@pytest.mark.parametrize(
+    ("data", "name", "words"),
+    [
+        (b"", "a.glb", "a.glb is empty"),
+        (b"", "a.wrl", "a.wrl is empty"),
+        (b"\x00\x01\x02\x03\x04", "a.glb", "begins with the bytes 00 01 02 03 04"),
+        (b'{"asset"', "a.gltf", "line 1, column 9 is not as JSON goes on"),
+        (b'{"a": "\xff"}', "a.gltf", "its byte 7 is not UTF-8 text"),
+        (b'{"a": ' + b"1" * 5000 + b"}", "a.gltf", "too many digits"),
+        (b"\x1f\x8bxxxx", "a.x3dz", "its gzip data are damaged"),
+        (b'{"asset": {"version": "2.0"}, "nodes": [{"name": "a"}]}', "a.gltf", "no skeleton of a humanoid"),
+    ],
+)
+def test_messages_are_for_people(data: bytes, name: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_humanoid_bytes(data, name)
+    assert words in str(caught.value)
+    assert "bones.json" not in str(caught.value)
+    assert "b'" not in str(caught.value)
+
+
+def test_a_scale_is_told_by_the_name_of_its_node() -> None:
+    text = build_hanim(HanimRecipe("vrml", "2.0", points=4)).decode()
+    name = 'name "l_hip"'
+    assert name in text
+    with pytest.raises(InputError, match="the scale of the node 'l_hip' is"):
+        load_humanoid_bytes(text.replace(name, f"{name} scale 1 2 1").encode(), "a.wrl")
+
+
+def test_a_picture_that_is_missing_and_one_of_elsewhere_are_told_apart(tmp_path: Path) -> None:
+    text = build_hanim(HanimRecipe("vrml", "2.0", points=4)).decode()
+    for url, why in (("skin.png", "there is no such file beside the scene"), ("http://a.b/c.png", "only files beside")):
+        path = tmp_path / "a.wrl"
+        path.write_text(
+            text.replace("appearance Appearance {", f'appearance Appearance {{ texture ImageTexture {{ url "{url}" }}')
+        )
+        assert any(why in note for note in Humanoid.load(path).meta.notes), url
 
 
 def test_misplaced_optional_bones_are_left_out_with_a_note() -> None:

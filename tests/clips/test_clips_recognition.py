@@ -1,16 +1,21 @@
 """Unit, up axis, facing and rest pose of motion files are recognised, and the same motion comes out of all of them."""
 
+import json
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bvh_builder import BvhRecipe, random_motion, write_bvh
+from avatar_builder import Recipe, build
+from bvh_builder import BONES, BvhRecipe, random_motion, write_bvh
+from elbowroom.body.dof import DofGroup
+from elbowroom.clips.body_motion import BodyMotion, joint_chain
 from elbowroom.clips.files import open_motion, parse_motion
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
+from odd_bodies import SKELETON
 from shared_data import SHARED, needs_shared
 
 Y_UP = quaternion.IDENTITY
@@ -110,7 +115,7 @@ def test_all_clips_of_a_library_are_read() -> None:
         ("malformed-no-motion", "no MOTION"),
         ("malformed-unclosed-joint", "brace is not closed"),
         ("valid-empty-motion", "no frames"),
-        ("valid-minimal-root", "head"),
+        ("valid-minimal-root", "no skeleton of a humanoid"),
     ],
 )
 def test_fixtures_are_refused_for_the_true_reason(name: str, said: str) -> None:
@@ -124,3 +129,67 @@ def test_files_that_hold_no_motion_are_refused(tmp_path: Path) -> None:
         parse_motion(b"MZ\x90 not a motion", "a.bvh")
     with pytest.raises(InputError, match="cannot be read"):
         open_motion(tmp_path / "missing.bvh")
+
+
+def _marching(frames: int = 120, fps: float = 30.0) -> BodyMotion:
+    """A figure that lifts its feet in turn, one stride a second, and swings its arms."""
+    time = np.arange(frames) / fps
+    local = np.tile(quaternion.IDENTITY, (frames, len(BONES), 1))
+    for side, begin in (("left", 0.0), ("right", 0.5)):
+        swing = np.sin(2.0 * np.pi * (time + begin))
+        for part, angles in (("UpperLeg", -0.6), ("LowerLeg", 1.2)):
+            local[:, BONES.index(side + part)] = quaternion.about_axis(0, angles * np.maximum(swing, 0.0))
+        hang = quaternion.about_axis(2, -1.4 if side == "left" else 1.4)
+        local[:, BONES.index(f"{side}UpperArm")] = quaternion.multiply(quaternion.about_axis(0, -0.3 * swing), hang)
+    turns = local.copy()
+    for i, bone in enumerate(BONES[1:], start=1):
+        above = BONES.index(joint_chain(BONES, bone)[-2])
+        turns[:, i] = quaternion.multiply(turns[:, above], local[:, i])
+    rest = SKELETON.positions[[SKELETON.index(bone) for bone in BONES]]
+    return BodyMotion("march", BONES, rest, 1.0 / fps, turns, np.tile(rest[0], (frames, 1)), np.zeros((2, 2, 3)))
+
+
+def test_marching_on_the_spot_is_a_walk() -> None:
+    clip = parse_motion(write_bvh(_marching(), BvhRecipe()), "march.bvh").clip()
+    strides = clip.planning.track.strides
+    assert strides.on_the_spot
+    assert 0.8 < strides.speed < 2.0
+    assert np.diff([frame for _, frame in strides.strikes]) == pytest.approx(15.0, abs=1.0)
+    assert np.ptp(clip.swing.goal(DofGroup.LEFT_ARM, np.linspace(0.0, 1.0, 20), np.full(20, strides.speed))[:, 0]) > 0.3
+
+
+def test_a_jump_with_both_feet_is_no_walk() -> None:
+    motion = _marching()
+    for part in ("UpperLeg", "LowerLeg", "Foot", "Toes"):
+        left, right = (BONES.index(side + part) for side in ("left", "right") if side + part in BONES)
+        motion.turns[:, right] = motion.turns[:, left]
+    strides = parse_motion(write_bvh(motion, BvhRecipe()), "jump.bvh").clip().planning.track.strides
+    assert not strides.walks
+
+
+def test_bones_are_taken_from_the_file_beside(tmp_path: Path) -> None:
+    odd = {name: f"part{number}" for number, name in enumerate(BONES)}
+    path = tmp_path / "odd.bvh"
+    path.write_bytes(write_bvh(random_motion(np.random.default_rng(3)), BvhRecipe(names=odd)))
+    swapped = {bone: odd[bone] for bone in BONES} | {"leftLowerArm": odd["leftHand"], "leftHand": odd["leftLowerArm"]}
+    (tmp_path / "odd.bvh.bones.json").write_text(json.dumps(swapped))
+    with pytest.raises(InputError, match=r"leftHand .* must hang below"):
+        open_motion(path).clip()
+    (tmp_path / "odd.bvh.bones.json").write_text(json.dumps({bone: odd[bone] for bone in BONES}))
+    clip = open_motion(path).clip()
+    assert clip.figure.bones == {bone: clip.figure.bones[bone] for bone in BONES}
+    without = tmp_path / "glb" / "a.glb"
+    without.parent.mkdir()
+    without.write_bytes(build(Recipe(names=dict.fromkeys(BONES, "x"), mesh=False)))
+    with pytest.raises(InputError, match="holds no animation"):
+        open_motion(without)
+
+
+def test_what_is_no_motion_is_said_plainly() -> None:
+    for data, words in (
+        (b"", "is empty"),
+        (b"\x00\x01\x02\x03", "begins with the bytes 00 01 02 03"),
+        (b"<html>", "begins with '<html>'"),
+    ):
+        with pytest.raises(InputError, match=words):
+            parse_motion(data, "a.bvh")

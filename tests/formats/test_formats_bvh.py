@@ -107,7 +107,7 @@ def test_a_file_without_frames_is_a_skeleton() -> None:
         ("Frames: 2", "Frames: two", 17, "whole number"),
         ("Frames: 2", "Frames: -2", 17, "whole number"),
         ("Frames: 2", "Frames: 3", 17, "Frames: 3, but 2 follow"),
-        ("Frames: 2", "Frames: 1", 17, "Frames: 1, but 2 follow"),
+        ("Frames: 2", "Frames: 0", 17, "Frames: 0, but"),
         ("Frames: 2", "Frames: 999999999", 17, "whole number up to"),
         ("Frame Time: 0.04", "Frame Time: 0", 18, "seconds"),
         ("Frame Time: 0.04", "Frame Time: inf", 18, "seconds"),
@@ -139,3 +139,8 @@ def test_depth_and_counts_are_bounded() -> None:
     for text, said in ((deep, "deep"), (many, "2000 joints")):
         with pytest.raises(InputError, match=said):
             parse_bvh(f"{text}\nMOTION\nFrames: 1\nFrame Time: 1\n".encode(), "a.bvh")
+
+
+def test_one_frame_more_than_it_says_is_read() -> None:
+    more = parse_bvh(GOOD.replace("Frames: 2", "Frames: 1").encode(), "a.bvh")
+    assert np.array_equal(more.values, parse_bvh(GOOD.encode(), "a.bvh").values)

@@ -26,7 +26,7 @@ def _binary(glb: bytes) -> bytes:
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"", "starts with b''"),
+        (b"", "is empty"),
         (b"PK\x03\x04 zip", "neither a GLB"),
         (GLB[:8], "at least 20"),
         (GLB[:-1], "cut off"),

@@ -132,9 +132,14 @@ def _check_scales(place: str, tree: NodeTree, bones: Mapping[str, int]) -> None:
             if scale.min() <= 0.0 or np.ptp(scale) > _UNIFORM * scale.max():
                 shown = ", ".join(f"{component:g}" for component in scale)
                 raise InputError(
-                    f"{place}: nodes[{above}].scale is ({shown}): above the bone {bone} it must be positive and the "
-                    "same along all axes (apply the scale in the modelling tool)"
+                    f"{place}: the scale of {_called(tree, above)} is ({shown}): above the bone {bone} it must be "
+                    "positive and the same along all axes (apply the scale in the modelling tool)"
                 )
+
+
+def _called(tree: NodeTree, node: int) -> str:
+    """A node for messages: by its name, without one by its number in the glTF file."""
+    return f"the node {tree.names[node]!r}" if tree.names[node] else f"nodes[{node}]"
 
 
 def _ground(figure: Figure, points: BodyPoints) -> float:

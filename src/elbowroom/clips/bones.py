@@ -6,9 +6,11 @@ import numpy as np
 
 from elbowroom.body.bone_mapping.file_nodes import FileNodes
 from elbowroom.body.bone_mapping.mapping import map_bones
+from elbowroom.body.bone_mapping.override import override_nodes
 from elbowroom.body.bone_mapping.structure import CheckedBones, checked_bones
 from elbowroom.body.file_bones import file_nodes
 from elbowroom.body.rig_repair import repaired
+from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.geometry import quaternion
@@ -17,23 +19,33 @@ from elbowroom.geometry import quaternion
 _STANDS = (quaternion.IDENTITY, quaternion.about_axis(0, -0.5 * np.pi), quaternion.about_axis(2, 0.5 * np.pi))
 
 
-def bvh_bones(tree: NodeTree, place: str) -> dict[str, int]:
-    """The bones of a BVH skeleton, parents first; raises `InputError` where one that is needed is missing."""
+def bvh_bones(tree: NodeTree, place: str, told: Field | None = None) -> dict[str, int]:
+    """The bones of a BVH skeleton, parents first; raises `InputError` where one that is needed is missing.
+
+    `told` is what the user says of them, as for avatars (`FILE.bones.json`).
+    """
     places = tree.world_matrices(tree.rotations)[:, :3, 3]
     stood = [FileNodes(tree.names, tree.parents, quaternion.rotate(turn, places)) for turn in _STANDS]
-    nodes, mapping = min(((nodes, map_bones(nodes)) for nodes in stood), key=lambda pair: len(pair[1].missing))
-    return checked_bones(mapping.nodes, nodes, place, strict=True).nodes
+    chosen = {} if told is None else override_nodes(told, stood[0])
+    nodes, mapping = min(((nodes, map_bones(nodes, chosen)) for nodes in stood), key=lambda pair: len(pair[1].missing))
+    return checked_bones(mapping.nodes, nodes, place, strict=False, whole=True).nodes
 
 
-def gltf_bones(gltf: Gltf, tree: NodeTree, named: dict[str, int] | None) -> tuple[NodeTree, dict[str, int]]:
+def gltf_bones(
+    gltf: Gltf, tree: NodeTree, named: dict[str, int] | None, told: Field | None = None
+) -> tuple[NodeTree, dict[str, int]]:
     """The bones of a glTF skeleton, `named` by the file itself or found, and the tree with hands and feet it lacked.
+
+    `told` is what the user says of them, as for avatars.
 
     Raises `InputError` where one that is needed is missing.
     """
     nodes = file_nodes(gltf, tree)
+    chosen = {} if told is None else override_nodes(told, nodes)
     if named is not None:
-        return tree, checked_bones(named, nodes, gltf.name, strict=True).nodes
-    checked = checked_bones(map_bones(nodes).nodes, nodes, gltf.name, strict=False)
+        bones = {bone: node for bone, node in (named | chosen).items() if node is not None}
+        return tree, checked_bones(bones, nodes, gltf.name, strict=True).nodes
+    checked = checked_bones(map_bones(nodes, chosen).nodes, nodes, gltf.name, strict=False)
     mended, bones, _ = repaired(gltf, tree, _without_detached(checked))
     return (tree if mended is gltf else read_nodes(mended)), bones
 

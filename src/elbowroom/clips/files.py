@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from elbowroom.body.bone_mapping.override import override_beside, read_override
 from elbowroom.clips.body_motion import body_motion
 from elbowroom.clips.bones import bvh_bones, gltf_bones
 from elbowroom.clips.clip import Clip
@@ -12,6 +13,7 @@ from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.bvh import MAX_BYTES, is_bvh, parse_bvh
+from elbowroom.formats.fields import Field, beginning_of
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.takes import Take
@@ -51,7 +53,8 @@ def open_motion(path: Path, told: Told | None = None) -> MotionFile:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
     except ValueError:
         raise InputError(f"{str(path)!r} is not a file name") from None
-    return parse_motion(data, path.name, told, path.parent)
+    beside = override_beside(path)
+    return parse_motion(data, path.name, told, path.parent, None if beside is None else read_override(beside))
 
 
 def split_reference(reference: str | Path) -> tuple[Path, str | None]:
@@ -63,15 +66,21 @@ def split_reference(reference: str | Path) -> tuple[Path, str | None]:
     return Path(file), name
 
 
-def parse_motion(data: bytes, name: str, told: Told | None = None, folder: Path | None = None) -> MotionFile:
-    """Read the bytes of a motion file; `folder` is where a glTF may have its buffers. Raises `InputError`."""
+def parse_motion(
+    data: bytes, name: str, told: Told | None = None, folder: Path | None = None, bones: Field | None = None
+) -> MotionFile:
+    """Read the bytes of a motion file; `folder` is where a glTF may have its buffers.
+
+    `bones` is what the user says about its nodes (`FILE.bones.json`). Raises `InputError`.
+    """
     told = told or Told()
+    if not data:
+        raise InputError(f"{name} is empty")
     if _is_gltf(data):
-        return _from_gltf(parse_gltf(data, name, folder), told)
+        return _from_gltf(parse_gltf(data, name, folder), told, bones)
     if not is_bvh(data):
-        shown = data[:16].decode("latin-1")
-        raise InputError(f"{name} begins with {shown!r}: it is neither BVH (HIERARCHY) nor glTF, GLB or VRMA")
-    return _from_bvh(data, name, told)
+        raise InputError(f"{name}{beginning_of(data)}: it is neither BVH (HIERARCHY) nor glTF, GLB or VRMA")
+    return _from_bvh(data, name, told, bones)
 
 
 def is_motion_only(data: bytes, name: str) -> bool:
@@ -94,19 +103,19 @@ def _is_gltf(data: bytes) -> bool:
     return data[:4] == b"glTF" or data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{")
 
 
-def _from_bvh(data: bytes, name: str, told: Told) -> MotionFile:
+def _from_bvh(data: bytes, name: str, told: Told, named: Field | None) -> MotionFile:
     take = _at_rate(parse_bvh(data, name).take(), told)
     if not len(take):
         raise InputError(f"{name} holds no frames: it is a skeleton without motion")
 
     def clip() -> Clip:
-        figure = figure_of(take, bvh_bones(take.tree, name), told, name)
+        figure = figure_of(take, bvh_bones(take.tree, name, named), told, name)
         return Clip(take.name, name, "BVH", len(take), figure, body_motion(take, figure, floor_known=False))
 
     return MotionFile(name, "BVH", {take.name: clip})
 
 
-def _from_gltf(gltf: Gltf, told: Told) -> MotionFile:
+def _from_gltf(gltf: Gltf, told: Told, chosen: Field | None) -> MotionFile:
     tree = read_nodes(gltf)
     animations = read_animations(gltf, len(tree))
     if not animations:
@@ -118,7 +127,7 @@ def _from_gltf(gltf: Gltf, told: Told) -> MotionFile:
 
     def clip(index: int, name: str) -> Clip:
         place = f"{gltf.name}#{name}"
-        whole, bones = gltf_bones(gltf, tree, named)
+        whole, bones = gltf_bones(gltf, tree, named, chosen)
         take = _at_rate(take_of(animations[index], whole, place), told)
         figure = figure_of(take, bones, told, place, t_posed=vrma is not None, metric=True)
         return Clip(name, gltf.name, kind, len(take), figure, body_motion(take, figure, floor_known=True))

@@ -9,16 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.gait import phase_rate
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry.quaternion import angle_between
 
 Floats = NDArray[np.float64]
 
 _STEP = 0.12  # of the hips' height: an ankle that swings less far ahead does not walk
+_LIFT = 0.06  # of the hips' height: a foot that is lifted less does not march
+_MARCHES = 4  # strikes at least of a march
+_EVEN = 0.3  # of a stride: no step of a march is shorter
 _SOONEST = 0.35  # seconds between two strikes of one foot
 _LOW = 0.2  # of a foot's range of height: so low it stands
 _SPOT = 0.3  # of the speed that the feet show: a walk that gets on less fast is one on the spot
-_SLOWEST = 0.15  # m/s: who is slower does not walk
+_SLOWEST, _FASTEST = 0.15, 2.5  # m/s: who is slower does not walk
 _LIMP = 0.2  # of a stride: no step is shorter
 
 
@@ -44,16 +48,41 @@ def strides_of(motion: BodyMotion, ground: Floats, heading: Floats) -> Strides:
     closed = loop_frames(motion)
     marks: list[tuple[float, int]] = []
     for side in range(2):
-        marks += [(float(at), side) for at in _peaks(ahead[side], motion, closed)]
+        marks += [(float(at), side) for at in _peaks(ahead[side], _STEP, motion, closed)]
     strikes = _alternating(sorted(marks))
     speed = _ground_speed(motion, ahead) if len(strikes) >= 3 else 0.0
+    way = float(np.linalg.norm(np.diff(ground, axis=0), axis=1).sum())
     if speed < _SLOWEST or not _regular(strikes):
-        return Strides((), np.zeros(len(motion)), 0.0, False, closed)
-    way = np.linalg.norm(np.diff(ground, axis=0), axis=1).sum()
+        strikes, speed = _marched(motion, closed)
+        if speed < _SLOWEST or way > _SPOT * speed * motion.duration:
+            return Strides((), np.zeros(len(motion)), 0.0, False, closed)
     frames = np.array([frame for _, frame in strikes])
     steps = np.array([phase for phase, _ in strikes])
     on_the_spot = bool(way < _SPOT * speed * motion.duration)
     return Strides(strikes, _phases(len(motion), frames, steps), speed, on_the_spot, closed)
+
+
+def _marched(motion: BodyMotion, closed: int) -> tuple[tuple[tuple[float, float], ...], float]:
+    """Strikes where the feet are only lifted, in turn: they come down after each lift; and the speed of such steps.
+
+    The speed is that of a walk with as many steps. No strikes and no speed where nobody marches.
+    """
+    marks: list[tuple[float, int]] = []
+    for side, name in enumerate(("left", "right")):
+        height = motion.position(f"{name}Foot")[:, 1]
+        low = float(np.percentile(height, 5.0)) + _LOW * float(np.ptp(np.percentile(height, [5.0, 95.0])))
+        for peak in _peaks(height, _LIFT, motion, closed):
+            after = np.roll(height, -int(peak)) if closed else height[int(peak) :]
+            down = np.flatnonzero(after <= low)
+            if len(down):
+                marks.append((float(peak + down[0]), side))
+    strikes = _alternating(sorted(marks))
+    if len(strikes) < _MARCHES or not _regular(strikes, _EVEN):
+        return (), 0.0
+    rate = (strikes[-1][0] - strikes[0][0]) / ((strikes[-1][1] - strikes[0][1]) * motion.frame_time)
+    speeds = np.linspace(_SLOWEST, _FASTEST, 64)
+    rates = np.array([phase_rate(float(speed), 0.0, 0.0) for speed in speeds])
+    return strikes, float(speeds[int(np.argmin(np.abs(rates - rate)))])
 
 
 def loop_frames(motion: BodyMotion) -> int:
@@ -77,11 +106,11 @@ def _ahead(motion: BodyMotion, heading: Floats, side: str) -> Floats:
     return away[:, 0] * np.sin(heading) + away[:, 2] * np.cos(heading)
 
 
-def _peaks(ahead: Floats, motion: BodyMotion, closed: int) -> Floats:
-    """Frames at which an ankle is farthest ahead; of a loop those of one round, found on three."""
+def _peaks(ahead: Floats, least: float, motion: BodyMotion, closed: int) -> Floats:
+    """Frames at which an ankle is farthest ahead or up, by `least` hip heights; of a loop those of one round."""
     from scipy.signal import find_peaks  # takes longer to import than a whole start
 
-    size = _STEP * float(motion.rest[0, 1])
+    size = least * float(motion.rest[0, 1])
     distance = max(int(_SOONEST / motion.frame_time), 1)
     if not closed:
         return np.asarray(find_peaks(ahead, prominence=size, distance=distance)[0], np.float64)
@@ -103,11 +132,11 @@ def _alternating(marks: list[tuple[float, int]]) -> tuple[tuple[float, float], .
     return tuple((first + 0.5 * k, frame) for k, (frame, _) in enumerate(kept))
 
 
-def _regular(strikes: tuple[tuple[float, float], ...]) -> bool:
+def _regular(strikes: tuple[tuple[float, float], ...], least: float = _LIMP) -> bool:
     """Whether most steps take their part of the stride."""
     steps = np.diff([frame for _, frame in strikes])
     shares = steps[1:] / (steps[1:] + steps[:-1])
-    return bool(np.median(np.minimum(shares, 1.0 - shares)) > _LIMP)
+    return bool(np.median(np.minimum(shares, 1.0 - shares)) > least)
 
 
 def _phases(count: int, frames: Floats, steps: Floats) -> Floats:

@@ -239,7 +239,9 @@ def _motion(text: str, line: int, joints: int, width: int, name: str) -> tuple[f
         limits = f"{_FASTEST:g} to {_SLOWEST:g} seconds"
         raise InputError(f"{place}: Frame Time: {step[1][:_SHOWN]!r} is not a number from {limits}")
     begin = line + text.count("\n", 0, step.end())
-    values = _numbers(text, step.end(), begin, frames * width, name)
+    values = _numbers(text, step.end(), begin, (frames + 1) * width, name)
+    if len(values) == (frames + 1) * width and frames and not _first_odd_line(text[step.end() :], begin, width):
+        frames += 1  # many writers count from 0
     if len(values) != frames * width:
         mend = _first_odd_line(text[step.end() :], begin, width)
         raise InputError(

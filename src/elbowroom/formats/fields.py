@@ -122,12 +122,34 @@ def parse_json(text: bytes, name: str) -> dict[str, Any]:
     except RecursionError:
         raise InputError(f"{name}: the JSON part is nested too deeply") from None
     except ValueError as error:
-        reason = " ".join(str(error).split())[:120]
-        raise InputError(f"{name}: the JSON part cannot be read: {reason}") from None
+        raise InputError(f"{name}: the JSON part cannot be read: {_fault(text, error)}") from None
     if not isinstance(value, dict):
         raise InputError(f"{name}: the JSON part is not an object")
     return value
 
 
+def beginning_of(data: bytes) -> str:
+    """What a file begins with, to go on with after its name in a message."""
+    if not data:
+        return " is empty"
+    text = data[:12].decode("latin-1")
+    return f" begins with {text!r}" if text.isprintable() else f" begins with the bytes {data[:8].hex(' ')}"
+
+
+def _fault(text: bytes, error: ValueError) -> str:
+    """Where JSON goes wrong, in words for its writer."""
+    if not text.strip(b"\x00 \t\r\n"):
+        return "it is empty"
+    if isinstance(error, json.JSONDecodeError):
+        return f"line {error.lineno}, column {error.colno} is not as JSON goes on"
+    if isinstance(error, UnicodeDecodeError):
+        return f"its byte {error.start} is not UTF-8 text"
+    return str(error) if isinstance(error, _NoNumberError) else "a number in it has too many digits"
+
+
+class _NoNumberError(ValueError):
+    """A word that stands for no number in JSON."""
+
+
 def _not_a_number(word: str) -> NoReturn:
-    raise ValueError(f"{word} is not a JSON number")
+    raise _NoNumberError(f"{word} is not a JSON number")

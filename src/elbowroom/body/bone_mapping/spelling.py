@@ -12,6 +12,7 @@ from elbowroom.body.bone_mapping.file_nodes import FileNodes
 _SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
 _PREFIXES = {"mixamorig", "armature", "bip", "biped", "j", "c", "def", "character", "valve", "valvebiped", "cc", "base"}
 
+_NO_NEWS = {"bind", "jnt", "joint", "jt", "bone", "bn", "skin", "deform"}  # words that say only that it is a joint
 # The rest of a name without side, prefix and separators -> bone. Earlier spellings win over later ones.
 _MIDDLE = {
     "hips": ("hips", "pelvis", "hip"),
@@ -78,6 +79,9 @@ def simplified(name: str) -> str:
         words = words[1:]
     sides = [word for word in words if word in _SIDES]
     rest = [str(int(word)) if word.isdigit() and len(word) < 4 else word for word in words if word not in _SIDES]
+    telling = [word for word in rest if word not in _NO_NEWS and not (word.isdigit() and word.startswith("0"))]
+    if any(word.isalpha() for word in telling):
+        rest = telling
     return " ".join([_SIDES[word] for word in sides[:1]] + ["".join(rest)])
 
 

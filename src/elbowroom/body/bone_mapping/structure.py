@@ -8,6 +8,7 @@ from elbowroom.body.bones import PARENTS, REQUIRED
 from elbowroom.errors import InputError
 
 _ARMS = ("leftShoulder", "rightShoulder", "leftUpperArm", "rightUpperArm")
+_FEWEST = len(REQUIRED) - 4  # nodes; hands and feet can be added
 _ENDS = ("leftHand", "rightHand", "leftFoot", "rightFoot")
 
 
@@ -21,12 +22,21 @@ class CheckedBones:
     absent: tuple[str, ...] = ()  # hands and feet that the file has no node for
 
 
-def checked_bones(bones: Mapping[str, int], nodes: FileNodes, place: str, strict: bool) -> CheckedBones:
+def checked_bones(
+    bones: Mapping[str, int], nodes: FileNodes, place: str, strict: bool, whole: bool = False
+) -> CheckedBones:
     """The bones checked against the tree; what a VRM file says is taken `strict`, without arms to be hung elsewhere.
+
+    `whole`: hands and feet must be there too, since nothing can be added to the file.
 
     Raises `InputError` if a required bone is missing or does not hang below the bone that should carry it.
     """
-    missing = sorted(REQUIRED - bones.keys() - (frozenset() if strict else frozenset(_ENDS)))
+    missing = sorted(REQUIRED - bones.keys() - (frozenset() if strict or whole else frozenset(_ENDS)))
+    if missing and not strict and len(nodes) < _FEWEST:
+        count = f"{len(nodes)} nodes" if len(nodes) > 1 else "one node"
+        raise InputError(
+            f"{place}: there is no skeleton of a humanoid in it, only {count}: a humanoid has {_FEWEST} bones"
+        )
     if missing:
         raise InputError(f"{place}: no node was found for the bones {', '.join(missing)}{_mend(place, strict)}")
     kept: dict[str, int] = {}

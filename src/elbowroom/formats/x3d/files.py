@@ -5,6 +5,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
 from elbowroom.errors import InputError
+from elbowroom.formats.fields import beginning_of
 from elbowroom.formats.x3d.classic import parse_classic
 from elbowroom.formats.x3d.model import Interface, Node, Notes, X3dScene
 from elbowroom.formats.x3d.recognised import GZIP, UTF16
@@ -25,7 +26,7 @@ def parse_x3d(data: bytes, file: str, notes: Notes) -> X3dScene:
         return parse_classic(_decoded(data), file, notes)
     if head.startswith(b"<") or data[:2] in UTF16:
         return parse_xml(data, file, notes)
-    raise InputError(f"{file} starts with {data[:10]!r}: VRML97 starts with '#VRML V2.0 utf8', X3D with '#X3D' or '<'")
+    raise InputError(f"{file}{beginning_of(data)}: VRML97 starts with '#VRML V2.0 utf8', X3D with '#X3D' or '<'")
 
 
 def unpacked(data: bytes, file: str) -> bytes:
@@ -34,8 +35,8 @@ def unpacked(data: bytes, file: str) -> bytes:
         stream = zlib.decompressobj(wbits=31)
         try:
             data = stream.decompress(data, MAX_BYTES + 1)
-        except zlib.error as error:
-            raise InputError(f"{file}: it cannot be unpacked: {error}") from None
+        except zlib.error:
+            raise InputError(f"{file}: it cannot be unpacked: its gzip data are damaged") from None
         if not stream.eof and len(data) <= MAX_BYTES:
             raise InputError(f"{file}: it cannot be unpacked: the file was cut off")
     if len(data) > MAX_BYTES:
@@ -100,7 +101,7 @@ class Library:
         name = unquote(url.strip())
         if self._folder is None or not name or len(name) > 500:
             return None
-        if ":" in name or "\\" in name or "\x00" in name or name.startswith("/"):
+        if not _may_be_beside(name):
             return None
         path = PurePosixPath(node.file).parent / name
         try:
@@ -131,8 +132,18 @@ class Library:
 
     def _missing(self, urls: tuple[str, ...], node: Node) -> None:
         wanted = urls[0][:60] if urls else ""
-        why = "only files beside the scene are read" if self._folder else "a file that is sent alone has none beside it"
+        if self._folder is None:
+            why = "a file that is sent alone has none beside it"
+        elif any(_may_be_beside(unquote(url.strip())) and ".." not in url for url in urls):
+            why = "there is no such file beside the scene"
+        else:
+            why = "only files beside the scene are read"
         self._notes.add(f"{node.place}: {wanted!r} is left out: {why}")
+
+
+def _may_be_beside(name: str) -> bool:
+    """Whether a name without escapes is that of a file near the scene, not an address of elsewhere."""
+    return bool(name) and not (":" in name or "\\" in name or "\x00" in name or name.startswith("/"))
 
 
 def _decoded(data: bytes) -> str:
