@@ -18,7 +18,7 @@ from elbowroom.world.obstacles.clearance import clearance_into
 from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
 from elbowroom.world.obstacles.from_above import away_of, ball_radius, heights_of, place_of
 from elbowroom.world.obstacles.layout import Nearby, Spans
-from elbowroom.world.obstacles.rows import any_in, at_span, how_many, row_of, shifted_into, unfilled
+from elbowroom.world.obstacles.rows import any_in, at_span, first_of, how_many, shifted_into, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -101,41 +101,39 @@ def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans) -> bo
     Where legs turn out to lack room, the cells beside that one are looked into too: paths would lead there next.
     """
     fresh, columns, turns = False, room.clear.shape[2], room.clear.shape[3]
+    standing, moving = unfilled(near), unfilled(at_span(passing, 0))
     for i in range(cells.shape[0]):
         j, t = cells[i, 0], cells[i, 1]
         if not _in_doubt(room, i, j, t):
             continue
         fresh = True
-        _measure(room, i, j, t, near, passing)
+        stand = first_of(standing, _copy_near(near, room, room.places[i, j], standing))
+        move = first_of(moving, _copy_near(at_span(passing, i), room, room.places[i, j], moving))
+        _measure(room, (i, j, t), 0.0, stand, move)
         if room.clear[0, i, j, t] < room.grid.margin:
             for m in range(max(j - 1, 0), min(j + 2, columns)):
                 for n in range(max(t - 1, 0), min(t + 2, turns)):
                     if _in_doubt(room, i, m, n):
-                        _measure(room, i, m, n, near, passing)
+                        _measure(room, (i, m, n), (m - j) * room.grid.aside, stand, move)
     return fresh
+
+
+@exact_kernel
+def _copy_near(own: Nearby, room: _Cells, place: Floats, out: Nearby) -> int:
+    """Copy the obstacles that may come near a body at a place (2,) to `out`, as seen from there; their number."""
+    reach, count = room.reach + room.grid.comfort + 2.0 * room.grid.aside, 0
+    for b in range(how_many(own)):
+        x, z = place_of(own, b)
+        if np.hypot(x - place[0], z - place[1]) < ball_radius(own, b) + reach:
+            shifted_into(own, b, place[0], place[1], out, count)
+            count += 1
+    return count
 
 
 @exact_kernel
 def _in_doubt(room: _Cells, i: int, j: int, t: int) -> bool:
     """Whether a cell is narrow, by the map alone."""
     return not room.known[i, j, t] and min(room.clear[0, i, j, t], room.clear[1, i, j, t]) < _NARROW
-
-
-@exact_kernel
-def _lower(found: Floats32, room: _Cells, segments: Floats32, place: Floats, own: Nearby) -> None:
-    """Lower what was found (3, places) to the clearance of capsules about a place (2,) from obstacles."""
-    least, reach = np.empty(found.shape[1], np.float32), room.reach + room.grid.comfort + room.grid.aside
-    one = row_of(unfilled(own), 0)
-    for b in range(how_many(own)):
-        x, z = place_of(own, b)
-        if np.hypot(x - place[0], z - place[1]) >= ball_radius(own, b) + reach:
-            continue
-        shifted_into(own, b, place[0], place[1], one)
-        for g in range(3):
-            part = slice(room.groups[g], room.groups[g + 1])
-            clearance_into(segments[part], room.radii[part], one, least)
-            for n in range(least.shape[0]):
-                found[g, n] = min(found[g, n], least[n])
 
 
 @exact_kernel
@@ -152,23 +150,29 @@ def _best_of(own: Floats32, comfort: float, fine: float) -> float:
 
 
 @exact_kernel
-def _measure(room: _Cells, i: int, j: int, t: int, near: Nearby, passing: Spans) -> None:
-    """The clearance of the capsules in a cell at its best place, and where that is.
+def _measure(room: _Cells, cell: tuple[int, int, int], beside: float, standing: Nearby, moving: Nearby) -> None:
+    """The clearance of the capsules in a cell at its best place, and where that is; all is seen from `beside` it.
 
     Best is where legs, if they lack room, else the trunk, else the arms have most. Clearance changes by no more than
     one walks, so neighbours bound it, and between parallel walls it is the bound.
     """
-    fine, comfort, middle = room.grid.aside / (_PLACES - 1), room.grid.comfort, _PLACES // 2
+    (i, j, t), middle = cell, _PLACES // 2
+    fine, comfort = room.grid.aside / (_PLACES - 1), room.grid.comfort
     room.known[i, j, t] = True
     segments, capsules = np.empty((room.radii.shape[0], 6, _PLACES), np.float32), room.capsules[t]
     for c in range(segments.shape[0]):
         for k in range(6):
             along = room.left[0] if k % 3 == 0 else room.left[1] if k % 3 == 2 else 0.0
             for n in range(_PLACES):
-                segments[c, k, n] = capsules[c, k] + fine * (n - middle) * along
+                segments[c, k, n] = capsules[c, k] + (beside + fine * (n - middle)) * along
     found = np.full((3, _PLACES), np.float32(comfort))
-    _lower(found, room, segments, room.places[i, j], near)
-    _lower(found, room, segments, room.places[i, j], at_span(passing, i))
+    least = np.empty(_PLACES, np.float32)
+    for g in range(3):
+        part = slice(room.groups[g], room.groups[g + 1])
+        for near in (standing, moving):
+            clearance_into(segments[part], room.radii[part], near, least)
+            for n in range(_PLACES):
+                found[g, n] = min(found[g, n], least[n])
     at = float(middle)
     for g in range(3):
         if found[g, middle] < comfort:

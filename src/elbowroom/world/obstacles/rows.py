@@ -127,6 +127,12 @@ def row_of(near: Nearby, b: int) -> Nearby:
 
 
 @helper
+def first_of(near: Nearby, count: int) -> Nearby:
+    """The first obstacles, for kernels."""
+    return Nearby(near.rows[:count], near.hulls)
+
+
+@helper
 def how_many(near: Nearby) -> int:
     """The number of obstacles, for kernels."""
     return int(near.rows.shape[0])
@@ -170,12 +176,12 @@ def move_into(near: Nearby, b: int, place: Floats, turn: Floats, out: Nearby, at
 
 
 @exact_kernel
-def shifted_into(near: Nearby, b: int, x: float, z: float, out: Nearby) -> None:
-    """Obstacle b as seen from a place on the ground, as the first of `out`."""
+def shifted_into(near: Nearby, b: int, x: float, z: float, out: Nearby, at: int) -> None:
+    """Obstacle b as seen from a place on the ground, as obstacle `at` of `out`."""
     for k in range(ROW):
-        out.rows[0, k] = near.rows[b, k]
-    out.rows[0, 0] -= x
-    out.rows[0, 2] -= z
+        out.rows[at, k] = near.rows[b, k]
+    out.rows[at, 0] -= x
+    out.rows[at, 2] -= z
 
 
 @exact_kernel
