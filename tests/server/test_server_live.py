@@ -195,6 +195,16 @@ def test_what_is_known_is_done_although_another_choice_is_not(client: Client) ->
     assert client.wait_for(Settings).avatar == "stock"
 
 
+def test_each_choice_that_does_not_exist_is_named(client: Client) -> None:
+    """As an address asks for them: ?planner=zzz&queue=99&speed=9&avatar=nope&scene=b"""
+    client.send(Configure(scene="b", planner="zzz", queue_size=99, walk_speed=9.0, avatar="nope"))
+    complaints = "\n".join(client.complaint() for _ in range(4))
+    for said in ("'zzz'", "99", "9", "'nope'"):
+        assert said in complaints
+    settings = client.wait_for(Settings, lambda settings: settings.scene == "b")
+    assert (settings.planner, settings.avatar) == ("exact", "stock")
+
+
 def test_a_change_that_fails_inside_leaves_the_session_alone(
     client: Client, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

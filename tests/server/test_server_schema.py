@@ -118,7 +118,7 @@ def test_junk_is_an_input_error(text: str) -> None:
         ('{"type": "input", "seq": 1, "forward": ' + "9" * 400 + "}", "input.forward"),
         ('{"type": "input", "seq": 1, "sideways": 1}', 'input: field "sideways" is unknown; allowed are seq, forward'),
         ('{"type": "configure", "scene": "' + "x" * 300 + '"}', "at most 128 long"),
-        ('{"type": "configure", "queueSize": 33}', "configure.queueSize: 33 is not from 2 to 32"),
+        ('{"type": "configure", "queueSize": 3.5}', "configure.queueSize: 3.5 is not a whole number"),
         ('{"type": "reset", "hard": true}', "allowed are none"),
         ('{"type": "clock", "steps": "1"}', 'clock.steps: "1" is not a whole number'),
     ],

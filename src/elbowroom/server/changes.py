@@ -4,6 +4,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Hashable
 from dataclasses import replace
+from typing import Any
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
@@ -15,7 +16,7 @@ from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.schema.commands import Configure
 from elbowroom.server.schema.progress import Notice
 from elbowroom.server.stage import Stage
-from elbowroom.server.walk import Walk
+from elbowroom.server.walk import Walk, WalkSettings
 from elbowroom.server.wanted import Wanted
 from elbowroom.world.scene import Scene
 
@@ -58,16 +59,23 @@ class Changes:
         for name, check in self._checks().items():
             choice = getattr(message, name)
             try:
-                if choice:
+                if choice is not None and choice != "":
                     check(choice)
             except InputError as error:
                 self._outbox.put(Notice("error", str(error)))
                 message = replace(message, **{name: None})
         return message
 
-    def _checks(self) -> dict[str, Callable[[str], object]]:
+    def _checks(self) -> dict[str, Callable[[Any], object]]:
         library = self._library
-        return {"scene": library.check_scene, "avatar": library.avatars.check, "clip": library.clips.check}
+        return {
+            "scene": library.check_scene,
+            "avatar": library.avatars.check,
+            "clip": library.clips.check,
+            "planner": lambda name: WalkSettings(planner=name),
+            "queue_size": lambda size: WalkSettings(queue_size=size),
+            "walk_speed": lambda speed: WalkSettings(walk_speed=speed),
+        }
 
     async def _configure(self, message: Configure) -> None:
         now = Wanted.of(self._stage.walk)

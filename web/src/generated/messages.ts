@@ -27,7 +27,7 @@ export interface Input {
   run?: boolean;
 }
 
-/** Choices of the menus; what is null stays. */
+/** Choices of the menus; what is null stays. Each that does not exist is told, and those that do are taken. */
 export interface Configure {
   type: "configure";
   /** at most 128 long */
@@ -36,11 +36,11 @@ export interface Configure {
   avatar?: string | null;
   /** at most 128 long */
   planner?: string | null;
-  /** from 2 to 32 */
+  /** one of the catalog's */
   queueSize?: number | null;
   /** false plays the canned walk, right through everything */
   assist?: boolean | null;
-  /** m/s at forward = 1; from 0.2 to 2 */
+  /** m/s at forward = 1, within the catalog's limits */
   walkSpeed?: number | null;
   /** play this clip; "" walks again; at most 128 long */
   clip?: string | null;

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS, Heading, Name, Range, Sequence, Share
+from elbowroom.server.schema.bounds import Heading, Name, Range, Sequence, Share
 
 
 @dataclass(frozen=True)
@@ -20,14 +20,14 @@ class Input:
 
 @dataclass(frozen=True)
 class Configure:
-    """Choices of the menus; what is None stays."""
+    """Choices of the menus; what is None stays. Each that does not exist is told, and those that do are taken."""
 
     scene: Name | None = None
     avatar: Name | None = None
     planner: Name | None = None
-    queue_size: Annotated[int, Range(QUEUE_SIZES[0], QUEUE_SIZES[-1])] | None = None
+    queue_size: int | None = None  # one of the catalog's
     assist: bool | None = None  # False plays the canned walk, right through everything
-    walk_speed: Annotated[float, Range(*WALK_SPEEDS)] | None = None  # m/s at forward = 1
+    walk_speed: float | None = None  # m/s at forward = 1, within the catalog's limits
     clip: Name | None = None  # play this clip; "" walks again
     clip_as_planned: bool | None = None  # play only what the planning degrees of freedom keep of it
 
