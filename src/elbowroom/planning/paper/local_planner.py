@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.dof import ARMS, LOWERING, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.clips.motion_set import STOCK, MotionSet
@@ -25,6 +25,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 _NEARLY = 0.5  # metres: more than any margin
+_GROUPS = (DofGroup.WAIST, *ARMS)  # the paper's J*, in its order; every other group follows its goal
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class LocalPlanner:
         self._motions = motions.upright()
         self.goals = natural_walk(self._motions)
         self._model = body_model(humanoid)
-        self._posed = {group: self._posed_graph(group) for group in LOCAL_GROUPS}
+        self._posed = {group: self._posed_graph(group) for group in _GROUPS}
         self._reach = self._upper_body_reach()
         self.use_scene(scene)
 
@@ -98,13 +99,13 @@ class LocalPlanner:
         `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all obstacles.
         """
         goals = self.goals(path)
-        configurations = np.empty_like(goals)
+        configurations = goals.copy()
         evidence: list[GroupEvidence] = []
         positions, rotations = pelvis_frames(self._model, path.states)
         near = self._near(positions)
         obstacles = seen_from(near, positions, rotations)
         margins = self.margins(path)
-        for group in LOCAL_GROUPS:
+        for group in _GROUPS:
             columns = columns_of(group)
             roadmap = self._roadmap(group, obstacles, start[columns])
             result = figure6.search(roadmap, goals[:, columns], rng, margins, self.settings.budget)
@@ -158,7 +159,7 @@ class LocalPlanner:
         waist = self._posed[DofGroup.WAIST]
         places, _ = chest_frames(self._model, waist.graph.vertices)
         shoulders = 2.0 * float(np.linalg.norm(places, axis=1).max())
-        return max(waist.reach, *(shoulders + self._posed[group].reach for group in LOCAL_GROUPS[1:]))
+        return max(waist.reach, *(shoulders + self._posed[group].reach for group in ARMS))
 
 
 def upright(clips: tuple[MotionClip, ...]) -> tuple[MotionClip, ...]:
