@@ -21,12 +21,12 @@ Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the way to the next keeps it too
+SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the edge to the next keeps it too
 _LOCAL = DofGroup.ROOT.size
 
 
 class OwnBodyNodes(NamedTuple):
-    """A group's postures and the rest of the body, and H surroundings in which they were looked at."""
+    """A group's postures and the rest of the body, and H surroundings in which they were checked."""
 
     body: WholeBody
     wanted: Indices  # (P,) capsules that it must keep away from
@@ -111,27 +111,28 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     """
     it, uppers, states = own_body_nodes, task.uppers, task.states
     width, known = it.resting.shape[0], it.postures
-    own, needed, _ = extra_nodes(
+    extras, needed, _ = extra_nodes(
         known.configurations, known.columns, known.step, task.goals, task.previous, task.start, task.settled
     )
-    natural, contents = np.empty(own.shape[0], np.bool_), np.empty((own.shape[0], it.known.rows.shape[1]), np.int64)
+    depths = extras.shape[0]
+    natural, contents = np.empty(depths, np.bool_), np.empty((depths, it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
         natural[t] = is_natural(uppers[t], task.walk[t])
     set_contents(states, uppers, contents)
-    rows, fresh = np.empty(own.shape[0], np.int64), np.empty(own.shape[0], np.int64)
-    rows = rows[: _to_look_at(natural, needed, rows)]
+    rows, fresh = np.empty(depths, np.int64), np.empty(depths, np.int64)
+    rows = rows[: _rows_to_check(natural, needed, rows)]
     places = np.empty(rows.shape[0], np.int64)
     fresh = fresh[: _set_places(it.known, contents, rows, places, fresh)]
     if fresh.shape[0]:
-        _look_at(it, uppers, states, rows, places, fresh)
-    costs = np.empty((own.shape[0], width + own.shape[1]), np.float32)
+        _check(it, uppers, states, rows, places, fresh)
+    costs = np.empty((depths, width + extras.shape[1]), np.float32)
     for t in range(costs.shape[0]):
         for v in range(costs.shape[1]):
             costs[t, v] = np.inf if v < width and it.resting[v] else 0.0
-    gaps = _own_gaps(it, own, rows, places)
+    gaps = _extra_gaps(it, extras, rows, places)
     for i in range(rows.shape[0]):
         t, place = rows[i], places[i]
-        for e in range(own.shape[1]):
+        for e in range(extras.shape[1]):
             if gaps[i, e] < SPARE and not (e == 0 and natural[t]):
                 costs[t, width + e] = np.inf
         if not natural[t]:
@@ -142,7 +143,7 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
 
 
 @exact_kernel
-def _to_look_at(natural: Bools, needed: Bools, rows: Indices) -> int:
+def _rows_to_check(natural: Bools, needed: Bools, rows: Indices) -> int:
     """Write down the key times `rows` at which more is asked for than the goal in a natural walk; their number."""
     count = 0
     for t in range(natural.shape[0]):
@@ -171,8 +172,8 @@ def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indic
 
 
 @helper
-def _look_at(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
-    """Keep what surrounds the group at `fresh` rows, and which postures come too near to it."""
+def _check(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, places: Indices, fresh: Indices) -> None:
+    """Remember what surrounds the group at `fresh` rows, and which postures come too near to it."""
     postures, roots = np.zeros((fresh.shape[0], DOF)), np.zeros((fresh.shape[0], ROOT_STATE))
     for n in range(fresh.shape[0]):
         t = rows[fresh[n]]
@@ -205,16 +206,16 @@ def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn
 
 
 @helper
-def _own_gaps(it: OwnBodyNodes, own: Floats, rows: Indices, places: Indices) -> Floats32:
-    """How far beyond what is allowed own postures (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
-    extra, size = own.shape[1], own.shape[2]
+def _extra_gaps(it: OwnBodyNodes, extras: Floats, rows: Indices, places: Indices) -> Floats32:
+    """How far beyond what is allowed extra nodes (n+1, E, d) at R rows are from what surrounds them, metres (R, E)."""
+    extra, size = extras.shape[1], extras.shape[2]
     gaps = np.empty((rows.shape[0], extra), np.float32)
     postures, every = np.empty((gaps.size, size)), np.empty(it.wanted.shape[0], np.bool_)
     gaps[:], every[:] = np.inf, True
     for i in range(rows.shape[0]):
         for e in range(extra):
             for j in range(size):
-                postures[i * extra + e, j] = own[rows[i], e, j]
+                postures[i * extra + e, j] = extras[rows[i], e, j]
     segments = pose(it.postures.limb, postures)
     mine = np.empty((segments.shape[0], 6, extra), np.float32)
     for i in range(rows.shape[0]):
