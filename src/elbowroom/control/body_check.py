@@ -31,7 +31,13 @@ class BodyCheck:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._obstacles = scene.obstacles
+        self._empty = not len(scene.obstacles.shapes) and not len(scene.obstacles.moving)
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
+
+    @property
+    def alone(self) -> bool:
+        """Whether there is nothing and nobody else: then no pose has to be looked at."""
+        return self._empty and not self.others
 
     @property
     def restless(self) -> bool:
@@ -43,11 +49,11 @@ class BodyCheck:
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
-        return self._least(self._posed(root, upper), root, time)
+        return np.inf if self.alone else self._least(self._posed(root, upper), root, time)
 
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
-        return self._least(self._posed(root, upper), root, time, others_at=-np.inf)
+        return np.inf if self.alone else self._least(self._posed(root, upper), root, time, others_at=-np.inf)
 
     def clearance_from(self, moving: Moving, root: Floats, upper: Floats, time: float) -> float:
         """The same from some moving obstacles alone."""
