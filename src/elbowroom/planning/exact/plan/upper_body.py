@@ -33,7 +33,6 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 _NEARLY = 0.5  # metres: more than any margin
-_CACHED = 8  # times the horizon: results of key intervals that are kept
 _SPARE = 0.05  # metres
 
 
