@@ -20,6 +20,7 @@ from urllib.request import urlopen
 
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import TimeoutError as PageTimeoutError
 
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
@@ -132,14 +133,25 @@ def opened(browser: Browser, address: str, view: View) -> Iterator[Page]:
     page.add_init_script(f"localStorage.setItem('elbowroom.preferences', '{PREFERENCES}')")
     page.goto(f"{address}/?quality=high&steering=tank&{view.query}")
     page.wait_for_function("window.__app?.avatarLoaded && window.__app.framesDrawn > 3 && window.__app.root")
-    page.keyboard.press("KeyP")
-    page.wait_for_function("window.__app.paused")
+    pause(page)
     turn(page, view)
     page.keyboard.down("KeyW")
     try:
         yield page
     finally:
         page.close()
+
+
+def pause(page: Page) -> None:
+    """Press P until the page says that it is paused: a session that has just begun may miss the first time."""
+    for _ in range(10):
+        page.keyboard.press("KeyP")
+        try:
+            page.wait_for_function("window.__app.paused", timeout=PATIENCE / 10)
+        except PageTimeoutError:
+            continue
+        return
+    raise TimeoutError("the page does not pause")
 
 
 def turn(page: Page, view: View) -> None:
