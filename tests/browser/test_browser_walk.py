@@ -32,13 +32,13 @@ def distance_to_boxes(boxes: list[dict[str, Any]], point: list[float]) -> float:
                 [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
             ]
         )
-        inside = np.abs(to_world.T @ (np.array(point) - box["center"])) - np.array(box["size"]) / 2
+        inside = np.abs(to_world.T @ (np.array(point) - box["center"])) - np.array(box["form"]["size"]) / 2
         distances.append(float(np.linalg.norm(np.maximum(inside, 0.0))))
     return min(distances)
 
 
 def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer) -> None:
-    boxes: Any = live_server.get_json("/api/scenes/a")["boxes"]
+    boxes: Any = live_server.get_json("/api/scenes/a")["obstacles"]
     live = open_page("scene=a")
     live.wait("s.scene === 'a'")
     start = live.state()["root"]

@@ -79,7 +79,7 @@ def test_the_catalog_and_the_scenes(page: Page) -> None:
         scene = page.get(f"/api/scenes/{choice['name']}").json()
         course = choice["name"].startswith("gauntlet:")  # its title is known once it is made
         assert course or scene["title"] == choice["title"]
-        assert all(len(box["size"]) == 3 for box in scene["boxes"])
+        assert all(len(one["form"]["size"]) == 3 for one in scene["obstacles"])
     assert page.get("/api/scenes/nowhere").status_code == 404
 
 
