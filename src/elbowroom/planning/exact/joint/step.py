@@ -53,8 +53,10 @@ class JointSettings(NamedTuple):
     step: float  # weight of edges
     near: float  # weight of lacking comfort
     comfort: float  # metres
-    budget: int = 4_000_000  # triples settled
-    checks: int = 3_000_000  # capsules checked
+    budget: int = 1_500_000  # triples settled
+    # What is begun is ended, but nothing more is begun after so many capsules checked, or so many triples settled.
+    checks: int = 2_000_000
+    triples: int = 600_000
 
 
 class GroupNodes(NamedTuple):
@@ -116,19 +118,20 @@ class JointStep:
             path = self._among(wanted)
             if path.status is PlanStatus.FOUND:
                 break
-            if whole or path.status is PlanStatus.OUT_OF_BUDGET or self._spent:
+            if whole or path.status is PlanStatus.OUT_OF_BUDGET or self.spent:
                 return path
             count *= _GROWTH
         needed = np.isfinite(alone) & (alone <= path.cost)
-        if (self.filled >= needed).all():
+        if self.spent or (self.filled >= needed).all():
             return path
         go_on()
         better = self._among(self.filled | needed)
         return path if better.status is PlanStatus.OUT_OF_BUDGET else better
 
     @property
-    def _spent(self) -> bool:
-        return self.checks > self.settings.checks
+    def spent(self) -> bool:
+        """Whether so much was done that nothing more is begun."""
+        return self.checks > self.settings.checks or self.states > self.settings.triples
 
     def _among(self, waists: Bools) -> JointPath:
         """The cheapest path among some waists (n+1, W+E), filled in first."""

@@ -68,7 +68,13 @@ class NewPlan:
             if tried and self._leads_nowhere_new(root, blocked_at + _FARTHER):
                 continue
             upper = self._upper_body(root.path, Effort.QUICK)
-            if not tried and upper.reached < self.horizon and not query.hurry and attempts.is_new(_place(upper)):
+            blocked = not tried and upper.reached < self.horizon and not query.hurry
+            until_then = (
+                self._braked(root, upper.reached) if blocked and left is None and self._can_wait(upper) else None
+            )
+            if until_then is not None:
+                return until_then
+            if blocked and attempts.is_new(_place(upper)):
                 refined = None if left is None else prolonged(self.body, left, root, query, Effort.REFINED)
                 if refined is not None:
                     attempts.found()
@@ -83,6 +89,17 @@ class NewPlan:
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
         return None
 
+    def _can_wait(self, upper: UpperPlan) -> bool:
+        """Whether it is early enough to think a path through in the next plan, if it is blocked then too."""
+        if len(self.root_planner.moving) or not self._moves:
+            return False
+        ahead = self.query.interval * upper.search.blocked[1]
+        return self.body.memory.attempts.can_wait(_place(upper), ahead)
+
+    @property
+    def _moves(self) -> bool:
+        return math.hypot(self.query.root.forward, self.query.root.lateral) > STILL
+
     def _cheaper(self, tried: list[_Tried], than: RootPlan) -> FullPlan | None:
         """A plan on a root path that costs much less than the one that was found, if all groups together find one."""
         cheaper = sorted((one.root for one in tried if one.root.lost + _WORTH < than.lost), key=lambda one: one.lost)
@@ -96,7 +113,9 @@ class NewPlan:
         return next((plan for plan in plans if plan is not None), None)
 
     def _followed(self, root: RootPlan, effort: Effort) -> FullPlan | None:
-        """A plan on a root path, which is followed then; None if there is none."""
+        """A plan on a root path, which is followed then; None if there is none, or if enough was done already."""
+        if self.body.memory.attempts.spent:
+            return None
         upper = self._upper_body(root.path, effort)
         if upper.reached < root.path.horizon:
             return None
@@ -137,18 +156,19 @@ class NewPlan:
         """Why there is no path; None as long as that is far off: most of it is solved when it has come nearer.
 
         On the way to a place that was asked about before it is the answer of then; one who has come to a stand asks
-        anew. Near the end of a path it is now and then only the motion between free postures that touches: the earlier
-        answer, which names obstacles, says more.
+        anew, once, and not in a plan that has cost enough. Near the end of a path it is now and then only the motion
+        between free postures that touches: the earlier answer, which names obstacles, says more.
         """
         path, depth, last = upper.search.path, upper.search.blocked[1], self.body.memory.blockade
-        place, moves = _place(upper), math.hypot(self.query.root.forward, self.query.root.lateral) > STILL
+        place, moves, here = _place(upper), self._moves, (self.query.root.x, self.query.root.z)
         near = last is not None and same_place(place, last.place)
-        if moves and not near and depth * path.interval > _FAR_OFF:
-            return None
-        if last is not None and near and moves:
+        told = math.dist(self.body.memory.asked_at, here) < _STANDING  # that is: from here
+        if last is not None and near and (moves or told):
             why = replace(last, time=path.start_time + path.interval * depth, ahead=_walked(path, depth))
+        elif self.body.memory.attempts.spent or (moves and depth * path.interval > _FAR_OFF):
+            return None
         else:
-            why = upper.search.blockade()
+            why, self.body.memory.asked_at = upper.search.blockade(), here
             if last is not None and near and why.kind is BlockadeKind.MOTION:
                 why = replace(last, time=why.time, ahead=why.ahead)
         self.body.memory.blockade = why
@@ -158,7 +178,9 @@ class NewPlan:
         """What the upper body can do on a root path, from where the avatar is."""
         start, query = StartState(self.query.upper, self.query.velocity, harsh=harsh), self.query
         previous = self.body.memory.recent.previous(path)
-        return self.body.plan(path, start, previous, query.others, effort, query.go_on)
+        upper = self.body.plan(path, start, previous, query.others, effort, query.go_on)
+        self.body.memory.attempts.enter(upper.search.evidence_log.joint)
+        return upper
 
     def _leads_nowhere_new(self, root: RootPlan, least: float) -> bool:
         """Whether a path along the same line is shorter than `least` metres, among things that stand still."""

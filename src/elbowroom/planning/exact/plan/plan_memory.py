@@ -10,6 +10,7 @@ stands in the scene never changes. Whether something of it suits a question is s
 goes on if nothing moves, nobody is in a hurry, the command is the same and the avatar is where the plan leads.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -38,6 +39,7 @@ class PlanMemory:
         self.ongoing: OngoingPlan | None = None
         self.attempts = AttemptOrder()
         self.blockade: Blockade | None = None  # why there was no path when that was asked last
+        self.asked_at = math.inf, math.inf  # x, z of who asked
         self.version = 0  # greater after every change of the postures
         self._added = {group: Pool(group.size, RefinementSettings().capacity) for group in LOCAL_GROUPS}
         self._sets: Mapping[DofGroup, PostureSet] = model.sets

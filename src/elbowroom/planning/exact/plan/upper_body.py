@@ -85,7 +85,8 @@ class UpperBodyPlanner:
             found = search.motion(0 if between else rounds)
             if found is not None:
                 return UpperPlan(found, path.horizon, search, search.margins)
-            if effort is not Effort.REFINED or attempt == self.settings.refinements or not self._refine(search):
+            last = effort is not Effort.REFINED or attempt == self.settings.refinements or search.spent
+            if last or not self._refine(search):
                 break
         evidence_log, goals = search.evidence_log, search.goals
         plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, evidence_log.evidence(), joint=evidence_log.joint)

@@ -72,6 +72,7 @@ class UpperBodySearch:
         self.evidence_log = EvidenceLog(self.caches, self.weights, self.go_on)
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
+        self.spent = False  # whether the joint step did as much as it may
         self._waist: GroupPath | None = None
         # infinite where the legs have no room to crouch as a node does
         self._crouching = no_costs(self.caches, DofGroup.WAIST, self.path.horizon)
@@ -152,6 +153,7 @@ class UpperBodySearch:
             began = perf_counter_ns()
             answer = step.search(self.evidence_log.go_on)
             self.evidence_log.enter_joint(step, answer.status, perf_counter_ns() - began)
+            self.spent = step.spent
             if answer.status is not PlanStatus.FOUND:
                 break
             guides = {
@@ -160,6 +162,8 @@ class UpperBodySearch:
             way = self._waist_path(self._crouching, guides[DofGroup.WAIST])
             ways = self._under(way, guides)
             if len(ways.paths) == len(SEARCH_ORDER):
+                break
+            if step.spent:
                 break
             failed, at = len(ways.paths), min(ways.reached, self.path.horizon - 1)
             column = PRODUCT.index(failed) if failed in PRODUCT else 0
