@@ -43,7 +43,7 @@ def test_what_is_said_is_shown() -> None:
     assert Permissions().lines() == {}
 
 
-@pytest.mark.parametrize("recipe", [Recipe(vrm="1", spin=True), Recipe(vrm="0", heading=np.pi, unit=2.0)])
+@pytest.mark.parametrize("recipe", [Recipe(vrm="1", spin=True), Recipe(vrm="0", heading=np.pi, unit=1.1)])
 def test_a_vrm_is_never_changed(recipe: Recipe) -> None:
     data = build(recipe)
     assert load_humanoid_bytes(data, "mine.vrm").glb == data

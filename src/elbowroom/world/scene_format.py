@@ -154,6 +154,10 @@ def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     x, z = scene.start.x, scene.start.z
+    least, most = scene.obstacles.bounds_at(0.0)
+    low, high = np.array([x, _STANCE_LOW, z]) - _STANCE_RADIUS, np.array([x, _STANCE_HIGH, z]) + _STANCE_RADIUS
+    if not np.any(np.all((least <= high) & (most >= low), axis=1)):
+        return  # told without a kernel, which may have to be compiled
     legs = np.array([[0.0, _STANCE_LOW, 0.0, 0.0, _STANCE_HIGH, 0.0]])
     found = scene.obstacles.nearest(legs, [_STANCE_RADIUS], (x, z), 0.0)
     if found is not None and found.distance < 0.0:

@@ -127,6 +127,10 @@ class Obstacles:
         """All of them, as they stand at a time."""
         return joined(self.standing, self.moving.at(time, self._packed)) if len(self.moving) else self.standing
 
+    def bounds_at(self, time: float) -> tuple[Floats, Floats]:
+        """The least and the greatest corners (B, 3) of boxes along the world's axes that hold all of them at a time."""
+        return bounds_of(self.at(time))
+
     def clearance(self, segments: Floats32, radii: ArrayLike, origin: Sequence[float] | Floats, time: float) -> float:
         """The least clearance, metres, of capsules (C, 6, N) about a place on the ground (x, z), at a time.
 
