@@ -73,11 +73,9 @@ def gauntlet(
     walker = _Walker(avatar, bones, height, include_hair)
     settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference(), shapes)
     if save is not None:
-        _save(_course(settings, walker, save[0], quiet), save[1])
-        return
+        return _save(_course(settings, walker, save[0], quiet), save[1])
     if show is not None:
-        _show(_course(settings, walker, show, quiet), settings, walker)
-        return
+        return _show(_course(settings, walker, show, quiet), settings, walker)
     processes = min(courses, usable_cores()) if jobs is None else jobs
     with time_left_bar("Courses", quiet) as move:
         results, without = run_gauntlet(settings, processes, out, move)
@@ -93,9 +91,13 @@ def gauntlet(
         _print(settings, summary)
     if without:
         typer.echo(f"elbowroom: {_NO_COURSE.format(_listed(without))}; the figures are of the others", err=True)
+    raise typer.Exit(0 if _is_good(summary) else FELL_SHORT)
+
+
+def _is_good(summary: "GauntletSummary") -> bool:
+    """Whether all courses were crossed and nothing touched."""
     touching = summary.touching_frames or summary.judged_touching or summary.mesh_touching
-    good = summary.crossed == summary.courses and not touching
-    raise typer.Exit(0 if good else FELL_SHORT)
+    return summary.crossed == summary.courses and not touching
 
 
 def _listed(seeds: tuple[int, ...]) -> str:

@@ -26,7 +26,7 @@ from elbowroom.server.schema.commands import Input, Reset
 from elbowroom.server.schema.progress import Status
 
 CPU_BUDGET = 25.0  # percent of one core
-OWN_BASE, OWN_EACH = 150.0, 25.0  # MB of the process, compiled kernels most of all, and of each session
+OWN_BASE, OWN_EACH = 175.0, 25.0  # MB of the process, compiled kernels most of all, and of each session
 ANSWER_AIM = 100.0  # ms
 
 _PATIENCE = 300.0  # seconds until the server answers, the first time with compiling

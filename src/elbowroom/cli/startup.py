@@ -12,7 +12,7 @@ from elbowroom.cli.session_cost import started_server, wait_for_plan
 from elbowroom.errors import InputError
 
 WARM_BUDGET = 2.0  # seconds to the first plan, once the kernels are compiled
-COLD_BUDGET = 60.0  # seconds, the first run of all
+COLD_BUDGET = 90.0  # seconds, the first run of all
 
 _PROGRAM = """
 import elbowroom

@@ -18,6 +18,7 @@ from elbowroom.planning.root.motion import Travel, brake, follow, gets_nowhere, 
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.profile import Course, follow_profile
+from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]
 
@@ -134,7 +135,7 @@ class RootQuery:
 
     def steered(self, wanted: Floats) -> Answer:
         """Hold the wanted velocities in the body's own axes, in a tighter turn or slower if need be."""
-        on_the_spot = not wanted[:2].any()
+        on_the_spot = is_still(wanted[:2])
 
         def candidate(share: float) -> Floats:
             states = self._blank()
