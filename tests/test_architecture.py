@@ -9,7 +9,19 @@ import pytest
 import elbowroom
 
 PACKAGE = Path(elbowroom.__file__).parent
-ROOMS = ["geometry", "formats", "body", "clips", "world", "planning", "control", "experiment", "server", "cli"]
+ROOMS = [
+    "geometry",
+    "formats",
+    "body",
+    "clips",
+    "world",
+    "planning",
+    "control",
+    "export",
+    "experiment",
+    "server",
+    "cli",
+]
 # Of `planning/exact`, bottom to top.
 CHAPTERS = ["memory", "lattice", "sweep", "group", "joint", "refine", "certificate", "plan"]
 FOR_ALL = {"errors", "jit", "kernel_cache"}

@@ -1,0 +1,87 @@
+"""`elbowroom export`: what a recording shows, for other programs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.output import print_json, print_row, progress_bar
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:
+    from elbowroom.export.animation import Animation
+
+EXAMPLES = (
+    "Examples:  elbowroom export run.elbow -o walk.bvh  |  elbowroom export run.elbow -o walk.bvh --fps 30 --up z"
+)
+
+
+def export(
+    recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", help="The file to write; its ending says the format.")],
+    fps: Annotated[float, typer.Option(help="Frames a second.")] = 60.0,
+    root: Annotated[str, typer.Option(help="What carries the way: hips, root (a node above them) or none.")] = "hips",
+    rest: Annotated[str | None, typer.Option(help="Rest pose: t, or a with the arms lowered.")] = None,
+    unit: Annotated[str | None, typer.Option(help="m, dm, cm, mm, inch, foot, or metres as a number.")] = None,
+    up: Annotated[str | None, typer.Option(help="The axis that points up: y or z.")] = None,
+    avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it exists.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Write the motion of a recording as a file that other programs read: .bvh, .csv or .npz.
+
+    It holds the frames as the page shows them. BVH is in centimetres with Y up and a T-pose, unless told otherwise.
+    """
+    from elbowroom.control.recording import Recording
+    from elbowroom.export.animation import Animation, check_rate
+    from elbowroom.export.writers import Wishes, format_of
+
+    chosen = format_of(out)
+    layout = chosen.layout(Wishes(root, rest, unit, up))
+    check_rate(fps)
+    if out.exists() and not overwrite:
+        raise InputError(f"{out}: exists; choose another name or say --overwrite")
+    recorded = Recording(recording)
+    compile_first(quiet=quiet)
+    with progress_bar(f"Writing {out.name}", None, quiet):
+        humanoid = recorded.header.avatar.load(avatar)
+        animation = Animation.of(recorded, humanoid, fps)
+        written = chosen.write(animation, humanoid, layout)
+        _keep(out, written.data)
+    notes = [*written.notes, *([f"not whole: {recorded.note}"] if recorded.note else [])]
+    _report(out, chosen.title, len(written.data), animation, notes, json)
+
+
+def _keep(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def _report(out: Path, title: str, size: int, animation: "Animation", notes: list[str], json: bool) -> None:
+    facts: dict[str, Any] = {
+        "file": str(out),
+        "format": title,
+        "bytes": size,
+        "frames": len(animation),
+        "fps": animation.fps,
+        "joints": len(animation.skeleton.names),
+        "notes": notes,
+    }
+    if json:
+        print_json(facts)
+        return
+    seconds = (len(animation) - 1) / animation.fps
+    row = {
+        "format": title,
+        "size": f"{size / 1e3:.1f} kB",
+        "frames": f"{len(animation)} at {animation.fps:g} a second, {seconds:.1f} s",
+        "joints": str(facts["joints"]),
+    }
+    print_row(str(out), row)
+    for note in notes:
+        print(f"note: {note}")

@@ -1,0 +1,98 @@
+"""An animation: what a recording shows, on one avatar, at even steps of time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, hips_position, local_rotations
+from elbowroom.body.skeleton import Skeleton
+from elbowroom.control.recording import Recording
+from elbowroom.errors import InputError
+from elbowroom.export.shown import ShownFrames
+from elbowroom.formats.takes import MAX_FRAMES, MAX_POSES
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
+SLOWEST, FASTEST = 1.0, 240.0  # frames a second
+
+
+@dataclass(frozen=True, eq=False)
+class Animation:
+    """Frames of a body as the page shows them."""
+
+    name: str
+    fps: float  # frames a second
+    skeleton: Skeleton
+    rotations: Floats  # (F, J, 4) normalised local rotations; the hips' own is in the root's axes
+    hips: Floats  # (F, 3) the hips joint in the root's frame, metres
+    places: Floats  # (F, 3) the root's origin in the world: on the ground under the body, metres
+    headings: Floats  # (F,) of the root, radians about +Y, not wrapped
+
+    def __len__(self) -> int:
+        return len(self.rotations)
+
+    @classmethod
+    def of(cls, recording: Recording, humanoid: Humanoid, fps: float = 60.0) -> "Animation":
+        """The frames of a recording at `fps` frames a second.
+
+        Between two frames as on the page: joints turn by the shortest arc, root and hips go in straight lines.
+        Raises `InputError` for a recording that shows nothing or too much, and a rate out of range.
+        """
+        check_rate(fps)
+        shown, joints = ShownFrames.of(recording), len(humanoid.skeleton.names)
+        most = min(MAX_FRAMES, MAX_POSES // joints)
+        if shown.duration * fps >= most:
+            seconds = f"{shown.duration:.0f} s at {fps:g} frames a second"
+            raise InputError(
+                f"{recording.path}: {seconds} are more than the {most} frames that fit: ask for a lower --fps"
+            )
+        before, after, share = shown.at_rate(fps)
+        rotations, hips = _posed(shown, humanoid)
+        roots, part = shown.roots[:, :3], share[:, None]
+        states = roots[before] + part * (roots[after] - roots[before])
+        return cls(
+            recording.path.stem,
+            fps,
+            humanoid.skeleton,
+            quaternion.slerp(rotations[before], rotations[after], part),
+            hips[before] + part * (hips[after] - hips[before]),
+            np.stack([states[:, 0], np.zeros(len(states)), states[:, 1]], axis=1),
+            states[:, 2],
+        )
+
+    def turns(self) -> Floats:
+        """Rotations (F, 4) of the root in the world."""
+        return quaternion.about_axis(1, self.headings)
+
+    def hips_in_world(self) -> tuple[Floats, Floats]:
+        """Place (F, 3) and rotation (F, 4) of the hips joint in the world."""
+        turns = self.turns()
+        return self.places + quaternion.rotate(turns, self.hips), quaternion.multiply(turns, self.rotations[:, 0])
+
+    def joints_in_world(self) -> Floats:
+        """Places (F, J, 3) of all joints in the world, metres."""
+        rest, parents = self.skeleton.positions, self.skeleton.parents
+        places, turns = np.empty((len(self), len(parents), 3)), np.empty((len(self), len(parents), 4))
+        places[:, 0], turns[:, 0] = self.hips_in_world()
+        for joint, parent in enumerate(parents):
+            if parent >= 0:
+                places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
+                turns[:, joint] = quaternion.multiply(turns[:, parent], self.rotations[:, joint])
+        return places
+
+
+def check_rate(fps: float) -> None:
+    """Raises `InputError` for frames a second that are out of range."""
+    if not SLOWEST <= fps <= FASTEST:
+        raise InputError(f"fps: {fps:g}, allowed are {SLOWEST:g} to {FASTEST:g} frames a second")
+
+
+def _posed(shown: ShownFrames, humanoid: Humanoid) -> tuple[Floats, Floats]:
+    """Normalised local rotations (N, J, 4) and hips (N, 3) in the root's frame of every frame."""
+    model = body_model(humanoid)
+    frames = list(zip(shown.q, shown.roots, strict=True))
+    rotations = np.stack([local_rotations(model, q, root) for q, root in frames])
+    return rotations, np.stack([hips_position(model, q, root) for q, root in frames])

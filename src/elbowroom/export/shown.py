@@ -1,0 +1,62 @@
+"""The frames of a recording, and which of them are shown at even steps of time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.control.recording import RESTART, Recording
+from elbowroom.errors import InputError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_MAX_STEP = 3600.0  # seconds between two frames
+_ON_FRAME = 1e-6  # part of a step that is taken for rounding: such a moment is the frame itself
+
+
+@dataclass(frozen=True, eq=False)
+class ShownFrames:
+    """Configurations and root states in the order in which they were shown."""
+
+    times: Floats  # (N,) seconds, not decreasing
+    q: Floats  # (N, DOF) see `body.dof`
+    roots: Floats  # (N, ROOT_STATE) see `body.root`
+    jumps: NDArray[np.bool_]  # (N,) the frame does not follow from the one before it
+
+    @classmethod
+    def of(cls, recording: Recording) -> "ShownFrames":
+        """What a recording shows, up to its last whole chunk; raises `InputError` where it shows nothing."""
+        steps = recording.steps()
+        if len(steps) == 0:
+            why = "" if recording.note is None else f" ({recording.note})"
+            raise InputError(f"{recording.path}: holds no frames{why}")
+        dt = np.asarray(steps["dt"], np.float64)
+        q = np.asarray(steps["q"], np.float64).reshape(-1, DOF)
+        roots = np.asarray(steps["root"], np.float64).reshape(-1, ROOT_STATE)
+        good = np.isfinite(q).all(axis=1) & np.isfinite(roots).all(axis=1) & (dt >= 0.0) & (dt <= _MAX_STEP)
+        if not good.all():
+            frame = int(np.argmin(good))
+            raise InputError(f"{recording.path}: frame {frame} is damaged: a pose or a time step is out of range")
+        return cls(np.cumsum(dt), q, roots, (steps["flags"] & RESTART) != 0)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first frame to the last."""
+        return float(self.times[-1] - self.times[0])
+
+    def at_rate(self, fps: float) -> tuple[Ints, Ints, Floats]:
+        """At `fps` moments a second: the frame before (F,), the frame after (F,), the share (F,) of the way.
+
+        Over a jump nothing is mixed: the frame before it stays until the next one is shown.
+        """
+        count = int(self.duration * fps + _ON_FRAME) + 1
+        moments = self.times[0] + np.arange(count) / fps
+        before = np.searchsorted(self.times, moments + _ON_FRAME / fps, side="right") - 1
+        after = np.minimum(before + 1, len(self.times) - 1)
+        width = self.times[after] - self.times[before]
+        share = np.clip((moments - self.times[before]) / np.maximum(width, 1e-9), 0.0, 1.0)
+        share[(width <= 0.0) | self.jumps[after] | (share < _ON_FRAME)] = 0.0
+        return before, after, share
