@@ -65,6 +65,7 @@ class GroupSpec(NamedTuple):
     shares: tuple[float, ...] = ()  # of a column's rotation that its joints take; shared out anew where some are absent
     turned_back: tuple[str, ...] = ()  # joints on a column that undo part of its rotation, and
     undone: float = 0.0  # the part that they undo together
+    undoes: float = 0.0  # what it undoes of its parent's first components where nobody plans it: then it follows
 
 
 def _degrees(**ranges: tuple[float, float]) -> tuple[Component, ...]:
@@ -220,6 +221,11 @@ def side_by_side(parts: Mapping[DofGroup, Floats]) -> Floats:
     return np.concatenate([parts[group] for group in LOCAL_GROUPS], axis=1)
 
 
+def followers_of(group: DofGroup) -> tuple[DofGroup, ...]:
+    """The groups that hang on a group and follow it where nobody plans them."""
+    return tuple(other for other in LOCAL_GROUPS if other.parent is group and other.value.undoes > 0.0)
+
+
 _LIMITS = {group: np.array([(part.low, part.high) for part in group.value.components]) for group in DofGroup}
 
 
@@ -236,6 +242,16 @@ def clamp(group: DofGroup, q: ArrayLike) -> Floats:
         elevation = np.linalg.norm(inside[..., :2], axis=-1, keepdims=True)
         inside[..., :2] *= np.minimum(1.0, MAX_ELEVATION / np.maximum(elevation, MAX_ELEVATION))
     return inside
+
+
+def followed(uppers: Floats) -> Floats:
+    """Upper bodies (..., LOCAL) whose followers undo their part of what their parents do, as far as they can."""
+    out = uppers.copy()
+    for parent in LOCAL_GROUPS:
+        for group in followers_of(parent):
+            done = uppers[..., columns_of(parent)][..., : group.size]
+            out[..., columns_of(group)] = clamp(group, -group.value.undoes * done)
+    return out
 
 
 def within_limits(q: ArrayLike, tolerance: float = 1e-9) -> bool:

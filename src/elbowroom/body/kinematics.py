@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body import posing
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, LOWERING, DofGroup, Turning
+from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, LOWERING, DofGroup, Turning, followers_of
 from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
@@ -52,6 +52,7 @@ class BodyModel(NamedTuple):
     body: CapsuleSet  # every capsule, in the humanoid's order
     groups: dict[DofGroup, CapsuleSet]
     chains: dict[DofGroup, posing.Chain]  # of the local groups
+    trunk: tuple[posing.Chain, CapsuleSet]  # the waist with all that follows it
 
     @property
     def parents(self) -> Indices:
@@ -95,10 +96,10 @@ def body_model(humanoid: Humanoid) -> BodyModel:
     )
     chains = {group: _chain(skeleton, capsules, figure, group, gait.half_leg) for group in LOCAL_GROUPS}
     legs = capsules.of(DofGroup.ROOT)
-    sets = {
-        group: _capsule_set(capsules, capsules.of(group), posing.CapsuleChain(chain.order, chain.joints, chain.ends))
-        for group, chain in chains.items()
-    }
+    sets = {group: _set_of_chain(capsules, capsules.of(group), chain) for group, chain in chains.items()}
+    trunk = np.sort(np.concatenate([capsules.of(g) for g in (DofGroup.WAIST, *followers_of(DofGroup.WAIST))]))
+    column = _following_column(skeleton, DofGroup.WAIST)
+    whole = _chain_of(skeleton, capsules, figure, DofGroup.WAIST, gait.half_leg, trunk, column)
     return BodyModel(
         figure=figure,
         leg_rest=leg_rest(skeleton),
@@ -106,6 +107,7 @@ def body_model(humanoid: Humanoid) -> BodyModel:
         body=_capsule_set(capsules, every := np.arange(len(capsules.names)), _posed(skeleton, capsules, every, 0)),
         groups={DofGroup.ROOT: _capsule_set(capsules, legs, _posed(skeleton, capsules, legs, 0))} | sets,
         chains=chains,
+        trunk=(whole, _set_of_chain(capsules, trunk, whole)),
     )
 
 
@@ -130,6 +132,17 @@ def _column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
     )
 
 
+def _following_column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
+    """A column with the joints of the groups that follow it: they turn back by equal parts."""
+    column = _column(skeleton, group)
+    joints, shares = [column.joints], [column.shares]
+    for other in followers_of(group):
+        present = [bone for bone in other.value.bones if skeleton.has(bone)]
+        joints.append(_joints(skeleton, present))
+        shares.append(np.full(len(present), -other.value.undoes / len(present)))
+    return posing.Column(np.concatenate(joints), np.concatenate(shares), column.first)
+
+
 def _arm(skeleton: Skeleton, group: DofGroup) -> posing.Arm:
     mirror = -1.0 if group.label.startswith("right") else 1.0
     return posing.Arm(_joints(skeleton, group.value.bones), mirror, group.at.start)
@@ -139,11 +152,24 @@ def _chain(
     skeleton: Skeleton, capsules: Capsules, figure: posing.Figure, group: DofGroup, half_leg: float
 ) -> posing.Chain:
     """The joints of a local group, down to the one that its children hang on."""
+    column = _column(skeleton, DofGroup.WAIST if group.is_arm else group)
+    return _chain_of(skeleton, capsules, figure, group, half_leg, capsules.of(group), column)
+
+
+def _chain_of(
+    skeleton: Skeleton,
+    capsules: Capsules,
+    figure: posing.Figure,
+    group: DofGroup,
+    half_leg: float,
+    indices: Indices,
+    column: posing.Column,
+) -> posing.Chain:
+    """The joints that a column or an arm turns, and those that carry the capsules at `indices`."""
     assert group.parent is not None
     start, end = _end(skeleton, group.parent), _end(skeleton, group)
     carries = any(other.parent is group for other in DofGroup)
-    posed = _posed(skeleton, capsules, capsules.of(group), start, [end] if carries else [])
-    column = _column(skeleton, DofGroup.WAIST if group.is_arm else group)
+    posed = _posed(skeleton, capsules, indices, start, [end] if carries else [])
     arm = _arm(skeleton, group if group.is_arm else ARMS[0])
     return posing.Chain(
         figure.base, figure.parents, figure.offsets, posed.order, posed.joints, posed.ends,
@@ -168,6 +194,10 @@ def _posed(
         np.ascontiguousarray(joints, np.int64),
         np.ascontiguousarray(ends, np.float64),
     )
+
+
+def _set_of_chain(capsules: Capsules, indices: Indices, chain: posing.Chain) -> CapsuleSet:
+    return _capsule_set(capsules, indices, posing.CapsuleChain(chain.order, chain.joints, chain.ends))
 
 
 def _capsule_set(capsules: Capsules, indices: Indices, posed: posing.CapsuleChain) -> CapsuleSet:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of, followed, side_by_side
 from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.errors import InputError
@@ -99,7 +99,12 @@ def _raised(configurations: Floats) -> Floats:
 
 
 def _swing(data: Mapping[str, Any]) -> Swing:
-    keys = {group: _rows(data["keys"][group.name], group) for group in LOCAL_GROUPS}
+    told = data["keys"]
+    later = [group for group in LOCAL_GROUPS if group.value.undoes > 0.0 and group.name not in told]
+    keys = {group: _rows(told[group.name], group) for group in LOCAL_GROUPS if group not in later}
+    if later:  # written before these groups were planned: they followed
+        uppers = followed(side_by_side(keys | {group: np.zeros((KEYS + 1, group.size)) for group in later}))
+        keys |= {group: uppers[:, columns_of(group)] for group in later}
     speed = float(data["speed"])
     if any(len(rows) != KEYS + 1 for rows in keys.values()) or not 0.0 < speed < 100.0:
         raise ValueError("swing")

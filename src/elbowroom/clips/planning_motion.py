@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.dof import ARMS, DofGroup, clamp, side_by_side
+from elbowroom.body.dof import ARMS, CHILDREN, DofGroup, Turning, clamp, side_by_side
 from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
@@ -40,6 +40,9 @@ def planning_motion(motion: BodyMotion) -> PlanningMotion:
     planned = chest_rotation(waist)
     groups, errors = {DofGroup.WAIST: waist}, []
     back = quaternion.conjugate(planned)
+    for group in CHILDREN:
+        if group.value.turning is Turning.COLUMN:
+            groups[group] = _column(motion, group, quaternion.multiply(back[:, None], turns))
     for group in ARMS:
         side = group.label.removesuffix("Arm")
         upper = quaternion.multiply(back, turns[:, motion.index(f"{side}UpperArm")])
@@ -58,6 +61,12 @@ def _waist(motion: BodyMotion, chest: Floats, states: Floats) -> Floats:
     _, drops = foot_poses(gait.legs, gait.scale, states)
     lowering = (motion.rest[0, 1] - motion.hips[:, 1] - drops) / gait.half_leg
     return clamp(DofGroup.WAIST, np.concatenate([waist_angles(chest), lowering[:, None]], axis=1))
+
+
+def _column(motion: BodyMotion, group: DofGroup, turns: Floats) -> Floats:
+    """Bend and twist (F, 2) of the last of a group's joints in a motion, for rotations (F, B, 4) since the parent's."""
+    ends = [bone for bone in reversed(group.value.bones) if bone in motion.bones]
+    return clamp(group, waist_angles(turns[:, motion.index(ends[0])])) if ends else np.zeros((len(turns), group.size))
 
 
 def upper_body(motion: PlanningMotion) -> Floats:

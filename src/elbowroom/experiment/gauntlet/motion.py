@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.dof import ARMS, LOCAL, LOWERING, DofGroup, clamp, columns_of
+from elbowroom.body.dof import ARMS, LOCAL, LOWERING, DofGroup, clamp, columns_of, followed
 from elbowroom.control.canned import standing_posture
 from elbowroom.experiment.gauntlet import levels
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw, Range
@@ -20,7 +20,8 @@ ArmRanges = tuple[Range, Range, Range, Range]
 _MOVED = DofGroup.WAIST, *ARMS
 WAIST, LEFT, RIGHT = (columns_of(group) for group in _MOVED)  # columns of an upper body (11,)
 _BEND, _TWIST, _ABDUCTIONS = WAIST.start, WAIST.start + 1, [LEFT.start + 1, RIGHT.start + 1]
-DRAWN = np.delete(np.arange(LOCAL), LOWERING - DofGroup.WAIST.at.start)  # a certificate's pelvis is never lowered
+# What is drawn of it: a certificate's pelvis is never lowered, and what else there is follows the waist.
+DRAWN = np.array([j for j in np.r_[WAIST, LEFT, RIGHT] if j != WAIST.start + LOWERING - DofGroup.WAIST.at.start])
 
 _BENT, _LEANING = (0.75, 1.25), (0.60, 0.95)  # forward bend alone, and with a twist
 _TWISTED = (0.50, 0.78)
@@ -163,7 +164,7 @@ def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
         posture[columns] = clamp(group, posture[columns])
         move = posture[columns] - before[columns]
         posture[columns] = before[columns] + move * min(1.0, 0.99 * most / max(float(np.linalg.norm(move)), 1e-9))
-    return np.round(posture, GRAIN)
+    return np.round(followed(posture), GRAIN)
 
 
 def _is_clear(motion: BodyMotion, check: SelfClearance) -> bool:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup
+from elbowroom.body.dof import DofGroup, followed
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, leg_capsules, pelvis_frames, posture_capsules
@@ -72,7 +72,7 @@ class SweptBody:
 
     def _natural_walk(self, line: CourseLine, way: Floats, phases: Floats) -> BodyRows:
         states = walk_along(line, way, WALK_SPEED, phases)
-        uppers = natural_walk()(RootPath(0.0, 1.0, states))
+        uppers = followed(natural_walk()(RootPath(0.0, 1.0, states)))
         q = np.concatenate([states[:, :3], uppers], axis=1)
         segments = posture_capsules(self._model, q, states)[self._upper]
         return rows_of(segments, self._radii[self._upper], way)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import ARMS, DOF, DofGroup, clamp
+from elbowroom.body.dof import ARMS, DOF, DofGroup, clamp, followed
 from elbowroom.body.root import RootState
 
 
@@ -30,6 +30,8 @@ class Gesture:
         q[DofGroup.WAIST.at] = clamp(DofGroup.WAIST, waist)
         for group in ARMS:
             q[group.at] = clamp(group, np.deg2rad(self.arms))
+        first = DofGroup.ROOT.size
+        q[first:] = followed(q[first:])
         return q
 
 

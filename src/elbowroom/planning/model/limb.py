@@ -37,18 +37,25 @@ def limb_of(model: BodyModel, group: DofGroup) -> Limb:
     return Limb(model.chains[group], model.capsules_of(group).radii, *_trunk_limits(model, group))
 
 
+def trunk_limb(model: BodyModel) -> Limb:
+    """The waist's limb with all that follows the waist where nobody plans it, as one: the paper's trunk."""
+    chain, capsules = model.trunk
+    return Limb(chain, capsules.radii, *_trunk_limits(model, DofGroup.WAIST))
+
+
 def _trunk_limits(model: BodyModel, group: DofGroup) -> tuple[Floats, Floats]:
-    """What carries a group at rest, in the chest frame, and the distances from it that the group has to keep."""
+    """The trunk at rest, in the chest frame, and the distances from it that a group on it has to keep."""
     radii = model.capsules_of(group).radii
     parent = group.parent
     if group not in CHILDREN or parent is None or parent not in group.clear_of:
         return np.empty((0, 6)), np.empty((len(radii), 0))
     rest = np.zeros((1, parent.size))
     positions, rotations = chest_frames(model, rest)
-    ends = group_capsules(model, parent, rest)[:, :, 0].astype(np.float64).reshape(-1, 2, 3)
+    chain, capsules = model.trunk
+    ends = posing.pose_chain(chain, rest)[0][:, :, 0].astype(np.float64).reshape(-1, 2, 3)
     trunk = quaternion.rotate(quaternion.conjugate(rotations[0]), ends - positions[0]).reshape(-1, 6)
     hanging = group_capsules(model, group, np.zeros((1, group.size)))
-    return trunk, allowed_distances(hanging, radii, trunk, model.capsules_of(parent).radii)
+    return trunk, allowed_distances(hanging, radii, trunk, capsules.radii)
 
 
 class LimbScratch(NamedTuple):

@@ -46,7 +46,9 @@ class SelfPairs(NamedTuple):
             self.allowed[group, other] if (group, other) in self.allowed else self.allowed[other, group].T
             for other in others
         ]
-        return np.concatenate([self.capsules[other] for other in others]), np.concatenate(rows, axis=1)
+        none = np.empty((len(self.capsules[group]), 0), np.float32)
+        capsules = [self.capsules[other] for other in others]
+        return np.concatenate([*capsules, np.empty(0, np.int64)]), np.concatenate([*rows, none], axis=1)
 
 
 def carriers_of(group: DofGroup) -> tuple[DofGroup, ...]:

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.clip import MotionClip
-from elbowroom.body.dof import ARMS, LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.dof import ARMS, LOWERING, DofGroup, columns_of, followed, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.frames import compose
-from elbowroom.planning.model.limb import limb_of, pose
+from elbowroom.planning.model.limb import limb_of, pose, trunk_limb
 from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.paper import figure6
 from elbowroom.planning.paper.activity_graph import ActivityGraph
@@ -25,7 +25,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 _NEARLY = 0.5  # metres: more than any margin
-_GROUPS = (DofGroup.WAIST, *ARMS)  # the paper's J*, in its order; every other group follows its goal
+_GROUPS = (DofGroup.WAIST, *ARMS)  # the paper's J*, in its order; what else hangs on the waist follows it
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class LocalPlanner:
             configurations[:, columns] = result.path
             if group is DofGroup.WAIST:
                 obstacles = self._from_chest(near, positions, rotations, result.path)
-        return LocalPlan(PlanStatus.FOUND, configurations, goals, tuple(evidence))
+        return LocalPlan(PlanStatus.FOUND, followed(configurations), goals, tuple(evidence))
 
     def margins(self, path: RootPath) -> Floats:
         """The clearance (n+1,) in metres that counts as free at each key time."""
@@ -141,13 +141,14 @@ class LocalPlanner:
         return self._obstacles.near(ground.min(axis=0) - reach, ground.max(axis=0) + reach)
 
     def _posed_graph(self, group: DofGroup) -> PosedGraph:
-        chosen, limb = self.settings.of(group), limb_of(self._model, group)
+        chosen, waist = self.settings.of(group), group is DofGroup.WAIST
+        limb = trunk_limb(self._model) if waist else limb_of(self._model, group)
 
         def accept(configurations: Floats) -> NDArray[np.bool_]:
             return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
         clips, bounds = upright(self._motions.clips(group)), limits(group)
-        if group is DofGroup.WAIST:
+        if waist:
             bounds[LOWERING - group.at.start] = 0.0
         graph = ActivityGraph.from_clips(
             clips, chosen.samples_per_clip, chosen.radius, self.settings.capacity, accept, bounds

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, SEARCH_ORDER
-from elbowroom.body.kinematics import chest_frames
+from elbowroom.body.kinematics import BodyModel, chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.exact.joint.bounds import Problem, path_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
@@ -40,7 +40,7 @@ Indices = NDArray[np.int64]
 # that may run into each other. Every other child is as well as it can be under each waist.
 PRODUCT = (0, *(SEARCH_ORDER.index(arm) for arm in ARMS))
 _PAIR = PRODUCT[1:]
-_ALONE = tuple(g for g in range(1, len(SEARCH_ORDER)) if g not in PRODUCT)
+ALONE = tuple(g for g in range(1, len(SEARCH_ORDER)) if g not in PRODUCT)
 _FIRST = 8  # waists of each slice that are filled in at first
 _GROWTH = 3
 _ALIKE = 0.1  # radians, of both ends together: edges so near to one that touches are closed with it
@@ -77,6 +77,17 @@ class Surroundings(NamedTuple):
     places: Floats  # (n+1, m, 3) pelvis at m moments around each key time, in the world
     turns: Floats  # (n+1, m, 4)
     obstacles: Spans  # in the world, around each key time
+
+    def chests(self, model: BodyModel, depth: int, waists: Floats) -> tuple[Floats, Floats]:
+        """The chest's frames (F, m, 3), (F, m, 4) in the world under waists (F, d), at a slice's moments."""
+        inner, inner_turns = chest_frames(model, waists)
+        places, turns = self.places[depth], self.turns[depth]
+        moments = len(places)
+        found = compose(
+            np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
+            np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
+        )  # fmt: skip
+        return found[0].reshape(len(waists), moments, 3), found[1].reshape(len(waists), moments, 4)
 
 
 class JointStep:
@@ -189,15 +200,8 @@ class JointStep:
         return np.concatenate([_padded(nodes.postures), nodes.extras[depth]])
 
     def chests(self, depth: int, waists: Floats) -> tuple[Floats, Floats]:
-        """The chest's frames (F, m, 3), (F, m, 4) in the world under waists (F, d), at a slice's moments."""
-        inner, inner_turns = chest_frames(self._body.model, waists)
-        places, turns = self.around.places[depth], self.around.turns[depth]
-        moments = len(places)
-        found = compose(
-            np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
-            np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
-        )  # fmt: skip
-        return found[0].reshape(len(waists), moments, 3), found[1].reshape(len(waists), moments, 4)
+        """`Surroundings.chests` of this body."""
+        return self.around.chests(self._body.model, depth, waists)
 
     def lanes(self, group: int, depth: int) -> Lanes:
         """All of a group's nodes at a depth as lanes."""

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup
-from elbowroom.body.kinematics import chest_frames
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
 from elbowroom.planning.exact.joint.step import Surroundings
 from elbowroom.planning.exact.lattice.drawing import drawn_postures
@@ -14,7 +13,6 @@ from elbowroom.planning.exact.lattice.postures import blocks_of
 from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
-from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import Limb, pose
 from elbowroom.planning.model.self_pairs import carriers_of, with_waist
 from elbowroom.world.obstacles.rows import span_of
@@ -64,18 +62,10 @@ def children_for(body: OwnBody, known: Known, blocked: Blocked, settings: Refine
     waists = blocked.waists[:_WAISTS]
     if not len(waists):
         return drawn[:0]
-    inner, inner_turns = chest_frames(body.model, waists)
-    places, turns = blocked.around.places[blocked.depth], blocked.around.turns[blocked.depth]
-    moments = len(places)
-    frames = compose(
-        np.tile(places, (len(waists), 1)), np.tile(turns, (len(waists), 1)),
-        np.repeat(inner, moments, axis=0), np.repeat(inner_turns, moments, axis=0),
-    )  # fmt: skip
+    frames = blocked.around.chests(body.model, blocked.depth, waists)
     lanes = Lanes(*blocks_of(pose(limb, drawn), limb.radii), known.reach)
-    clear, _ = clearances_under(
-        lanes, frames[0].reshape(-1, moments, 3), frames[1].reshape(-1, moments, 4),
-        span_of(blocked.around.obstacles, blocked.depth), np.ones(len(waists), np.bool_),
-    )  # fmt: skip
+    obstacles, every = span_of(blocked.around.obstacles, blocked.depth), np.ones(len(waists), np.bool_)
+    clear, _ = clearances_under(lanes, *frames, obstacles, every)
     free: Bools = clear[:, : len(drawn)] >= blocked.margin
     if carriers:
         states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
