@@ -4,17 +4,19 @@ import { AddressLine, isPrivate, withOwnAvatar } from "./address";
 import { uploadFile } from "./avatar/upload";
 import { nextView, viewNamed, type ViewName } from "./camera/views";
 import { FrameStats } from "./frame_stats";
-import type { AvatarMessage, Catalog, ClipMessage, Crossed, Loading, Notice, Plan, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
+import { POSE_FLAGS } from "./generated/messages";
+import type { AvatarMessage, Catalog, ClipMessage, Crossed, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
 import { Controls } from "./input/controls";
 import type { Action } from "./input/keyboard";
 import { PointerInput } from "./input/pointer";
-import type { SteeringMode } from "./input/steering";
+import { NO_INTENT, type SteeringMode } from "./input/steering";
 import type { ConnectionState } from "./net/connection";
 import { sessionUrl } from "./net/endpoints";
 import type { ShownPose } from "./net/pose_timeline";
 import { Session, type SessionListener } from "./net/session";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import { Picture } from "./picture";
+import { ReplayDoor } from "./replay/door";
 import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
 import { BestTimes, nextScene } from "./results";
 import { showAvatarAbout } from "./ui/avatar_about";
@@ -42,8 +44,12 @@ export class App implements SessionListener, MenuListener {
   readonly picture: Picture;
   readonly controls: Controls;
   readonly stats = new FrameStats();
+  readonly replay: ReplayDoor;
   pose: ShownPose | null = null;
   sceneMessage: SceneMessage | null = null;
+  private avatarMessage: AvatarMessage | null = null;
+  /** The replay has paused the live walk. */
+  private held = false;
   avatarTitle = "";
   framesDrawn = 0;
   private bodyIsAvatar = false;
@@ -71,6 +77,10 @@ export class App implements SessionListener, MenuListener {
     this.preferences = readPreferences(query);
     const label = byId("nearest-label", HTMLElement);
     this.picture = new Picture(this.view, label, this.preferences.quality, () => this.calm.matches);
+    this.replay = new ReplayDoor({
+      picture: this.picture, say: (level, said) => this.notices.show(level, said), closed: () => this.goOnLive(),
+      dock: (pixels) => document.documentElement.style.setProperty("--dock", `${pixels}px`),
+    });
     this.applyTheme();
     this.dark.addEventListener("change", () => this.applyTheme());
     this.menu = new Menu(this, this.preferences);
@@ -101,13 +111,15 @@ export class App implements SessionListener, MenuListener {
 
   settings(settings: Settings): void {
     this.menu.showSettings(settings);
+    this.noteLive();
     this.subscribe();
     this.showAddress();
   }
 
   scene(scene: SceneMessage): void {
     this.sceneMessage = scene;
-    this.picture.showScene(scene);
+    this.noteLive();
+    if (!this.replay.active) this.picture.showScene(scene);
     this.statusLine.restart();
     this.finishCard.hide();
     this.menu.addScene(scene.name, scene.title);
@@ -116,16 +128,26 @@ export class App implements SessionListener, MenuListener {
   }
 
   avatar(message: AvatarMessage): void {
+    this.avatarMessage = message;
+    this.noteLive();
     this.bodyIsAvatar = message.drawCapsules;
     showAvatarAbout(message);
     this.menu.addAvatar(message.id, message.title);
     this.subscribe();
+    if (!this.replay.active) this.dress(message);
+  }
+
+  private dress(message: AvatarMessage): void {
     this.veil.download(true);
     this.picture
       .showAvatar(message)
       .then(() => (this.avatarTitle = message.title))
       .catch((error: unknown) => this.notices.show("error", `${message.title} cannot be shown: ${words(error)}`))
       .finally(() => this.veil.download(false));
+  }
+
+  frameCame(frame: PoseFrame): void {
+    this.replay.keep(frame);
   }
 
   clip(message: ClipMessage): void {
@@ -244,6 +266,7 @@ export class App implements SessionListener, MenuListener {
   }
 
   action(action: Action): void {
+    if (this.replay.answers(action)) return;
     if (action.startsWith("view:")) this.showView(viewNamed(action.slice("view:".length)));
     else this.actions[action as Deed]();
   }
@@ -268,6 +291,8 @@ export class App implements SessionListener, MenuListener {
     nextView: () => this.showView(nextView(this.picture.camera.viewName)),
     inset: () => this.prefer({ inset: !this.preferences.inset }),
     share: () => this.share(),
+    stepBack: () => undefined,
+    replay: () => void this.openReplay(),
     help: () => this.help.toggle(),
     escape: () => {
       this.finishCard.hide();
@@ -276,9 +301,41 @@ export class App implements SessionListener, MenuListener {
     },
   };
 
+  private noteLive(): void {
+    this.replay.live(this.sceneMessage, this.avatarMessage, this.session.settings);
+  }
+
+  /** The live walk waits while a run is replayed. */
+  private async openReplay(): Promise<void> {
+    await this.replay.toggle();
+    if (!this.replay.active) return;
+    this.menu.setOpen(false);
+    this.hold();
+  }
+
+  private hold(): void {
+    if (this.held || this.session.settings?.paused) return;
+    this.held = true;
+    this.session.send({ type: "clock", paused: true });
+  }
+
+  /** The replay is closed: the live walk is shown again and goes on. */
+  private goOnLive(): void {
+    if (this.sceneMessage) this.picture.showScene(this.sceneMessage);
+    if (this.avatarMessage && this.picture.shownAvatar !== this.avatarMessage) this.dress(this.avatarMessage);
+    if (this.held) this.session.send({ type: "clock", paused: false });
+    this.held = false;
+    this.controls.repeat();
+    this.view.focus();
+  }
+
   /** After the finish. */
   private goOn(deed: FinishDeed): void {
     const { scene, assist } = this.session.settings ?? {};
+    if (deed === "replay") {
+      this.action("replay");
+      return;
+    }
     if (deed === "next" && scene) {
       this.configure({ scene: nextScene(scene, this.menu.offered) });
       return;
@@ -289,7 +346,7 @@ export class App implements SessionListener, MenuListener {
 
   private controlsHost(): ConstructorParameters<typeof Controls>[0] {
     return {
-      send: (input) => this.session.send(input),
+      send: (input) => !this.replay.active && this.session.send(input),
       action: (action) => this.action(action),
       look: (yaw, pitch) => this.picture.camera.turn(yaw, pitch),
       cameraHeading: () => this.picture.camera.heading,
@@ -352,6 +409,7 @@ export class App implements SessionListener, MenuListener {
     document.documentElement.dataset["theme"] = shown;
     document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#2a3546" : "#e6e5df");
     this.picture.setTheme(shown);
+    this.replay.repaint();
   }
 
   private frame(): void {
@@ -363,15 +421,30 @@ export class App implements SessionListener, MenuListener {
     this.picture.measure(elapsed);
     const dt = Math.min(elapsed, LONGEST_FRAME);
     this.controls.update(dt);
-    this.pose = this.session.poseAt(now) ?? this.pose;
-    const { intent } = this.controls;
+    const replayed = this.replay.advance(dt);
+    this.pose = replayed ?? this.session.poseAt(now) ?? this.pose;
     const { settings, status } = this.session;
+    if (replayed) {
+      this.drawReplayed(replayed, dt);
+      return;
+    }
+    const { intent } = this.controls;
     if (intent.forward !== 0 || intent.right !== 0 || intent.strafe !== 0) this.statusLine.moved();
     this.statusLine.update(this.pose, status, settings, now);
     this.picture.draw(this.pose, {
       status, intent, steering: this.steering, shown: this.preferences.overlays,
       inset: this.preferences.inset && !document.body.classList.contains("bare"),
       markTouching: settings?.assist === false,
+    }, dt);
+    this.framesDrawn++;
+  }
+
+  private drawReplayed(pose: ShownPose, dt: number): void {
+    const shown = new Set(OVERLAYS.filter((name) => name === "capsules" && this.preferences.overlays.has(name)));
+    this.picture.draw(pose, {
+      status: null, intent: NO_INTENT, steering: "tank", shown,
+      inset: this.preferences.inset && !document.body.classList.contains("bare"),
+      markTouching: (pose.flags & POSE_FLAGS.assist) === 0,
     }, dt);
     this.framesDrawn++;
   }

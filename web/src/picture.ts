@@ -1,6 +1,6 @@
 /** Everything that is drawn: stage, scene, avatar, overlays, and the camera that sees them. */
 
-import { Vector3 } from "three";
+import { Vector3, type Group } from "three";
 import { AvatarView } from "./avatar/avatar_view";
 import { InsetCamera } from "./camera/inset";
 import type { Vec3 } from "./camera/spring_arm";
@@ -13,6 +13,7 @@ import type { Theme } from "./stage/palette";
 import { cheaper, fixedQuality, QualityGovernor, startingQuality, type Quality, type QualityName } from "./stage/quality";
 import { Stage } from "./stage/stage";
 import { World } from "./stage/world";
+import { Halves } from "./stage/halves";
 import { byId } from "./ui/dom";
 
 const EYE_BELOW_HEAD = 0.06;
@@ -29,7 +30,15 @@ export interface Scenery extends Omit<Moment, "pose" | "bodyIsAvatar"> {
   readonly inset: boolean;
 }
 
+/** A second run, shown in the right half of the picture. */
+export interface Beside {
+  readonly pose: ShownPose;
+  readonly group: Group;
+}
+
 export class Picture {
+  /** With a second run the picture has two halves. */
+  beside: Beside | null = null;
   readonly stage: Stage;
   readonly world = new World();
   readonly avatar = new AvatarView();
@@ -40,6 +49,7 @@ export class Picture {
   private readonly governor = new QualityGovernor();
   private automatic: boolean;
   private message: AvatarMessage | null = null;
+  private halves: Halves | null = null;
   private loads = 0;
   private epoch = -1;
   private last: readonly [number, number] = [Infinity, Infinity];
@@ -90,6 +100,11 @@ export class Picture {
     else this.avatar.show(message, file, disposeAvatarFile);
   }
 
+  /** The avatar that was asked for last. */
+  get shownAvatar(): AvatarMessage | null {
+    return this.message;
+  }
+
   /** Metres from the avatar's soles to the top of its head. */
   get height(): number {
     return this.message?.height ?? DEFAULT_EYE;
@@ -109,7 +124,8 @@ export class Picture {
     camera.lookAt(...this.camera.target);
     camera.updateMatrixWorld();
     this.overlays.seenBy(camera);
-    this.stage.render();
+    if (pose && this.beside) this.drawHalves(pose, this.beside);
+    else this.stage.render();
     if (pose && scenery.inset) this.drawInset(this.followed(pose, scenery), dt);
     this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
   }
@@ -149,6 +165,21 @@ export class Picture {
     this.stage.follow(pose.x, pose.z);
     this.world.follow(pose.x, pose.z);
     this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.drawCapsules ?? false });
+  }
+
+  /** Two runs from the same side: the avatar at the left, the second one at the right. */
+  private drawHalves(pose: ShownPose, { pose: second, group }: Beside): void {
+    this.halves ??= new Halves(this.stage, this.host);
+    const { visible } = this.avatar.group;
+    group.visible = false;
+    this.halves.draw(0, [0, 0, 0]);
+    this.avatar.group.visible = this.overlays.group.visible = false;
+    group.visible = true;
+    this.world.move(second.simTime);
+    this.stage.follow(second.x, second.z);
+    this.halves.draw(1, [second.x - pose.x, second.y - pose.y, second.z - pose.z]);
+    this.avatar.group.visible = visible;
+    this.overlays.group.visible = true;
   }
 
   /** The side view, where the page leaves a frame for it. */

@@ -44,6 +44,7 @@ export interface AppState {
   readonly quality: unknown;
   readonly delayMs: number;
   readonly roundTripMs: number;
+  readonly replay: unknown;
 }
 
 declare global {
@@ -100,5 +101,6 @@ function snapshot(app: App): AppState {
     quality: picture.stage.currentQuality,
     delayMs: 1000 * session.delay,
     roundTripMs: session.roundTripMs,
+    replay: app.replay.state,
   };
 }

@@ -7,7 +7,7 @@ import { OVERLAYS } from "../src/overlays/overlay_names";
 
 describe("docs/page.md", () => {
   it("names every key and every button that does something", () => {
-    const names: Readonly<Record<string, string>> = { Period: ".", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
+    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
     for (const code of [...Object.keys(KEY_ACTIONS), ...HELD_KEYS]) {
       expect(text).toContain(code.startsWith("Arrow") ? "arrows" : `\`${names[code] ?? code.replace(/^(Key|Digit)/, "")}\``);
     }

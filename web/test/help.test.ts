@@ -14,7 +14,7 @@ describe("the help", () => {
   });
 
   it("names every key that does something", () => {
-    const names: Readonly<Record<string, string>> = { Period: ".", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
+    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
     for (const code of [...Object.keys(KEY_ACTIONS), ...HELD_KEYS]) {
       if (code.startsWith("Arrow")) expect(words).toContain("arrow");
       else expect(words).toContain(names[code] ?? code.replace(/^(Key|Digit)/, ""));

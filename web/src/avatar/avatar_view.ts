@@ -41,6 +41,17 @@ export class AvatarView {
     this.group.add(placed);
   }
 
+  /** Shows nobody, and frees what the last avatar took. */
+  clear(): void {
+    if (this.file) this.dispose?.(this.file);
+    this.file = null;
+    this.group.clear();
+    this.joints = [];
+    this.surfaces = null;
+    this.blinking = null;
+    this.revision = -1;
+  }
+
   get loaded(): boolean {
     return this.file !== null;
   }

@@ -20,6 +20,8 @@ export interface SessionListener {
   avatar(avatar: AvatarMessage): void;
   clip(clip: ClipMessage): void;
   status(status: Status): void;
+  /** A pose has come; it is shown a little later. */
+  frameCame(frame: PoseFrame): void;
   plan(plan: Plan): void;
   /** The server does not offer the chosen avatar (any more); false to ask for it all the same: someone has shared it. */
   avatarLost(id: string): boolean;
@@ -116,6 +118,7 @@ export class Session {
     this.leastClearance.add(frame, this.start);
     this.clock.arrived(frame.time, performance.now() / 1000);
     this.timeline.push(frame);
+    this.listener.frameCame(frame);
   }
 
   /** Asks a new connection for what the last one had; an avatar that the server has lost is left out. */

@@ -18,6 +18,9 @@ const FIELD_OF_VIEW = 50;
 /** An upright picture has room enough below the feet: it is shifted up by this share of what is asked for. */
 const LIFT_UPRIGHT = 0.25;
 
+/** A part of the picture, in CSS pixels from its upper left corner. */
+export type Part = Readonly<Record<"left" | "top" | "width" | "height", number>>;
+
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 250);
@@ -48,6 +51,11 @@ export class Stage {
     const context = this.renderer.getContext();
     const extension = context.getExtension("WEBGL_debug_renderer_info");
     return String(context.getParameter(extension ? extension.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+  }
+
+  /** What the picture is drawn on; another one after a change of smooth edges. */
+  get canvas(): HTMLCanvasElement {
+    return this.renderer.domElement;
   }
 
   get currentQuality(): Quality {
@@ -96,13 +104,13 @@ export class Stage {
   }
 
   /** Draws once more, by another camera, into a part of the picture: CSS pixels from its upper left corner. */
-  renderInto(camera: PerspectiveCamera, { left, top, width, height }: Omit<DOMRect, "toJSON">): void {
+  renderInto(camera: PerspectiveCamera, { left, top, width, height }: Part, shadowsAnew = false): void {
     const { renderer } = this;
     const bottom = this.host.clientHeight - top - height;
     renderer.setScissorTest(true);
     renderer.setScissor(left, bottom, width, height);
     renderer.setViewport(left, bottom, width, height);
-    renderer.shadowMap.autoUpdate = false;
+    renderer.shadowMap.autoUpdate = shadowsAnew;
     renderer.render(this.scene, camera);
     renderer.shadowMap.autoUpdate = true;
     renderer.setScissorTest(false);

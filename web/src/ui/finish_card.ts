@@ -14,7 +14,7 @@ export interface Finish {
 }
 
 /** What its buttons do. */
-export type FinishDeed = "again" | "next" | "compare";
+export type FinishDeed = "again" | "next" | "compare" | "replay";
 
 export class FinishCard {
   private readonly card = byId("finish", HTMLElement);
@@ -23,7 +23,7 @@ export class FinishCard {
   private readonly compare = byId("finish-compare", HTMLButtonElement);
 
   constructor(act: (deed: FinishDeed) => void) {
-    for (const deed of ["again", "next", "compare"] as const) {
+    for (const deed of ["again", "next", "compare", "replay"] as const) {
       byId(`finish-${deed}`, HTMLButtonElement).addEventListener("click", () => {
         this.hide();
         act(deed);

@@ -38,6 +38,8 @@ const KEYBOARD: readonly Section[] = [
     [["P"], "or Space: pause"],
     [["."], "one step of 1/60 s"],
     [["M"], "slow motion"],
+    [["K"], "replay of the last walk; in it Space plays, R begins anew, Esc closes"],
+    [[","], "one step back in a replay"],
   ] },
   { title: "See", rows: [
     [["T"], "assist on and off: planned motion or the canned walk"],

@@ -1,0 +1,90 @@
+/** The way into the replay: keeps the walks from the beginning on, and fetches the rest of the replay when it is wanted. */
+
+import type { AvatarMessage, PoseFrame, SceneMessage, Settings } from "../generated/messages";
+import type { ShownPose } from "../net/pose_timeline";
+import type { Action } from "../input/keyboard";
+import { text } from "../texts/texts";
+import { WalkKeeper, type Circumstances } from "./keeper";
+import type { Replay, ReplayHost, ReplayState } from "./replay";
+import type { Take } from "./take";
+
+export class ReplayDoor {
+  private readonly keeper = new WalkKeeper();
+  /** Runs out of files. */
+  private readonly files: Take[] = [];
+  private replay: Replay | null = null;
+  private circumstances: Circumstances | null = null;
+
+  constructor(private readonly host: ReplayHost) {}
+
+  /** Whether a run is shown in place of the live walk. */
+  get active(): boolean {
+    return this.replay?.active ?? false;
+  }
+
+  get state(): ReplayState | null {
+    return this.replay?.state ?? null;
+  }
+
+  /** Notes what is shown live from now on; a motion clip is no walk. */
+  live(scene: SceneMessage | null, avatar: AvatarMessage | null, settings: Settings | null): void {
+    const walks = scene && avatar && settings?.clip === "";
+    this.circumstances = walks ? { scene, avatar, planner: settings.planner } : null;
+  }
+
+  /** Keeps a live frame. */
+  keep(frame: PoseFrame): void {
+    this.keeper.add(frame, this.circumstances);
+  }
+
+  /** Opens the last walk, or closes the replay. */
+  async toggle(): Promise<void> {
+    if (this.active) {
+      this.replay?.close();
+      return;
+    }
+    const takes = this.takes();
+    const last = takes.at(-1);
+    if (last) await this.open(takes, last);
+    else this.host.say("info", text("replay.none"));
+  }
+
+  /** Shows a run that came as a file. */
+  async show(take: Take): Promise<void> {
+    this.files.push(take);
+    await this.open(this.takes(), take);
+  }
+
+  /** The next pose of the replay; null where none is shown. */
+  advance(dt: number): ShownPose | null {
+    return this.replay?.advance(dt) ?? null;
+  }
+
+  /** Whether the replay has an answer of its own to an action, and gives it. */
+  answers(action: Action): boolean {
+    const { replay } = this;
+    if (!replay?.active) return false;
+    const deeds: Readonly<Partial<Record<Action, () => void>>> = {
+      pause: () => replay.toggle(), step: () => replay.step(1), stepBack: () => replay.step(-1), reset: () => replay.seek(0),
+      escape: () => replay.close(), slow: () => undefined, assist: () => undefined, overlays: () => undefined,
+    };
+    const deed = deeds[action];
+    deed?.();
+    return deed !== undefined;
+  }
+
+  /** In other colours. */
+  repaint(): void {
+    this.replay?.repaint();
+  }
+
+  private takes(): readonly Take[] {
+    return [...this.files, ...this.keeper.takes()];
+  }
+
+  private async open(takes: readonly Take[], shown: Take): Promise<void> {
+    const { Replay } = await import("./replay");
+    this.replay ??= new Replay(this.host);
+    this.replay.open(takes, shown);
+  }
+}
