@@ -9,4 +9,4 @@ fi
 echo "Installing the judges of the browser tests ..."
 "$1" "$(dirname "$0")/../hatch_build.py" judges ci --no-audit --no-fund --loglevel=error &&
     cp "$folder/package-lock.json" "$folder/node_modules/.lock" && exit 0
-echo "X_ITE could not be installed: the tests that it judges are skipped."
+echo "They could not be installed: the tests that they judge are skipped."

@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.permissions import Use
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.export import tables
 from elbowroom.export.animation import Animation
+from elbowroom.export.avatar_glb import avatar_glb
 from elbowroom.export.layout import Layout, Rest, RootMotion, take_of, tips
 from elbowroom.formats.bvh_writing import write_bvh
+from elbowroom.formats.skeleton_glb import skeleton_glb, vrm_animation
 
 
 @dataclass(frozen=True)
@@ -83,9 +86,26 @@ def _csv(animation: Animation, _: Humanoid, layout: Layout) -> Exported:
     return Exported(tables.table(animation, layout))
 
 
+def _glb(animation: Animation, humanoid: Humanoid, layout: Layout) -> Exported:
+    """The avatar's own file where it has one and allows it, else a figure of bones."""
+    refusal = humanoid.meta.permissions.refusal(Use.EMBED) if humanoid.glb else "the avatar has no file"
+    if refusal is None:
+        return Exported(avatar_glb(animation, humanoid, layout.root_motion))
+    data = skeleton_glb(take_of(animation, layout), tips(humanoid.skeleton, layout))
+    return Exported(data, (f"{humanoid.name}: {refusal}: a figure of bones shows the motion",))
+
+
+def _vrma(animation: Animation, _: Humanoid, layout: Layout) -> Exported:
+    """A VRM animation; eyes look where they are told by other means there, and are no bones of it."""
+    bones = {bone: bone for bone in animation.skeleton.names if not bone.endswith("Eye")}
+    return Exported(vrm_animation(take_of(animation, layout), bones))
+
+
 FORMATS = {
     "bvh": Format("BVH", _bvh, Layout(unit=0.01), free=True),
     "csv": Format("CSV", _csv, Layout(), free=True),
+    "glb": Format("GLB", _glb, Layout()),
     "npz": Format("NPZ", _npz, Layout(), free=True),
+    "vrma": Format("VRM animation", _vrma, Layout(), roots=(RootMotion.HIPS, RootMotion.NONE)),
 }
 _ENDINGS = ", ".join(f".{ending}" for ending in FORMATS)

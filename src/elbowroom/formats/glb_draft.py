@@ -1,5 +1,6 @@
 """A glTF asset under construction, piece by piece, until it is written as one GLB."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -68,8 +69,8 @@ class GlbDraft:
         """An image inside the file."""
         return self.add("images", {"bufferView": self._view(data, None), "mimeType": mime})
 
-    def finish(self) -> bytes:
-        """The GLB."""
+    def finish(self, extensions: Mapping[str, Any] | None = None) -> bytes:
+        """The GLB, with extensions of the whole asset by their names."""
         content: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": "Elbowroom"},
             "scene": 0,
@@ -77,6 +78,8 @@ class GlbDraft:
             "nodes": self.nodes,
             **self._content,
         }
+        if extensions:
+            content |= {"extensions": dict(extensions), "extensionsUsed": list(extensions)}
         if self._binary:
             content["buffers"] = [{"byteLength": len(self._binary)}]
         return write_glb(content, bytes(self._binary))
