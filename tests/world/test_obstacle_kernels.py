@@ -115,7 +115,9 @@ def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None
             continue
         for sign in (1.0, -1.0):
             center = obstacles.centers[i] - away / distance * (distance - radius - sign * gap)
-            one = Obstacles((obstacles.shapes[i],), center[None], obstacles.rotations[i : i + 1], ("thing",))
+            one = Obstacles(
+                (obstacles.shapes[i],), center[None], obstacles.rotations[i : i + 1], ("thing",), ground=-9.0
+            )
             ours = clearance_of(segment[None], [radius], one.standing)
             theirs = coal_distance(segment, radius, judged_obstacles(scene_with(one))[0])
             assert abs(theirs - sign * gap) < 1e-5

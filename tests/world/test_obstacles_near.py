@@ -84,13 +84,13 @@ def test_what_is_along_a_way_stands_there_or_sweeps_it() -> None:
     found = obstacles.along(times, ground)
     least, most = bounds_of(obstacles.standing)
     over = (least[:, 0] <= 306.0) & (most[:, 0] >= 295.0) & (least[:, 2] <= -195.0) & (most[:, 2] >= -205.0)
-    assert found.numbers.tolist() == [*np.flatnonzero(over).tolist(), len(obstacles.shapes)]
+    assert found.numbers.tolist() == [*np.flatnonzero(over).tolist(), len(least)]
     assert found.spans.rows.shape[:2] == (6, len(found.numbers))
     assert found.moments.rows.shape[:2] == (7, len(found.numbers))
     assert len(set(found.stamps.tolist())) == 6
     for k in range(6):  # what moves is within what it sweeps
         for time in np.linspace(times[k], times[k + 1], 5):
-            swept = bounds_of(type(obstacles.standing)(found.spans.rows[k, -1:], obstacles.standing.hulls))
+            swept = bounds_of(type(obstacles.standing)(found.spans.rows[k, -1:], obstacles.standing.packed))
             there = bounds_of(obstacles.moving.at(float(time)))
             assert np.all(swept[0] <= there[0] + 1e-9)
             assert np.all(swept[1] >= there[1] - 1e-9)

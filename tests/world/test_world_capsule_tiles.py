@@ -65,7 +65,7 @@ def test_only_the_listed_pairs_count() -> None:
     fill_tile_rows(near.rows, boxes, rows)
     pairs = np.array([[2, 1], [0, 0], [2, 2], [1, 1]])
     squares = np.full((4, LANES), np.inf, np.float32)
-    lower_squares(tiles.reshape(4 * TILE), rows, near.hulls, pairs, 3, squares.reshape(-1))
+    lower_squares(tiles.reshape(4 * TILE), rows, near.packed, pairs, 3, squares.reshape(-1))
     assert np.all(np.isposinf(squares[[1, 3]]))
     metres = np.full((4, LANES), np.inf, np.float32)
     for tile in range(4):

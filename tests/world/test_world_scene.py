@@ -31,6 +31,7 @@ STANDING = [
     {"type": "capsule", "center": [3, 1, 4], "radius": 0.2, "length": 0.9, "yaw": 0.1},
     {"type": "cylinder", "center": [3, 1, 5], "radius": 0.2, "height": 0.9, "euler": [0.4, 0, 0]},
     {"type": "hull", "center": [3, 0, 6], "points": CORNERS, "rotation": [0, 0.6, 0, 0.8]},
+    {"type": "mesh", "center": [3, 0, 7], "vertices": CORNERS, "faces": [[0, 1, 2], [0, 2, 1]], "yaw": 0.1},
 ]
 MOVING = [
     {"type": "sphere", "radius": 0.2, "track": TRACK},
@@ -137,6 +138,7 @@ SAID_BY_NO_SCHEMA = (
     "off the ground",
     "lies behind it already",
     "lie in a plane",
+    "a corner that is not there",
 )
 
 
@@ -206,7 +208,16 @@ def test_what_was_read_is_what_is_written() -> None:
     assert again.to_dict() == scene.to_dict()
     assert VALIDATOR.is_valid(scene.to_dict())
     np.testing.assert_array_equal(again.obstacles.standing.rows, scene.obstacles.standing.rows)
-    assert scene.obstacles.standing_names == ("one", "box 2", "three", "four", "capsule 5", "cylinder 6", "hull 7")
+    assert scene.obstacles.standing_names == (
+        "one",
+        "box 2",
+        "three",
+        "four",
+        "capsule 5",
+        "cylinder 6",
+        "hull 7",
+        "mesh 8",
+    )
     assert scene.start == RootState(x=0.0, z=-1.0, heading=0.5)
     assert scene.finish == Gate((1.0, 5.0), 0.25, 3.0)
 
@@ -293,7 +304,7 @@ def test_a_missing_file_is_missing(name: str) -> None:
 def test_the_shapes_in_the_guide_are_read() -> None:
     guide = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text("utf-8")
     told = [json.loads(text) for text in re.findall(r'`({"type": .*?})`', guide)]
-    assert {one["type"] for one in told} == {"box", "sphere", "capsule", "cylinder", "hull"}
+    assert {one["type"] for one in told} == {"box", "sphere", "capsule", "cylinder", "hull", "mesh"}
     scene = Scene.from_dict({**document([], []), "obstacles": told, "moving": []})
     VALIDATOR.validate(scene.to_dict())
     assert len(scene.obstacles) == len(told)

@@ -30,18 +30,19 @@ from elbowroom.server.schema.picture import (
 from elbowroom.server.schema.progress import Blocked, GroupReport, Plan
 from elbowroom.world.obstacles.hulls import surface_of
 from elbowroom.world.obstacles.moving import Track
-from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere, extents_of
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere, extents_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
 _MOST_FACTS = 20
-_SHAPES: dict[type[Shape], Literal["box", "sphere", "capsule", "cylinder", "hull"]] = {
+_SHAPES: dict[type[Shape], Literal["box", "sphere", "capsule", "cylinder", "hull", "mesh"]] = {
     Box: "box",
     Sphere: "sphere",
     Capsule: "capsule",
     Cylinder: "cylinder",
     Hull: "hull",
+    Mesh: "mesh",
 }
 _REASONS: dict[BlockadeKind, Reason] = {
     BlockadeKind.NO_POSTURE: "noPosture",
@@ -75,13 +76,24 @@ def _moving(track: Track) -> MovingObstacle:
 
 
 def _form(shape: Shape) -> Form:
-    corners, triangles = surface_of(shape) if isinstance(shape, Hull) else (np.empty((0, 3)), np.empty((0, 3)))
+    corners, triangles = _surface(shape)
     return Form(
         _SHAPES[type(shape)],
         tuple((2.0 * extents_of(shape)).tolist()),
         [(x, y, z) for x, y, z in corners.tolist()],
         [(int(a), int(b), int(c)) for a, b, c in triangles.tolist()],
     )
+
+
+def _surface(shape: Shape) -> tuple[Floats, NDArray[np.int64]]:
+    """Corners (V, 3) and triangles (T, 3) of what is drawn by them."""
+    match shape:
+        case Hull():
+            return surface_of(shape)
+        case Mesh(vertices, faces):
+            return vertices, faces
+        case _:
+            return np.empty((0, 3)), np.empty((0, 3), np.int64)
 
 
 def avatar_message(avatar: StoredAvatar, revision: int) -> AvatarMessage:
@@ -148,7 +160,7 @@ def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
     if blockade is None:
         return None
     known = scene.obstacles.names
-    names = [known[number] for number in blockade.obstacles if number < len(known)]
+    names = list(dict.fromkeys(known[number] for number in blockade.obstacles if number < len(known)))
     return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 
 

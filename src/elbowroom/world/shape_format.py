@@ -3,14 +3,17 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from elbowroom.errors import InputError
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import LARGEST
 from elbowroom.world.obstacles.hulls import THINNEST, FlatHullError, surface_of
-from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere, Vector
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere, Vector
 
 FEWEST_POINTS, MOST_POINTS = 4, 128  # of a hull
 MOST_POINTS_TOGETHER = 100_000  # of all hulls of a scene that stand
+FEWEST_VERTICES, MOST_VERTICES, MOST_FACES = 3, 20_000, 40_000  # of a mesh
 
 # The fields of each type, besides those of every obstacle.
 FIELDS: dict[str, tuple[str, ...]] = {
@@ -19,6 +22,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "capsule": ("radius", "length"),
     "cylinder": ("radius", "height"),
     "hull": ("points",),
+    "mesh": ("vertices", "faces"),
 }
 
 
@@ -50,6 +54,8 @@ def write_shape(shape: Shape) -> dict[str, Any]:
             return {"type": "cylinder", "radius": radius, "height": height}
         case Hull(points):
             return {"type": "hull", "points": [list(point) for point in points]}
+        case Mesh():
+            return {"type": "mesh", "vertices": shape.vertices.tolist(), "faces": shape.faces.tolist()}
 
 
 def _length(place: Place) -> float:
@@ -78,10 +84,32 @@ def _read_hull(fields: dict[str, Place]) -> Hull:
     return hull
 
 
+def _read_mesh(fields: dict[str, Place]) -> Mesh:
+    corners, triangles = fields["vertices"], fields["faces"]
+    vertices = [item.vector(3, -LARGEST, LARGEST) for item in corners.items(MOST_VERTICES)]
+    if len(vertices) < FEWEST_VERTICES:
+        raise InputError(f"{corners.source}: {corners.path} has {len(vertices)} corners; a mesh has 3 at least")
+    faces = [_corner_numbers(item, len(vertices) - 1) for item in triangles.items(MOST_FACES)]
+    if not faces:
+        raise InputError(f"{triangles.source}: {triangles.path} has no triangles; a mesh has 1 to {MOST_FACES}")
+    return Mesh(np.array(vertices), np.array(faces))
+
+
+def _corner_numbers(place: Place, last: int) -> list[int]:
+    """The numbers of a triangle's corners."""
+    numbers = place.vector(3, 0, MOST_VERTICES - 1)
+    if not all(number.is_integer() for number in numbers):
+        place.fail("must be a list of 3 whole numbers: which of the vertices are its corners")
+    if max(numbers) > last:
+        place.fail(f"it names a corner that is not there; the vertices are 0 to {last}")
+    return [int(number) for number in numbers]
+
+
 _READERS: dict[str, Callable[[dict[str, Place]], Shape]] = {
     "box": lambda fields: Box(_vector(fields["size"].vector(3, 0.0, LARGEST, above=True))),
     "sphere": lambda fields: Sphere(_length(fields["radius"])),
     "capsule": lambda fields: Capsule(_length(fields["radius"]), _length(fields["length"])),
     "cylinder": lambda fields: Cylinder(_length(fields["radius"]), _length(fields["height"])),
     "hull": _read_hull,
+    "mesh": _read_mesh,
 }

@@ -9,11 +9,12 @@ export interface ConvexBody {
   nearest(point: Vec3): Vec3;
 }
 
-/** The body of a form; none for a box, which is all that is in its box. */
+/** The body of a form; none for what is taken to be all that is in its box. */
 export function convexBody(form: Form): ConvexBody | undefined {
   const radius = form.size[0] / 2, half = form.size[1] / 2;
   switch (form.shape) {
     case "box":
+    case "mesh": // not convex: the camera keeps off the box round it
       return undefined;
     case "sphere":
       return roundLine(radius, 0);

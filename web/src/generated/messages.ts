@@ -175,12 +175,12 @@ export interface Ground {
 
 /** The shape of an obstacle, about its own origin and along its own axes; capsules and cylinders are about Y. */
 export interface Form {
-  shape: "box" | "sphere" | "capsule" | "cylinder" | "hull";
+  shape: "box" | "sphere" | "capsule" | "cylinder" | "hull" | "mesh";
   /** whole edge lengths of the box about the origin that holds it */
   size: [number, number, number];
-  /** of a hull; else none */
+  /** of a hull or a mesh; else none */
   corners: [number, number, number][];
-  /** of a hull's surface, counter-clockwise seen from outside; else none */
+  /** of a hull or a mesh, counter-clockwise seen from outside; else none */
   triangles: [number, number, number][];
 }
 

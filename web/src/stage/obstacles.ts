@@ -109,6 +109,7 @@ function geometryOf({ shape, size, corners, triangles }: Form): BufferGeometry {
     case "cylinder":
       return new CylinderGeometry(radius, radius, high, ROUND);
     case "hull":
+    case "mesh":
       return faceted(triangles.flatMap((triangle) => triangle.flatMap((i) => corners[i] ?? [0, 0, 0])));
   }
 }

@@ -11,10 +11,12 @@ from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.hulls import surface_of
 from elbowroom.world.obstacles.moving import Track
-from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
+from elbowroom.world.obstacles.parts import above_ground
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +72,13 @@ class Surroundings:
 
 
 def obstacles_of(scene: Scene) -> tuple[Obstacle, ...]:
-    """Every obstacle of a scene that stands still."""
-    return tuple(
-        _obstacle(name, shape, center, quaternion.to_matrix(turn)) for name, shape, center, turn in scene.obstacles
-    )
+    """Every obstacle of a scene that stands still: of a mesh, what is above the ground."""
+    found, ground = [], scene.obstacles.ground
+    for name, shape, center, turn in scene.obstacles:
+        standing = above_ground(shape, center, turn, ground) if isinstance(shape, Mesh) else shape
+        if standing is not None:
+            found.append(_obstacle(name, standing, center, quaternion.to_matrix(turn)))
+    return tuple(found)
 
 
 def surroundings_of(scene: Scene) -> tuple[Surroundings, ...]:
@@ -106,18 +111,32 @@ def _library_shape(shape: Shape) -> tuple[Any, Floats]:
             return coal.Cylinder(radius, height), along_y
         case Hull():
             return _library_hull(shape), np.eye(3)
+        case Mesh():
+            return _library_mesh(shape), np.eye(3)
 
 
 def _library_hull(hull: Hull) -> Any:
     """A hull by its corners and triangles, as the library wants it."""
+    return coal_library().Convex(*_library_triangles(*surface_of(hull)))
+
+
+def _library_mesh(mesh: Mesh) -> Any:
+    """A mesh as a tree of boxes round its triangles."""
+    made = coal_library().BVHModelOBBRSS()
+    made.beginModel(len(mesh.faces), len(mesh.vertices))
+    made.addSubModel(*_library_triangles(mesh.vertices, mesh.faces))
+    made.endModel()
+    return made
+
+
+def _library_triangles(corners: Floats, triangles: Longs) -> tuple[Any, Any]:
     coal = coal_library()
-    corners, triangles = surface_of(hull)
     points, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
     for corner in corners:
         points.append(corner)
     for a, b, c in triangles.tolist():
         faces.append(coal.Triangle(a, b, c))
-    return coal.Convex(points, faces)
+    return points, faces
 
 
 def _about_y(yaws: Floats) -> Floats:

@@ -77,7 +77,7 @@ def _drawn(drawing: _Drawing, low: Floats, high: Floats) -> str:
     """Everything between two corners of the picture, from far to near."""
     scene, crossing, view = drawing.scene, drawing.crossing, drawing.view
     layers: list[tuple[float, str]] = []
-    for name, corners in zip(scene.obstacles.standing_names, scene.obstacles.outlines, strict=True):
+    for name, corners in scene.obstacles.outlines:
         seen = view.see(corners)
         hull = seen[ConvexHull(seen[:, :2]).vertices, :2]
         shape = tag("polygon", title(name), points=points((x, y) for x, y in hull.tolist()), class_="obstacle")

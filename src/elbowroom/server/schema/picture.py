@@ -36,10 +36,10 @@ class Ground:
 class Form:
     """The shape of an obstacle, about its own origin and along its own axes; capsules and cylinders are about Y."""
 
-    shape: Literal["box", "sphere", "capsule", "cylinder", "hull"]
+    shape: Literal["box", "sphere", "capsule", "cylinder", "hull", "mesh"]
     size: Vector  # whole edge lengths of the box about the origin that holds it
-    corners: list[Vector]  # of a hull; else none
-    triangles: list[tuple[int, int, int]]  # of a hull's surface, counter-clockwise seen from outside; else none
+    corners: list[Vector]  # of a hull or a mesh; else none
+    triangles: list[tuple[int, int, int]]  # of a hull or a mesh, counter-clockwise seen from outside; else none
 
 
 @dataclass(frozen=True)

@@ -36,15 +36,15 @@ def along(
     sweeps = moving.swept(times).rows if len(moving) else moments[:-1, :0]
     near = _meeting(sweeps, ground)
     if not len(near):
-        return Along(Spans(spans, standing.hulls), Spans(moments, standing.hulls), still, numbers)
+        return Along(Spans(spans, standing.packed), Spans(moments, standing.packed), still, numbers)
     around = np.arange(len(times))
     first, last = times[np.maximum(around - 1, 0)], times[np.minimum(around + 1, len(times) - 1)]
     doubled = moving.swept_between(first, last).rows[:, near]
     swept = np.ascontiguousarray(sweeps[:, near])
     known = swept[..., :ROUNDING].reshape(len(still), -1)
     return Along(
-        Spans(np.concatenate([spans, swept], axis=1), standing.hulls),
-        Spans(np.concatenate([moments, doubled], axis=1), standing.hulls),
+        Spans(np.concatenate([spans, swept], axis=1), standing.packed),
+        Spans(np.concatenate([moments, doubled], axis=1), standing.packed),
         known @ np.sqrt(np.arange(2.0, 2.0 + known.shape[1])),
         np.concatenate([numbers, many + near]),
     )

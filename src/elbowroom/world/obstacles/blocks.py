@@ -105,14 +105,14 @@ def lower_blocks_in(
     found, checks, beyond = _NONE, 0, spread[4, : (total + LANES - 1) // LANES * LANES]
     for b in range(count):
         if found > 0 and not same_kind(rows, b, b - 1):
-            lower_squares(tiles, rows, near.hulls, pairs, found, squares)
+            lower_squares(tiles, rows, near.packed, pairs, found, squares)
             checks, found = checks + found * LANES, _NONE
         if _beyond_reach(spread, rows, b, beyond) > 0:
             for t in range(total):
                 pairs[found, 0], pairs[found, 1] = t, b
                 found += beyond[t] < 0.0
         if found >= _PAIRS or b == count - 1:
-            lower_squares(tiles, rows, near.hulls, pairs, found, squares)
+            lower_squares(tiles, rows, near.packed, pairs, found, squares)
             checks, found = checks + found * LANES, _NONE
     if checks > 0:
         for t in range(total):

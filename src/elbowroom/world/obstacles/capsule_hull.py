@@ -13,11 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import helper, kernel
-from elbowroom.world.obstacles.layout import LANES, ROW, TILE
+from elbowroom.world.obstacles.axis_edge import hold_against_edge
+from elbowroom.world.obstacles.layout import EDGE, LANES, LINE, ROW, TILE
 from elbowroom.world.obstacles.own_axes import STATE, may_be_nearer
-
-LINE = 16  # numbers of a line of packed hulls: of its head (how many triangles, how many edges), a triangle, two edges
-EDGE = 8  # begin, step, squared length, one over it
 
 _LANES, _TILE, _LINE, _EDGE = np.uint64(LANES), np.uint64(TILE), np.uint64(LINE), np.uint64(EDGE)
 _ZERO: Any = np.float32(0.0)
@@ -32,17 +30,17 @@ Longs = NDArray[np.int64]
 
 
 @helper
-def _hold_against_triangle(hulls: Floats32, at: Any, state: Floats32) -> None:
+def _hold_against_triangle(packed: Floats32, at: Any, state: Floats32) -> None:
     """Where sixteen axes are behind the plane of a triangle, and how far those of their ends are that lie above it."""
-    nx, ny, nz, offset = hulls[at], hulls[at + np.uint64(1)], hulls[at + np.uint64(2)], hulls[at + np.uint64(3)]
+    nx, ny, nz, offset = packed[at], packed[at + np.uint64(1)], packed[at + np.uint64(2)], packed[at + np.uint64(3)]
     px, py, pz, po = (
-        hulls[at + np.uint64(4)], hulls[at + np.uint64(5)], hulls[at + np.uint64(6)], hulls[at + np.uint64(7)],
+        packed[at + np.uint64(4)], packed[at + np.uint64(5)], packed[at + np.uint64(6)], packed[at + np.uint64(7)],
     )  # fmt: skip
     qx, qy, qz, qo = (
-        hulls[at + np.uint64(8)], hulls[at + np.uint64(9)], hulls[at + np.uint64(10)], hulls[at + np.uint64(11)],
+        packed[at + np.uint64(8)], packed[at + np.uint64(9)], packed[at + np.uint64(10)], packed[at + np.uint64(11)],
     )  # fmt: skip
     rx, ry, rz, ro = (
-        hulls[at + np.uint64(12)], hulls[at + np.uint64(13)], hulls[at + np.uint64(14)], hulls[at + np.uint64(15)],
+        packed[at + np.uint64(12)], packed[at + np.uint64(13)], packed[at + np.uint64(14)], packed[at + np.uint64(15)],
     )  # fmt: skip
     for i in range(_LANES):
         x, y, z = state[i], state[i + _LANES], state[i + np.uint64(2) * _LANES]
@@ -67,31 +65,9 @@ def _hold_against_triangle(hulls: Floats32, at: Any, state: Floats32) -> None:
         state[i + np.uint64(8) * _LANES] = min(state[i + np.uint64(8) * _LANES], one, other)
 
 
-@helper
-def _hold_against_edge(hulls: Floats32, at: Any, state: Floats32) -> None:
-    """How far sixteen axes are from an edge: the nearest points of two lines, each brought back between its ends."""
-    ox, oy, oz = hulls[at], hulls[at + np.uint64(1)], hulls[at + np.uint64(2)]
-    ex, ey, ez = hulls[at + np.uint64(3)], hulls[at + np.uint64(4)], hulls[at + np.uint64(5)]
-    ee, per_ee = hulls[at + np.uint64(6)], hulls[at + np.uint64(7)]
-    for i in range(_LANES):
-        x, y, z = state[i] - ox, state[i + _LANES] - oy, state[i + np.uint64(2) * _LANES] - oz
-        dx, dy, dz = (
-            state[i + np.uint64(3) * _LANES],
-            state[i + np.uint64(4) * _LANES],
-            state[i + np.uint64(5) * _LANES],
-        )
-        dd, de = dx * dx + dy * dy + dz * dz + _TINY, dx * ex + dy * ey + dz * ez
-        dr, er = dx * x + dy * y + dz * z, ex * x + ey * y + ez * z
-        s = max(min((de * er - dr * ee) / max(dd * ee - de * de, _TINY), _ONE), _ZERO)
-        t = max(min((de * s + er) * per_ee, _ONE), _ZERO)
-        s = max(min((de * t - dr) / dd, _ONE), _ZERO)
-        u, v, w = x + s * dx - t * ex, y + s * dy - t * ey, z + s * dz - t * ez
-        state[i + np.uint64(8) * _LANES] = min(state[i + np.uint64(8) * _LANES], u * u + v * v + w * w)
-
-
 @kernel
 def lower_from_hulls(
-    tiles: Floats32, rows: Floats32, hulls: Floats32, pairs: Longs, count: int, squares: Floats32
+    tiles: Floats32, rows: Floats32, packed: Floats32, pairs: Longs, count: int, squares: Floats32
 ) -> None:
     """Lower the squared distances of tiles to those from hulls, packed as `pack_hulls` does.
 
@@ -105,13 +81,13 @@ def lower_from_hulls(
         for i in range(_LANES):
             state[i + np.uint64(8) * _LANES] = _FAR
         head = np.uint64(int(rows[row + 17])) * _LINE
-        triangles, edges = int(hulls[head]), int(hulls[head + np.uint64(1)])
+        triangles, edges = int(packed[head]), int(packed[head + np.uint64(1)])
         at = head + _LINE
         for _ in range(triangles):
-            _hold_against_triangle(hulls, at, state)
+            _hold_against_triangle(packed, at, state)
             at += _LINE
         for _ in range(edges):
-            _hold_against_edge(hulls, at, state)
+            hold_against_edge(packed, at, state)
             at += _EDGE
         for i in range(_LANES):
             inside = state[i + np.uint64(6) * _LANES] <= state[i + np.uint64(7) * _LANES]

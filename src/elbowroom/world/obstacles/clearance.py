@@ -78,20 +78,20 @@ def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> N
 
 
 @kernel
-def _lower_all(tiles: Floats32, used: int, rows: Floats32, hulls: Floats32, pairs: Longs, squares: Floats32) -> None:
+def _lower_all(tiles: Floats32, used: int, rows: Floats32, packed: Floats32, pairs: Longs, squares: Floats32) -> None:
     """Lower the squares of the tiles in use to those from all obstacles; `pairs` (_PAIRS, 2) is scratch."""
     count = _FIRST
     for b in range(rows.shape[0] // ROW):
         if count > 0 and not same_kind(rows, b, b - 1):
-            lower_squares(tiles, rows, hulls, pairs, count, squares)
+            lower_squares(tiles, rows, packed, pairs, count, squares)
             count = _FIRST
         for t in range(used):
             pairs[count, 0], pairs[count, 1] = t, b
             count += 1
             if count == _PAIRS:
-                lower_squares(tiles, rows, hulls, pairs, count, squares)
+                lower_squares(tiles, rows, packed, pairs, count, squares)
                 count = _FIRST
-    lower_squares(tiles, rows, hulls, pairs, count, squares)
+    lower_squares(tiles, rows, packed, pairs, count, squares)
 
 
 @kernel
@@ -115,7 +115,7 @@ def clearance_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
         for c in range(segments.shape[0]):
             _fill_tiles(segments[c], start, count, tiles)
             _infinitely_far(squares)
-            _lower_all(tiles, used, rows, near.hulls, pairs, squares)
+            _lower_all(tiles, used, rows, near.packed, pairs, squares)
             lower_to_squares(squares, radii[c], least)
         for i in range(np.uint64(count)):
             out[start + i] = least[i]
@@ -125,7 +125,7 @@ def clearance_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
 def _pairwise_into(segments: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     for c in range(segments.shape[0]):
         for b in range(near.rows.shape[0]):
-            one = Nearby(near.rows[b : b + 1], near.hulls)
+            one = Nearby(near.rows[b : b + 1], near.packed)
             clearance_into(segments[c : c + 1], radii[c : c + 1], one, out[c, b])
 
 
@@ -141,7 +141,7 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
     rows = np.empty(near.rows.shape[0] * ROW, np.float32)
     fill_tile_rows(near.rows, near.rows.shape[0], rows)
     _fill_tiles(capsules, _FIRST, count, tiles)
-    _lower_all(tiles, used, rows, near.hulls, np.empty((_PAIRS, 2), np.int64), squares)
+    _lower_all(tiles, used, rows, near.packed, np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):
         least = min(least, math.sqrt(squares[i]) * _METRES - radii[i])
     return least

@@ -1,14 +1,15 @@
 """Where a segment and obstacles are closest: for single answers, in double precision, without a compiled kernel.
 
 The distance from a point of the segment to a convex set is a convex function of how far along the segment the point
-lies: an interval that holds the least of a row of samples and both its neighbours holds the minimum.
+lies: an interval that holds the least of a row of samples and both its neighbours holds the minimum. Meshes are not
+convex, and have a file of their own.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.capsule_hull import EDGE, LINE
-from elbowroom.world.obstacles.layout import DATA, HALF, KIND, PER_METRE, ROUNDING, TURN, Kind, Nearby
+from elbowroom.world.obstacles.closest_on_mesh import closest_on_mesh
+from elbowroom.world.obstacles.layout import DATA, EDGE, HALF, KIND, LINE, PER_METRE, ROUNDING, TURN, Kind, Nearby
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +31,10 @@ def closest_points(segment: Floats, near: Nearby) -> tuple[Floats, Floats]:
     on_axes, on_shapes = begins.copy(), begins.copy()
     for kind in Kind:
         of_kind = np.flatnonzero(rows[:, KIND] == kind)
+        if kind is Kind.MESH:
+            for b in of_kind:
+                on_axes[b], on_shapes[b] = closest_on_mesh(begins[b], steps[b], near.packed, int(rows[b, DATA]))
+            continue
         groups = [of_kind] if kind is not Kind.HULL else [of_kind[i : i + 1] for i in range(len(of_kind))]
         for own in groups:
             if len(own):
@@ -72,7 +77,7 @@ def _inside(points: Floats, rows: Floats, near: Nearby) -> Floats:
 
 def _in_hull(points: Floats, near: Nearby, line: int) -> Floats:
     """The points of a hull nearest to points (S, 3)."""
-    lines = near.hulls[line * LINE :].astype(np.float64)
+    lines = near.packed[line * LINE :].astype(np.float64)
     triangles, edges = int(lines[0]), int(lines[1])
     faces = lines[LINE : LINE * (1 + triangles)].reshape(-1, 4, 4)
     sides = lines[LINE * (1 + triangles) : LINE * (1 + triangles) + EDGE * edges].reshape(-1, EDGE)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.capsule_hull import LINE
-from elbowroom.world.obstacles.layout import PER_METRE
+from elbowroom.world.obstacles.layout import LINE, PER_METRE
 from elbowroom.world.obstacles.shapes import Hull
 
 Floats = NDArray[np.float64]
@@ -16,7 +15,7 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 THINNEST = 1e-3  # metres
-NO_HULLS = np.zeros(0, np.float32)
+_NONE = np.zeros(0, np.float32)
 _FLAT = 1.0 - 1e-12  # cosine of the angle between two triangles of one face
 
 
@@ -60,7 +59,7 @@ class PackedHulls(NamedTuple):
 def pack_hulls(hulls: Iterable[Hull]) -> PackedHulls:
     """Some hulls packed; equal ones are there once."""
     begins: dict[Hull, int] = {}
-    parts, end = [NO_HULLS], 0
+    parts, end = [_NONE], 0
     for hull in hulls:
         if hull not in begins:
             begins[hull] = end

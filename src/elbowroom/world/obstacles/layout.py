@@ -18,7 +18,10 @@ TURN = 3  # nine: the rotation from the frame to the shape's own axes, row by ro
 HALF = 12  # three: half lengths of that box along the shape's own axes, metres
 ROUNDING = 15  # by how much the shape reaches beyond that box to every side, metres
 KIND = 16
-DATA = 17  # where a hull begins in the packed hulls, in lines
+DATA = 17  # where a hull or a mesh begins among those that are packed, in lines
+
+LINE = 16  # numbers of a line of what is packed: a head, a triangle, or two edges
+EDGE = 8  # begin, step, squared length, one over it
 
 LANES = 16  # float32 lanes of the widest vector register
 TILE = 7 * LANES  # numbers of a tile: one capsule in sixteen configurations, rows ax, ay, az, bx, by, bz, radius
@@ -32,17 +35,18 @@ class Kind(IntEnum):
     ROUNDED = 1  # a box with rounded edges: a point for a sphere, a line for a capsule
     CYLINDER = 2
     HULL = 3
+    MESH = 4  # triangles, of which both sides count, and nothing between them
 
 
 class Nearby(NamedTuple):
     """B obstacles in some frame: opaque outside of this package. Shapes of varying size lie packed beside the rows."""
 
     rows: Floats  # (B, ROW)
-    hulls: Floats32  # flat
+    packed: Floats32  # flat
 
 
 class Spans(NamedTuple):
     """The same B obstacles in each of n spans of time, or in each of n frames: opaque outside of this package."""
 
     rows: Floats  # (n, B, ROW)
-    hulls: Floats32  # flat
+    packed: Floats32  # flat

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.world.obstacles.hulls import NO_HULLS, PackedHulls
 from elbowroom.world.obstacles.layout import Nearby, Spans
+from elbowroom.world.obstacles.packed import NOTHING, Packed
 from elbowroom.world.obstacles.rows import rows_of
 from elbowroom.world.obstacles.shapes import Shape, extents_of
 from elbowroom.world.obstacles.sweeps import LOOP, ONCE, PINGPONG, Tracks, swept_rows
@@ -98,7 +98,7 @@ class Moving:
         found = [track.poses(np.atleast_1d(times)) for track in self.tracks]
         return np.stack([center for center, _ in found], axis=1), np.stack([yaw for _, yaw in found], axis=1)
 
-    def at(self, time: float, packed: PackedHulls | None = None) -> Nearby:
+    def at(self, time: float, packed: Packed | None = None) -> Nearby:
         """The obstacles as they stand at a time; `packed` as in `rows_of`."""
         centers, yaws = self.poses(time)
         return rows_of([track.shape for track in self.tracks], centers[0], _turns(yaws[0]), packed)
@@ -111,7 +111,7 @@ class Moving:
     def swept_between(self, first: Floats, last: Floats) -> Spans:
         """Boxes (n, B) that hold what each obstacle sweeps in each span of time, from `first` (n,) to `last`."""
         rows = swept_rows(self._kernel_tracks, np.ascontiguousarray(first), np.ascontiguousarray(last))
-        return Spans(rows, NO_HULLS)
+        return Spans(rows, NOTHING)
 
     @cached_property
     def _kernel_tracks(self) -> Tracks:

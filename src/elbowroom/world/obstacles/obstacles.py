@@ -14,11 +14,12 @@ from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.free_map import FreeMap
-from elbowroom.world.obstacles.hulls import PackedHulls, pack_hulls
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.packed import Packed, pack
+from elbowroom.world.obstacles.parts import Parts, parts_of
 from elbowroom.world.obstacles.rows import about, bounds_of, corners_of, joined, one_of, rows_of
-from elbowroom.world.obstacles.shapes import Box, Hull, Shape, extents_of
+from elbowroom.world.obstacles.shapes import Box, Hull, Mesh, Shape, extents_of
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -29,16 +30,18 @@ _NEAR, _WIDER, _FAR = 2.0, 4.0, 1e6  # metres: where the nearest is looked for f
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """Obstacles that stand, B of them, and those that move; they never change.
+    """Obstacles that stand, N of them, and those that move; they never change.
 
-    Where obstacles are told by number, those that stand come first.
+    Where they are told by number, those that stand come first. A mesh that stands has a number for each of its pieces,
+    so these may be more: B.
     """
 
     shapes: tuple[Shape, ...] = ()
-    centers: Floats = field(default_factory=lambda: np.empty((0, 3)))  # (B, 3) of the shapes' origins, metres
-    rotations: Floats = field(default_factory=lambda: np.empty((0, 4)))  # (B, 4) shape-to-world quaternions, xyzw
+    centers: Floats = field(default_factory=lambda: np.empty((0, 3)))  # (N, 3) of the shapes' origins, metres
+    rotations: Floats = field(default_factory=lambda: np.empty((0, 4)))  # (N, 4) shape-to-world quaternions, xyzw
     standing_names: tuple[str, ...] = ()
     moving: Moving = field(default_factory=Moving)
+    ground: float = 0.0  # metres, how high the level ground is: triangles that do not rise from it are not in the way
 
     @classmethod
     def boxes(
@@ -58,26 +61,29 @@ class Obstacles:
         """Name, shape, centre and rotation of each that stands."""
         return zip(self.standing_names, self.shapes, self.centers, self.rotations, strict=True)
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
-        """What they are called, all of them."""
-        return self.standing_names + self.moving.names
+        """What they are called, by number."""
+        return tuple(self.standing_names[owner] for owner in self._parts.owners.tolist()) + self.moving.names
 
     @property
     def half_sizes(self) -> Floats:
-        """Half lengths (B, 3) of boxes about the origins of those that stand, along their axes, that hold them."""
+        """Half lengths (N, 3) of boxes about the origins of those that stand, along their axes, that hold them."""
         halves: Floats = np.array([extents_of(shape) for shape in self.shapes]).reshape(-1, 3)
         return halves
 
     @cached_property
     def standing(self) -> Nearby:
         """Those that stand."""
-        return rows_of(self.shapes, self.centers, self.rotations, self._packed)
+        return rows_of(self._parts.shapes, self._parts.centers, self._parts.rotations, self._packed)
 
     @cached_property
-    def _packed(self) -> PackedHulls:
-        shapes = (*self.shapes, *(track.shape for track in self.moving.tracks))
-        return pack_hulls(shape for shape in shapes if isinstance(shape, Hull))
+    def _parts(self) -> Parts:
+        return parts_of(self.shapes, self.centers, self.rotations, self.ground)
+
+    @cached_property
+    def _packed(self) -> Packed:
+        return pack((*self._parts.shapes, *(track.shape for track in self.moving.tracks)))
 
     @cached_property
     def _grids(self) -> Grids:
@@ -90,13 +96,15 @@ class Obstacles:
         return corners_of(self.standing)
 
     @property
-    def outlines(self) -> Iterator[Floats]:
-        """Points (P, 3) in the convex hull of which each of those that stand lies: corners of a hull or of a box."""
-        for (_, shape, center, rotation), corners in zip(self, self.corners, strict=True):
-            if isinstance(shape, Hull):
-                yield np.asarray(center + quaternion.rotate(rotation, shape.array))
-            else:
-                yield corners
+    def outlines(self) -> Iterator[tuple[str, Floats]]:
+        """The name of each of those that stand, and points (P, 3) in the convex hull of which it lies.
+
+        These are the corners of a hull, of a piece of a mesh, or of a box.
+        """
+        parts = self._parts
+        for i, (shape, center, turn) in enumerate(zip(parts.shapes, parts.centers, parts.rotations, strict=True)):
+            points = shape.array if isinstance(shape, Hull) else shape.vertices if isinstance(shape, Mesh) else None
+            yield self.names[i], self.corners[i] if points is None else center + quaternion.rotate(turn, points)
 
     def numbers_near(self, least: Sequence[float] | Floats, most: Sequence[float] | Floats) -> Longs:
         """The numbers, in order, of those that stand over a rectangle on the ground, or nearly: corners x and z."""
@@ -108,9 +116,9 @@ class Obstacles:
 
     def picked(self, numbers: Longs) -> Nearby:
         """Those that stand, by their numbers."""
-        if len(numbers) == len(self.shapes):
+        if len(numbers) == len(self.standing.rows):
             return self.standing
-        return Nearby(self.standing.rows[numbers], self.standing.hulls)
+        return Nearby(self.standing.rows[numbers], self.standing.packed)
 
     @cached_property
     def free_map(self) -> FreeMap:
@@ -121,7 +129,7 @@ class Obstacles:
         """What is in the way between `times` (n+1,) over a rectangle on the ground, `others` that move included."""
         moving = self.moving + others if others else self.moving
         numbers = self.numbers_near(*ground)
-        return along(self.picked(numbers), numbers, len(self.shapes), moving, times, ground)
+        return along(self.picked(numbers), numbers, len(self.standing.rows), moving, times, ground)
 
     def at(self, time: float) -> Nearby:
         """All of them, as they stand at a time."""
@@ -156,7 +164,7 @@ class Obstacles:
         axes, best = np.asarray(segments, np.float64), None
         if len(self.moving):
             best = _nearest(axes, radii, about(self.moving.at(time, self._packed), x, z))
-            best = best._replace(obstacle=best.obstacle + len(self.shapes))
+            best = best._replace(obstacle=best.obstacle + len(self.standing.rows))
         for reach, numbers in self._wider_and_wider(axes, radii, x, z):
             if len(numbers):
                 found = _nearest(axes, radii, about(self.picked(numbers), x, z))
@@ -177,7 +185,7 @@ class Obstacles:
         ends = np.moveaxis(axes.reshape(len(axes), 2, 3, -1), 2, -1).reshape(-1, 3)
         widest = float(np.max(radii, initial=0.0))
         least, most = ends.min(axis=0) - widest, ends.max(axis=0) + widest
-        reach, many = _NEAR, len(self.shapes)
+        reach, many = _NEAR, len(self.standing.rows)
         while many and reach < _FAR:
             low, high = (x + least[0] - reach, z + least[2] - reach), (x + most[0] + reach, z + most[2] + reach)
             numbers = self.numbers_near(low, high)

@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.obstacles.hulls import PackedHulls, pack_hulls
 from elbowroom.world.obstacles.layout import CENTER, DATA, HALF, KIND, ROUNDING, ROW, TURN, Nearby, Spans
-from elbowroom.world.obstacles.shapes import Hull, Shape
+from elbowroom.world.obstacles.packed import Packed, pack
+from elbowroom.world.obstacles.shapes import Shape
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -17,14 +17,12 @@ Longs = NDArray[np.int64]
 _SIGNS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
-def rows_of(
-    shapes: Sequence[Shape], centers: ArrayLike, rotations: ArrayLike, packed: PackedHulls | None = None
-) -> Nearby:
+def rows_of(shapes: Sequence[Shape], centers: ArrayLike, rotations: ArrayLike, packed: Packed | None = None) -> Nearby:
     """Obstacles of these shapes (B) whose origins are at `centers` (B, 3), turned by quaternions `rotations` (B, 4).
 
-    `packed` holds their hulls, perhaps with those of others; where absent they are packed by themselves.
+    `packed` holds their hulls and meshes, perhaps with those of others; where absent they are packed by themselves.
     """
-    held = packed or pack_hulls([shape for shape in shapes if isinstance(shape, Hull)])
+    held = packed or pack(shapes)
     rows = np.empty((len(shapes), ROW))
     turns = quaternion.to_matrix(np.asarray(rotations, np.float64).reshape(-1, 4))
     places = np.asarray(centers, np.float64).reshape(-1, 3)
@@ -32,7 +30,7 @@ def rows_of(
     rows[:, HALF:ROUNDING] = np.array([shape.half for shape in shapes]).reshape(-1, 3)
     rows[:, ROUNDING] = [shape.rounding for shape in shapes]
     rows[:, KIND] = [shape.kind for shape in shapes]
-    rows[:, DATA] = [held.begins.get(shape, 0) if isinstance(shape, Hull) else 0 for shape in shapes]
+    rows[:, DATA] = [held.begin(shape) for shape in shapes]
     middles = np.array([shape.middle for shape in shapes]).reshape(-1, 3)
     off = middles.any(axis=1)
     rows[:, CENTER:TURN] = places
@@ -42,12 +40,12 @@ def rows_of(
 
 def some_of(near: Nearby, chosen: NDArray[np.bool_]) -> Nearby:
     """The `chosen` (B,) obstacles."""
-    return Nearby(near.rows[chosen], near.hulls)
+    return Nearby(near.rows[chosen], near.packed)
 
 
 def first_spans(spans: Spans, count: int) -> Spans:
     """The first spans."""
-    return Spans(spans.rows[:count], spans.hulls)
+    return Spans(spans.rows[:count], spans.packed)
 
 
 def is_empty(near: Nearby) -> bool:
@@ -67,7 +65,7 @@ def span_count(spans: Spans) -> int:
 
 def span_of(spans: Spans, k: int) -> Nearby:
     """The obstacles in one of the spans."""
-    return Nearby(spans.rows[k], spans.hulls)
+    return Nearby(spans.rows[k], spans.packed)
 
 
 def each_of(near: Nearby) -> Iterator[Nearby]:
@@ -77,16 +75,16 @@ def each_of(near: Nearby) -> Iterator[Nearby]:
 
 def one_of(near: Nearby, b: int) -> Nearby:
     """One of the obstacles."""
-    return Nearby(near.rows[b : b + 1], near.hulls)
+    return Nearby(near.rows[b : b + 1], near.packed)
 
 
 def joined(one: Nearby, other: Nearby) -> Nearby:
-    """The obstacles of both; at most one of them has hulls of its own, or they are the same."""
+    """The obstacles of both; at most one of them has something packed, or it is the same."""
     if not len(other.rows):
         return one
     if not len(one.rows):
         return other
-    return Nearby(np.concatenate([one.rows, other.rows]), one.hulls if len(one.hulls) else other.hulls)
+    return Nearby(np.concatenate([one.rows, other.rows]), one.packed if len(one.packed) else other.packed)
 
 
 def about(near: Nearby, x: float, z: float) -> Nearby:
@@ -94,7 +92,7 @@ def about(near: Nearby, x: float, z: float) -> Nearby:
     rows = near.rows.copy()
     rows[:, 0] -= x
     rows[:, 2] -= z
-    return Nearby(rows, near.hulls)
+    return Nearby(rows, near.packed)
 
 
 def corners_of(near: Nearby) -> Floats:
@@ -117,19 +115,19 @@ def bounds_of(near: Nearby) -> tuple[Floats, Floats]:
 @helper
 def at_span(spans: Spans, k: int) -> Nearby:
     """The obstacles in one of the spans."""
-    return Nearby(spans.rows[k], spans.hulls)
+    return Nearby(spans.rows[k], spans.packed)
 
 
 @helper
 def row_of(near: Nearby, b: int) -> Nearby:
     """One of the obstacles, for kernels."""
-    return Nearby(near.rows[b : b + 1], near.hulls)
+    return Nearby(near.rows[b : b + 1], near.packed)
 
 
 @helper
 def first_of(near: Nearby, count: int) -> Nearby:
     """The first obstacles, for kernels."""
-    return Nearby(near.rows[:count], near.hulls)
+    return Nearby(near.rows[:count], near.packed)
 
 
 @helper
@@ -141,7 +139,7 @@ def how_many(near: Nearby) -> int:
 @exact_kernel
 def unfilled(near: Nearby) -> Nearby:
     """As many obstacles, to be written to by other kernels."""
-    return Nearby(np.empty(near.rows.shape), near.hulls)
+    return Nearby(np.empty(near.rows.shape), near.packed)
 
 
 @exact_kernel
@@ -205,7 +203,7 @@ def grown_aside(spans: Spans, margin: float) -> Spans:
     """Obstacles that are `margin` metres larger to every side of their own X and Z."""
     rows = spans.rows.copy()
     rows[..., [HALF, HALF + 2]] += margin
-    return Spans(rows, spans.hulls)
+    return Spans(rows, spans.packed)
 
 
 def seen_from(near: Nearby, positions: ArrayLike, rotations: ArrayLike) -> Spans:
@@ -216,11 +214,11 @@ def seen_from(near: Nearby, positions: ArrayLike, rotations: ArrayLike) -> Spans
     places = np.ascontiguousarray(positions, np.float64)
     out = np.empty((len(places), *near.rows.shape))
     _see_from(near, places, np.ascontiguousarray(rotations, np.float64), out)
-    return Spans(out, near.hulls)
+    return Spans(out, near.packed)
 
 
 @exact_kernel
 def _see_from(near: Nearby, positions: Floats, rotations: Floats, out: Floats) -> None:
     for n in range(positions.shape[0]):
         for b in range(near.rows.shape[0]):
-            move_into(near, b, positions[n], rotations[n], Nearby(out[n], near.hulls), b)
+            move_into(near, b, positions[n], rotations[n], Nearby(out[n], near.packed), b)

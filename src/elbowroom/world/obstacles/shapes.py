@@ -6,9 +6,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.errors import InputError
 from elbowroom.world.obstacles.layout import Kind
 
 Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
 Vector = tuple[float, float, float]
 
 _MIDDLE = np.zeros(3)
@@ -115,7 +117,52 @@ class Hull:
         return middle
 
 
-Shape = Box | Sphere | Capsule | Cylinder | Hull
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles, closed or not: their surface from both sides, and what lies within it where it is closed.
+
+    Raises `InputError` where corners are no numbers, or a triangle names a corner that is not there.
+    """
+
+    vertices: Floats  # (V, 3) corners
+    faces: Longs  # (F, 3) of each triangle the numbers of its corners; counter-clockwise seen from outside if closed
+
+    kind = Kind.MESH
+    rounding = 0.0
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, np.float64).reshape(-1, 3)
+        faces = np.array(self.faces, np.int64).reshape(-1, 3)
+        if not len(faces):
+            raise InputError("a mesh has no triangles; it needs one at least")
+        if not np.isfinite(vertices).all():
+            raise InputError("a mesh has a corner that is not a finite number")
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            raise InputError(f"a mesh's triangle names a corner that is not there; there are {len(vertices)}")
+        vertices.flags.writeable = faces.flags.writeable = False
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+
+    @cached_property
+    def corners(self) -> Floats:
+        """The corners (F, 3, 3) of its triangles."""
+        corners: Floats = self.vertices[self.faces]
+        return corners
+
+    @cached_property
+    def half(self) -> Floats:
+        """As in `Box`: the box round it, about `middle`."""
+        half: Floats = 0.5 * (self.corners.max(axis=(0, 1)) - self.corners.min(axis=(0, 1)))
+        return half
+
+    @cached_property
+    def middle(self) -> Floats:
+        """The middle (3,) of the box round it."""
+        middle: Floats = 0.5 * (self.corners.max(axis=(0, 1)) + self.corners.min(axis=(0, 1)))
+        return middle
+
+
+Shape = Box | Sphere | Capsule | Cylinder | Hull | Mesh
 
 
 def extents_of(shape: Shape) -> Floats:

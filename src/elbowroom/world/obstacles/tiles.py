@@ -14,9 +14,10 @@ from elbowroom.jit import helper, kernel
 from elbowroom.world.obstacles.capsule_box import lower_from_boxes, lower_from_rounded
 from elbowroom.world.obstacles.capsule_cylinder import lower_from_cylinders
 from elbowroom.world.obstacles.capsule_hull import lower_from_hulls
+from elbowroom.world.obstacles.capsule_mesh import lower_from_meshes
 from elbowroom.world.obstacles.layout import KIND, PER_METRE, ROW, TURN, Kind
 
-_BOX, _ROUNDED, _CYLINDER = int(Kind.BOX), int(Kind.ROUNDED), int(Kind.CYLINDER)
+_BOX, _ROUNDED, _CYLINDER, _HULL = int(Kind.BOX), int(Kind.ROUNDED), int(Kind.CYLINDER), int(Kind.HULL)
 _SCALE: Any = np.float32(PER_METRE)
 _METRES: Any = np.float32(1.0 / PER_METRE)
 
@@ -36,12 +37,12 @@ def fill_tile_rows(table: Floats, count: int, rows: Floats32) -> None:
 
 @kernel
 def lower_squares(
-    tiles: Floats32, rows: Floats32, hulls: Floats32, pairs: Longs, count: int, squares: Floats32
+    tiles: Floats32, rows: Floats32, packed: Floats32, pairs: Longs, count: int, squares: Floats32
 ) -> None:
     """Lower the squared distances of tiles to those from obstacles, for the first `count` of `pairs` of tile and row.
 
     All of these obstacles are of one kind. `tiles` (T * TILE,), `rows` (B * ROW,) as `fill_tile_rows` leaves them,
-    `hulls` as in `Nearby`, `pairs` (P, 2), `squares` (T * LANES,) in units of their own.
+    `packed` as in `Nearby`, `pairs` (P, 2), `squares` (T * LANES,) in units of their own.
     """
     kind = int(rows[pairs[0, 1] * ROW + KIND]) if count > 0 else _BOX
     if kind == _BOX:
@@ -50,8 +51,10 @@ def lower_squares(
         lower_from_rounded(tiles, rows, pairs, count, squares)
     elif kind == _CYLINDER:
         lower_from_cylinders(tiles, rows, pairs, count, squares)
+    elif kind == _HULL:
+        lower_from_hulls(tiles, rows, packed, pairs, count, squares)
     else:
-        lower_from_hulls(tiles, rows, hulls, pairs, count, squares)
+        lower_from_meshes(tiles, rows, packed, pairs, count, squares)
 
 
 @helper
