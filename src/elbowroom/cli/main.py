@@ -9,8 +9,10 @@ inside their function, so that `elbowroom --help` answers at once.
 
 import atexit
 import errno
+import signal
 import sys
 from functools import cache
+from types import FrameType
 from typing import Annotated, Any
 
 import typer
@@ -72,6 +74,7 @@ def _first(
 
 def run() -> None:
     """Run the command that the arguments ask for, and leave the process with its exit code."""
+    signal.signal(signal.SIGTERM, _told_to_end)
     try:
         code = app(standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
@@ -85,6 +88,11 @@ def run() -> None:
         typer.echo(f"elbowroom: {error.filename or 'a disk'}: no space is left there", err=True)
         code = WRONG_CALL
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _told_to_end(sig: int, _frame: FrameType | None) -> None:
+    """Leave as after an error, so that what a command has begun ends with it: servers, workers, recordings."""
+    raise SystemExit(128 + sig)
 
 
 @cache

@@ -1,0 +1,50 @@
+"""A command that is told to end (SIGTERM) ends what it has begun."""
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+PATIENCE = 60.0  # seconds
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are looked up in /proc")
+def test_the_server_of_doctor_ends_with_it() -> None:
+    call = [sys.executable, "-m", "elbowroom", "doctor", "--session", "--scene", "a"]
+    doctor = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        assert _until(lambda: bool(_servers_of(doctor.pid)))
+        (server,) = _servers_of(doctor.pid)
+        doctor.send_signal(signal.SIGTERM)
+        assert doctor.wait(PATIENCE) == 128 + signal.SIGTERM
+        assert _until(lambda: not Path(f"/proc/{server}").exists())
+    finally:
+        doctor.kill()
+        doctor.wait()
+
+
+def _servers_of(parent: int) -> list[int]:
+    """Processes that `parent` has begun which run `elbowroom play`."""
+    children = Path(f"/proc/{parent}/task/{parent}/children")
+    found = [int(child) for child in children.read_text().split()] if children.exists() else []
+    return [child for child in found if b"\0play\0" in _command_line(child)]
+
+
+def _command_line(process: int) -> bytes:
+    try:
+        return Path(f"/proc/{process}/cmdline").read_bytes()
+    except OSError:
+        return b""
+
+
+def _until(condition: Callable[[], bool]) -> bool:
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.1)
+    return True
