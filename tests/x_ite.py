@@ -53,6 +53,43 @@ async (text) => {
 """
 
 
+_MOVED = """
+async ([text, fractions]) => {
+  const browser = X3D.getBrowser();
+  const scene = await browser.createX3DFromString(text);
+  const timer = scene.getNamedNode("timer");
+  timer.enabled = false;
+  await browser.replaceWorld(scene);
+  const product = (a, b) => Array.from({ length: 16 }, (_, i) =>
+    [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + (i & 3)] * b[(i >> 2) * 4 + k], 0));
+  const shown = [];
+  for (const fraction of fractions) {
+    for (const node of scene.rootNodes)
+      if (node.getNodeTypeName().endsWith("Interpolator")) node.set_fraction = fraction;
+    await browser.nextFrame();
+    await browser.nextFrame();
+    const found = {};
+    const visit = (node, above) => {
+      const inner = node.getInnerNode();
+      const world = inner.getMatrix ? product(above, inner.getMatrix()) : above;
+      if (node.getTypeName() === "HAnimJoint") {
+        const center = [...inner._center.getValue(), 1];
+        found[inner._name.getValue()] =
+          [0, 1, 2].map((i) => center.reduce((sum, value, k) => sum + value * world[4 * k + i], 0));
+      }
+      for (const field of ["_skeleton", "_children"])
+        for (const child of inner[field] ?? []) visit(child.getValue(), world);
+    };
+    for (const root of scene.rootNodes)
+      if (root.getNodeTypeName() === "HAnimHumanoid")
+        visit(root.getValue(), [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    shown.push(found);
+  }
+  return { version: browser.version, shown };
+}
+"""
+
+
 class XIte:
     """A page with X_ITE in it."""
 
@@ -67,6 +104,11 @@ class XIte:
     def joints(self, text: str, turns: list[list[float]]) -> list[dict[str, Any]]:
         """Name and world position of every joint, in the order of the file; `turns` are rotations to set first."""
         found: list[dict[str, Any]] = self._page.evaluate(_JOINTS, [text, turns])
+        return found
+
+    def moved(self, text: str, fractions: list[float]) -> dict[str, Any]:
+        """X_ITE's `version`, and `shown`: each joint's world position by its name, at parts of an animation's time."""
+        found: dict[str, Any] = self._page.evaluate(_MOVED, [text, fractions])
         return found
 
     def triangles(self, text: str) -> list[list[float]]:

@@ -1,4 +1,4 @@
-"""What we export as others read it: three.js, three-vrm, and Khronos' validator."""
+"""What we export as others read it: three.js, three-vrm, X_ITE, and Khronos' validator."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from avatar_builder import Recipe, build, json_of
+from elbowroom.body.hanim_names import hanim_name
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading import load_humanoid_bytes
 from elbowroom.export.animation import Animation
@@ -17,6 +18,7 @@ from elbowroom.geometry import quaternion
 from gltf_judge import validated
 from made_recording import made_recording
 from three_judge import ThreeJudge
+from x_ite import XIte
 
 STOCK = Humanoid.default()
 MILLIMETRE = 1e-3
@@ -26,6 +28,13 @@ FRAMES = (0, 7, 19, 39)
 @pytest.fixture(scope="module")
 def three(chromium: Any) -> Iterator[ThreeJudge]:
     judge = ThreeJudge(chromium)
+    yield judge
+    judge.close()
+
+
+@pytest.fixture(scope="module")
+def x_ite(chromium: Any) -> Iterator[XIte]:
+    judge = XIte(chromium)
     yield judge
     judge.close()
 
@@ -75,6 +84,15 @@ def test_three_vrm_plays_an_exported_vrm_animation_as_we_do(three: ThreeJudge, f
         for bone, found in pose.items():
             if not bone.endswith("Eye"):
                 assert quaternion.angle_between(np.array(found[:4]), wanted[bone]) < 1e-4, bone
+
+
+@pytest.mark.parametrize("root", ["hips", "root"])
+def test_x_ite_moves_an_exported_figure_as_we_do(x_ite: XIte, folder: Path, root: str) -> None:
+    animation = animation_of(STOCK, folder)
+    text = written(animation, STOCK, "x3d", root).decode()
+    shown = x_ite.moved(text, [frame / (len(animation) - 1) for frame in FRAMES])["shown"]
+    found = np.array([[pose[hanim_name(bone)] for bone in STOCK.skeleton.names] for pose in shown])
+    assert np.abs(found - animation.joints_in_world()[list(FRAMES)]).max() < MILLIMETRE
 
 
 @pytest.mark.parametrize("ending", ["glb", "vrma"])

@@ -71,7 +71,18 @@ def _spellings() -> dict[str, str]:
 
 
 _BONE_OF = _spellings()
+_BACK = {"spine": "vl5", "chest": "vt12", "upperChest": "vt4"}  # vertebrae that a figure of ours turns at
 _PRIORITY = {word: rank for words in [*_MIDDLE.values(), *_LIMBS.values()] for rank, word in enumerate(words)}
+
+
+def hanim_name(bone: str) -> str:
+    """The joint of H-Anim 2.0 that a bone is written as."""
+    if bone in _BACK:
+        return _BACK[bone]
+    if bone in _MIDDLE:
+        return _MIDDLE[bone][0]
+    side = "left" if bone.startswith("left") else "right"
+    return f"{side[0]}_{_LIMBS[bone.removeprefix(side)][0]}"
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,8 @@ def export(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Write the motion of a recording as a file that other programs read: .bvh, .glb, .vrma, .csv or .npz.
+    """Write the motion of a recording as a file that other programs read: .bvh, .glb, .vrma,
+    .x3d, .usda, .csv or .npz.
 
     It holds the frames as the page shows them. BVH is in centimetres with Y up and a T-pose, unless told otherwise.
     GLB has the avatar's mesh in it where its licence allows that.

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from elbowroom.body.hanim_names import hanim_name
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.permissions import Use
 from elbowroom.clips.told import Told
@@ -13,7 +14,9 @@ from elbowroom.export.animation import Animation
 from elbowroom.export.avatar_glb import avatar_glb
 from elbowroom.export.layout import Layout, Rest, RootMotion, take_of, tips
 from elbowroom.formats.bvh_writing import write_bvh
+from elbowroom.formats.hanim.writing import write_hanim
 from elbowroom.formats.skeleton_glb import skeleton_glb, vrm_animation
+from elbowroom.formats.usda_writing import write_usda
 
 
 @dataclass(frozen=True)
@@ -101,11 +104,23 @@ def _vrma(animation: Animation, _: Humanoid, layout: Layout) -> Exported:
     return Exported(vrm_animation(take_of(animation, layout), bones))
 
 
+def _x3d(animation: Animation, humanoid: Humanoid, layout: Layout) -> Exported:
+    names = {bone: hanim_name(bone) for bone in humanoid.skeleton.names}
+    return Exported(write_hanim(take_of(animation, layout), tips(humanoid.skeleton, layout), names))
+
+
+def _usda(animation: Animation, humanoid: Humanoid, layout: Layout) -> Exported:
+    take, ends = take_of(animation, layout), tips(humanoid.skeleton, layout)
+    return Exported(write_usda(take, ends, layout.unit, layout.up))
+
+
 FORMATS = {
     "bvh": Format("BVH", _bvh, Layout(unit=0.01), free=True),
     "csv": Format("CSV", _csv, Layout(), free=True),
     "glb": Format("GLB", _glb, Layout()),
     "npz": Format("NPZ", _npz, Layout(), free=True),
+    "usda": Format("USD", _usda, Layout(), free=True),
     "vrma": Format("VRM animation", _vrma, Layout(), roots=(RootMotion.HIPS, RootMotion.NONE)),
+    "x3d": Format("X3D", _x3d, Layout()),
 }
 _ENDINGS = ", ".join(f".{ending}" for ending in FORMATS)
