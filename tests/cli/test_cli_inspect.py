@@ -16,6 +16,7 @@ from elbowroom.experiment.pose_sheet.gestures import GESTURES
 from elbowroom.experiment.pose_sheet.lettering import Lettering
 from elbowroom.experiment.pose_sheet.sheet import SIDE, TALL, TOP, WIDE, pose_sheet
 from odd_bodies import box_body
+from place_builder import write_place
 
 
 @pytest.fixture
@@ -134,3 +135,27 @@ def test_a_bone_without_mesh_is_not_said_to_be_covered(tmp_path: Path) -> None:
     assert "of average proportions" in output
     assert "covers" not in output
     assert "100.0%" not in output
+
+
+def test_a_place_is_looked_over_and_drawn(tmp_path: Path) -> None:
+    file = write_place(tmp_path / "rooms.glb")
+    plan = tmp_path / "plan.png"
+    call = ["inspect", str(file), "--drop", "Door_*", "--drop", "Window_*", "--plan", str(plan), "--json"]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 0
+    (facts,) = json.loads(result.stdout)["places"]
+    assert facts["left_out"] == ["Door_1"]
+    assert facts["notes"][0] == "drop 'Window_*' matches no name in the file"
+    assert facts["floors"][0]["passages"][0]["width"] == pytest.approx(0.8, abs=0.1)
+    with Image.open(plan) as drawn:
+        assert drawn.size[0] > 400
+    told = CliRunner().invoke(app, ["inspect", str(file)]).output
+    assert "narrowest passages" in told
+
+
+def test_a_place_may_be_called_one(tmp_path: Path) -> None:
+    file = tmp_path / "a.vrm"
+    write_place(tmp_path / "a.glb").rename(file)
+    assert CliRunner().invoke(app, ["inspect", str(file), "--as", "place"]).exit_code == 0
+    assert CliRunner().invoke(app, ["inspect", str(file), "--as", "avatar"]).exit_code == 2
+    assert CliRunner().invoke(app, ["inspect", str(file), "--as", "thing"]).exit_code == 2

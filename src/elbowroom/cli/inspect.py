@@ -1,28 +1,44 @@
-"""`elbowroom inspect`: what is in an avatar's file, and what was made of it."""
+"""`elbowroom inspect`: what is in the file of an avatar or a place, and what was made of it."""
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.output import print_json, print_row, progress_bar
+from elbowroom.cli.inspect_place import as_json, draw_plan, look_over, print_place
+from elbowroom.cli.output import Bar, print_json, print_row, progress_bar
+from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.body.inspection import AvatarFacts
+    from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.world.places.inspection import PlaceFacts
+    from elbowroom.world.places.options import PlaceOptions
+    from elbowroom.world.places.survey import Survey
 
 EXAMPLES = (
     "Examples:  elbowroom inspect alice.vrm  |  elbowroom inspect knight.glb --bones knight.json --json  |  "
-    "elbowroom inspect avatars/ --pose-sheet sheet.png"
+    "elbowroom inspect avatars/ --pose-sheet sheet.png  |  "
+    "elbowroom inspect house.glb --drop 'IfcDoor_*' --plan house.png"
 )
 _SUFFIXES = (".vrm", ".glb", ".gltf", ".x3d", ".x3dv", ".wrl")
 _SHOWN = 12  # clips in the table; --json has all
 
 
+@dataclass
+class _Found:
+    """What was in the files."""
+
+    avatars: "list[tuple[AvatarFacts, Humanoid]]" = field(default_factory=list)
+    places: "list[tuple[PlaceFacts, Survey]]" = field(default_factory=list)
+    refused: dict[str, str] = field(default_factory=dict)
+
+
 def inspect(
-    files: Annotated[list[Path], typer.Argument(help="Avatar files, or folders of them.")],
+    files: Annotated[list[Path], typer.Argument(help="Files of avatars or places, or folders of avatars.")],
     *,
     bones: Annotated[Path | None, typer.Option(help="JSON that names the nodes of bones.")] = None,
     height: Annotated[float | None, typer.Option(help="Metres to the crown, instead of the file's own.")] = None,
@@ -31,40 +47,62 @@ def inspect(
     ] = False,
     pose_sheet: Annotated[Path | None, typer.Option(help="Draw all in eight gestures into this PNG.")] = None,
     capsules: Annotated[bool, typer.Option("--capsules", help="The sheet shows capsules, not surfaces.")] = False,
+    plan: Annotated[Path | None, typer.Option(help="Draw the floors of a place from above into this PNG.")] = None,
+    scale: Scale = None,
+    up: UpAxis = None,
+    ground: GroundHeight = None,
+    drop: Drop = None,
+    passable: Passable = None,
+    kind: Annotated[str | None, typer.Option("--as", help="avatar or place; else the file tells.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Say which bones were found and how, height, facing, collision body, clips, licence and notes.
+    """Say what is in a file. Of an avatar: bones, height, facing, collision body, clips, licence and notes.
 
-    Exit code 0: all files are humanoids, 2: one is not (the others are shown).
+    Of a place: size, triangles, floors, how much of each one can walk on, the narrowest passages, what was left out.
+    Exit code 0: all files are avatars or places, 2: one is not (the others are shown).
     """
-    from elbowroom.body.inspection import inspect_avatar
     from elbowroom.body.load_settings import LoadSettings
 
-    settings = LoadSettings(bones, include_hair, height)
-    found: list[tuple[AvatarFacts, Humanoid]] = []
-    refused: dict[str, str] = {}
-    paths = _paths(files)
-    with progress_bar("Reading", float(len(paths)), quiet) as bar:
-        for count, path in enumerate(paths):
-            bar.move(count, path.name)
-            try:
-                found.append(inspect_avatar(path, settings))
-            except InputError as error:
-                refused[str(path)] = str(error)
-    if pose_sheet is not None and found:
-        drawn = _draw(pose_sheet, [humanoid for _, humanoid in found], capsules, quiet)
-        typer.echo(drawn, err=json)
+    if kind not in (None, "avatar", "place"):
+        raise InputError(f"--as {kind!r}: must be avatar or place")
+    settings, told = LoadSettings(bones, include_hair, height), place_options(scale, up, ground, drop, passable)
+    with progress_bar("Reading", None, quiet) as bar:
+        found = _read(_paths(files), kind, settings, told, bar)
+    if pose_sheet is not None and found.avatars:
+        typer.echo(_draw(pose_sheet, [humanoid for _, humanoid in found.avatars], capsules, quiet), err=json)
+    if plan is not None and found.places:
+        typer.echo(draw_plan(plan, found.places[0][1]), err=json)
     if json:
-        print_json(
-            {"avatars": [asdict(facts) | {"warnings": facts.warnings} for facts, _ in found], "refused": refused}
-        )
-    elif pose_sheet is None:
-        for facts, _ in found:
+        avatars = [asdict(facts) | {"warnings": facts.warnings} for facts, _ in found.avatars]
+        places = [as_json(facts) for facts, _ in found.places]
+        print_json({"avatars": avatars, "places": places, "refused": found.refused})
+    else:
+        for facts, _ in found.avatars if pose_sheet is None else ():
             _print(facts)
-    for message in refused.values():
+        for place, _ in found.places:
+            print_place(place)
+    for message in found.refused.values():
         typer.echo(f"elbowroom: {message}", err=True)
-    raise typer.Exit(2 if refused else 0)
+    raise typer.Exit(2 if found.refused else 0)
+
+
+def _read(paths: list[Path], kind: str | None, settings: "LoadSettings", told: "PlaceOptions", bar: Bar) -> _Found:
+    """Read all the files as avatars or places: as told, or else by what they hold."""
+    from elbowroom.body.inspection import inspect_avatar
+    from elbowroom.formats.models.recognised import is_of_a_place
+
+    found = _Found()
+    for path in paths:
+        bar.note(path.name)
+        try:
+            if kind == "place" or (kind is None and is_of_a_place(path)):
+                found.places.append(look_over(path, told, bar))
+            else:
+                found.avatars.append(inspect_avatar(path, settings))
+        except InputError as error:
+            found.refused[str(path)] = str(error)
+    return found
 
 
 def _paths(files: list[Path]) -> list[Path]:

@@ -60,6 +60,11 @@ class Bar:
         if self._progress is not None and self._task is not None:
             self._progress.update(self._task, completed=completed, note=note)
 
+    def note(self, note: str) -> None:
+        """Say what is done now."""
+        if self._progress is not None and self._task is not None:
+            self._progress.update(self._task, note=note)
+
 
 @contextmanager
 def progress_bar(title: str, total: float | None, quiet: bool) -> Iterator[Bar]:

@@ -16,10 +16,19 @@ from elbowroom.formats.skins import Skin, read_skin
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MAX_VERTICES = 2_000_000
-_MAX_TRIANGLES = 4_000_000
-_MAX_PRIMITIVES = 10_000
 _TRIANGLES = 4  # the first of the primitive modes with a surface
+
+
+@dataclass(frozen=True)
+class MeshBounds:
+    """How much of a file is read."""
+
+    vertices: int = 2_000_000
+    triangles: int = 4_000_000
+    primitives: int = 10_000
+
+
+_BOUNDS = MeshBounds()
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,26 +44,29 @@ class TriangleMesh:
 
 def triangle_mesh(gltf: Gltf, tree: NodeTree) -> TriangleMesh:
     """All triangles that nodes show; points and lines are left out. Raises `InputError`."""
+    return _joined([part for _, part in triangle_parts(gltf, tree)])
+
+
+def triangle_parts(gltf: Gltf, tree: NodeTree, bounds: MeshBounds = _BOUNDS) -> Iterator[tuple[int, TriangleMesh]]:
+    """The same as `triangle_mesh` one after the other: each node with a primitive that it shows."""
     skins: dict[int, Skin] = {}
-    parts: list[TriangleMesh] = []
     vertices = triangles = 0
-    for node, primitive in _surfaces(gltf, tree):
+    for node, primitive in _surfaces(gltf, tree, bounds.primitives):
         part = _part(gltf, tree, node, primitive, skins)
         vertices, triangles = vertices + len(part.nodes), triangles + len(part.triangles)
-        if vertices > _MAX_VERTICES or triangles > _MAX_TRIANGLES:
-            raise InputError(f"{gltf.name}: more than {_MAX_VERTICES} vertices or {_MAX_TRIANGLES} triangles")
-        parts.append(part)
-    return _joined(parts)
+        if vertices > bounds.vertices or triangles > bounds.triangles:
+            raise InputError(f"{gltf.name}: more than {bounds.vertices} vertices or {bounds.triangles} triangles")
+        yield node, part
 
 
-def _surfaces(gltf: Gltf, tree: NodeTree) -> Iterator[tuple[int, Field]]:
+def _surfaces(gltf: Gltf, tree: NodeTree, most: int) -> Iterator[tuple[int, Field]]:
     """Each node with each primitive it shows."""
     meshes, seen = gltf.root.at("meshes"), 0
     for node in map(int, np.flatnonzero(tree.meshes >= 0)):
         for primitive in meshes.pick(Field(int(tree.meshes[node]), gltf.name)).at("primitives").items():
             seen += 1
-            if seen > _MAX_PRIMITIVES:
-                raise InputError(f"{gltf.name}: the nodes show more than {_MAX_PRIMITIVES} primitives")
+            if seen > most:
+                raise InputError(f"{gltf.name}: the nodes show more than {most} primitives")
             mode = primitive.at("mode").optional_integer(0, 6, _TRIANGLES)
             if mode >= _TRIANGLES and primitive.at("attributes").at("POSITION").present:
                 yield node, primitive

@@ -85,6 +85,18 @@ def parse_figure(data: bytes, file: str, folder: Path | None = None, default_pos
     return _Maker(scene, expand(scene, library), library, notes, default_pose).figure()
 
 
+def parse_scenery(data: bytes, file: str, folder: Path | None = None) -> tuple[Gltf, tuple[str, ...]]:
+    """All that a file shows, be there a humanoid in it or not, as it stands; with notes on what was left out.
+
+    `folder` is where files that it names may lie. Raises `InputError`.
+    """
+    notes = Notes()
+    scene = parse_x3d(data, file, notes)
+    library = Library(folder, notes)
+    made = _Maker(scene, expand(scene, library), library, notes, default_pose=False).scenery()
+    return made, tuple(notes.lines)
+
+
 class _Maker:
     def __init__(self, scene: X3dScene, roots: Nodes, library: Library, notes: Notes, default_pose: bool) -> None:
         self._scene, self._roots, self._notes = scene, roots, notes
@@ -118,6 +130,13 @@ class _Maker:
             info=info_of(self._scene, humanoid),
             notes=tuple(self._notes.lines),
         )
+
+    def scenery(self) -> Gltf:
+        """Everything in the file."""
+        self._centred = False
+        top = self._draft.add_node("scene", scale=np.full(3, self._scene.metre))
+        self._walk(self._roots, top, np.zeros(3))
+        return parse_gltf(self._draft.finish(), self._scene.file)
 
     def _walk(self, roots: Nodes, parent: int, offset: Floats) -> None:
         """Draw everything in `roots`, which hang on a node whose origin lies at `offset` in their coordinates."""

@@ -1,0 +1,1 @@
+"""Models of things and places in any format, each as one glTF."""

@@ -1,0 +1,61 @@
+"""A model of any format that is read: what it shows as glTF, which is also what a viewer is given."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from elbowroom.errors import InputError
+from elbowroom.formats.fields import beginning_of
+from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.models.kinds import ModelKind, kind_of
+
+MAX_BYTES = 200 * 2**20  # of a model's file
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """What a file shows."""
+
+    gltf: Gltf
+    kind: ModelKind
+    data: bytes  # the file, as it is
+    notes: tuple[str, ...]  # what was left out in reading it
+
+
+def read_model(path: Path) -> Model:
+    """Read a model and what it names in its own folder; raises `InputError`."""
+    try:
+        size = path.stat().st_size
+        data = path.read_bytes() if size <= MAX_BYTES else b""
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except ValueError:
+        raise InputError(f"{str(path)!r} is not a file name") from None
+    if size > MAX_BYTES:
+        raise InputError(f"{path}: has {size >> 20} MB; at most {MAX_BYTES >> 20} MB are read")
+    return parse_model(data, path.name, path.parent)
+
+
+def parse_model(data: bytes, name: str, folder: Path | None = None) -> Model:
+    """The same for bytes; `folder` is where files that they name may lie (none for an upload)."""
+    if len(data) > MAX_BYTES:
+        raise InputError(f"{name}: has {len(data) >> 20} MB; at most {MAX_BYTES >> 20} MB are read")
+    kind = kind_of(data, name)
+    match kind:
+        case ModelKind.GLTF:
+            return Model(parse_gltf(data, name, folder), kind, data, ())
+        case ModelKind.X3D:
+            from elbowroom.formats.hanim.figure import parse_scenery
+
+            return Model(*_with(kind, data, *parse_scenery(data, name, folder)))
+        case ModelKind.OBJ | ModelKind.STL | ModelKind.PLY:
+            from elbowroom.formats.models.loose_triangles import parse_loose_triangles
+
+            return Model(*_with(kind, data, *parse_loose_triangles(data, kind, name, folder)))
+    formats = ", ".join(each.value for each in ModelKind)
+    raise InputError(f"{name}{beginning_of(data)}: it is no model of a format that is read ({formats})")
+
+
+def _with(
+    kind: ModelKind, data: bytes, gltf: Gltf, notes: tuple[str, ...]
+) -> tuple[Gltf, ModelKind, bytes, tuple[str, ...]]:
+    return gltf, kind, data, notes

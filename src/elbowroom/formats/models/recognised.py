@@ -1,0 +1,27 @@
+"""Whether a model's file is that of a place or of somebody: told by whether anything in it could be a skeleton."""
+
+from pathlib import Path
+
+from elbowroom.errors import InputError
+from elbowroom.formats.gltf import read_gltf
+from elbowroom.formats.models.kinds import ModelKind, kind_by_name
+from elbowroom.formats.x3d.files import read_bytes, unpacked
+
+_VRM = ("VRM", "VRMC_vrm")
+_HUMANOIDS = (b"Humanoid", b"HAnimJoint")
+
+
+def is_of_a_place(path: Path) -> bool:
+    """Whether the model in a file has no skeleton. False for what cannot be read: others say why."""
+    kind = kind_by_name(path.name)
+    try:
+        if kind is ModelKind.X3D:
+            text = unpacked(read_bytes(path), path.name)
+            return not any(word in text for word in _HUMANOIDS)
+        if kind is ModelKind.GLTF:
+            root = read_gltf(path).root
+            skinned = bool(root.at("skins").items())
+            return not skinned and not any(root.at("extensions").at(name).present for name in _VRM)
+    except InputError:
+        return False
+    return kind is not None

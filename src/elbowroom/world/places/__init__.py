@@ -1,0 +1,1 @@
+"""Models of places: read, measured, and made into scenes."""

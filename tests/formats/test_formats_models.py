@@ -1,0 +1,141 @@
+"""Models of any format become one glTF: recognised by content, files beside them bounded, damage told in one line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from elbowroom.errors import InputError
+from elbowroom.formats.models import model as models
+from elbowroom.formats.models.kinds import ModelKind, kind_of
+from elbowroom.formats.models.model import Model, parse_model, read_model
+from elbowroom.formats.models.recognised import is_of_a_place
+from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.triangles import triangle_mesh
+from hanim_builder import HanimRecipe, build_hanim
+from place_builder import TWO_ROOMS, glb
+
+TWO_TRIANGLES = """mtllib colours.mtl
+o one
+v 0 0 0
+v 1 0 0
+v 0 1 0
+usemtl red
+f 1 2 3
+o two
+v 0 0 5
+v 1 0 5
+v 0 1 5
+usemtl red
+f 4 5 6
+"""
+
+
+def triangles(model: Model) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """The corners (T, 3, 3) of what a model shows, in its own frame."""
+    tree = read_nodes(model.gltf)
+    mesh = triangle_mesh(model.gltf, tree)
+    matrices = tree.world_matrices(tree.rotations)[mesh.nodes[:, 0]]
+    points = np.einsum("vij,vj->vi", matrices[:, :3, :3], mesh.offsets[:, 0]) + matrices[:, :3, 3]
+    return np.asarray(points[mesh.triangles])
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"), [("stl", False), ("stl", True), ("ply", False), ("ply", True), ("obj", True)]
+)
+def test_loose_triangles_are_where_another_library_wrote_them(tmp_path: Path, kind: str, text: bool) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=1, radius=2.0)
+    ball.apply_translation((1.0, 2.0, 3.0))
+    options = {} if kind == "obj" else {"file_type": {"stl": "stl_ascii"}.get(kind, kind)} if text else {}
+    if kind == "ply":
+        options["encoding"] = "ascii" if text else "binary"
+    (tmp_path / f"a.{kind}").write_bytes(_bytes(ball.export(**({"file_type": kind} | options))))
+    model = read_model(tmp_path / f"a.{kind}")
+    assert model.kind.name.lower() == kind
+    found = triangles(model)
+    assert len(found) == len(ball.faces)
+    middles = np.sort(found.mean(axis=1), axis=0)
+    assert middles == pytest.approx(np.sort(ball.triangles.mean(axis=1), axis=0), abs=1e-5)
+
+
+def _bytes(data: bytes | str) -> bytes:
+    return data.encode() if isinstance(data, str) else data
+
+
+def test_an_obj_keeps_the_names_of_its_objects_and_its_colours(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text(TWO_TRIANGLES)
+    (tmp_path / "colours.mtl").write_text("newmtl red\nKd 1 0 0\nmap_Kd none.png\n")
+    model = read_model(tmp_path / "a.obj")
+    names = {node.at("name").text() for node in model.gltf.root.at("nodes").items()}
+    assert any("one" in name for name in names)
+    assert any("two" in name for name in names)
+    material = model.gltf.root.at("materials").items()[0].value
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][:3] == [1.0, 0.0, 0.0]
+    assert model.notes == ("'none.png' is left out: there is no such file in the model's folder",)
+
+
+@pytest.mark.parametrize("escape", ["../colours.mtl", "/etc/hostname", "..\\colours.mtl"])
+def test_files_elsewhere_are_never_read(tmp_path: Path, escape: str) -> None:
+    (tmp_path / "colours.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (inner / "a.obj").write_text(TWO_TRIANGLES.replace("colours.mtl", escape))
+    model = read_model(inner / "a.obj")
+    assert "left out" in model.notes[0]
+    sent = parse_model((inner / "a.obj").read_bytes(), "a.obj")
+    assert "left out" in sent.notes[0]
+
+
+def test_content_goes_before_the_name(tmp_path: Path) -> None:
+    assert kind_of(glb(TWO_ROOMS), "a.obj") is ModelKind.GLTF
+    assert kind_of(b"#VRML V2.0 utf8\n", "a.stl") is ModelKind.X3D
+    assert kind_of(b"v 0 0 0\n", "a.txt") is None
+    assert kind_of(b"solid wood is not STL", "a.txt") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("a.obj", b"v 0 0\nf 1 2 9\n"),
+        ("a.obj", b"nothing"),
+        ("a.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"),
+        ("a.stl", b"solid a\nfacet normal 0 0 1\nvertex"),
+        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999999\nend_header\n"),
+        ("a.glb", b"glTF\x02\x00\x00\x00"),
+        ("a.blend", b"BLENDER-v300"),
+        ("a.bin", b""),
+    ],
+)
+def test_what_is_damaged_or_unknown_is_told_in_one_line(name: str, data: bytes) -> None:
+    with pytest.raises(InputError) as told:
+        parse_model(data, name)
+    assert str(told.value).startswith(name)
+    assert "\n" not in str(told.value)
+
+
+def test_a_file_that_is_too_large_is_refused_unread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(models, "MAX_BYTES", 100)
+    (tmp_path / "a.glb").write_bytes(glb(TWO_ROOMS))
+    with pytest.raises(InputError, match="at most 0 MB are read"):
+        read_model(tmp_path / "a.glb")
+
+
+def test_a_world_with_a_humanoid_in_it_is_read_whole(tmp_path: Path) -> None:
+    alone = build_hanim(HanimRecipe()).decode()
+    box = "<Transform translation='5 0 0'><Shape><Box size='1 1 1'/></Shape></Transform>"
+    both = alone.replace("<Scene>", f"<Scene>{box}", 1)
+    found = triangles(parse_model(both.encode(), "a.x3d"))
+    others = triangles(parse_model(alone.encode(), "a.x3d"))
+    assert len(found) == len(others) + 12
+    assert found[..., 0].max() == pytest.approx(5.5)
+
+
+def test_models_without_a_skeleton_are_places(tmp_path: Path) -> None:
+    (tmp_path / "room.glb").write_bytes(glb(TWO_ROOMS))
+    (tmp_path / "room.wrl").write_text("#VRML V2.0 utf8\nShape { geometry Box {} }\n")
+    (tmp_path / "who.x3d").write_text(build_hanim(HanimRecipe()).decode())
+    assert is_of_a_place(tmp_path / "room.glb")
+    assert is_of_a_place(tmp_path / "room.wrl")
+    assert not is_of_a_place(tmp_path / "who.x3d")
+    assert not is_of_a_place(tmp_path / "missing.glb")
