@@ -36,6 +36,8 @@ from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Mesh
+from elbowroom.world.obstacles.solids import inner_boxes
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
@@ -58,6 +60,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_detour(humanoid)
     rehearse_crouch(humanoid)
     rehearse_product()
+    rehearse_mesh()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
@@ -108,6 +111,14 @@ def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
 
 def _one_box(center: tuple[float, ...], half: tuple[float, ...]) -> Obstacles:
     return Obstacles.boxes([center], [[0.0, 0.0, 0.0, 1.0]], [half])
+
+
+def rehearse_mesh() -> None:
+    """Fill a closed mesh, as scenes with meshes do when they are read."""
+    corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (1.0, 2.0) for z in (0.0, 1.0)])
+    faces = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+                      [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])  # fmt: skip
+    inner_boxes(Mesh(corners, faces))
 
 
 def rehearse_product() -> None:

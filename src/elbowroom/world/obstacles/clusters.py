@@ -1,4 +1,4 @@
-"""Triangles that lie near each other, brought together."""
+"""Triangles that lie near each other, brought together; points that are the same, found."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,3 +33,13 @@ def clusters_of(corners: Floats, whose: Longs, fewest: int, most: int, widest: f
         right[np.lexsort((along, node))] = np.arange(len(members)) - starts[node] >= half[node]
         members, node = members[~done[node]], (2 * node + right)[~done[node]]
     return found
+
+
+def distinct_rows(rows: Floats | Longs) -> tuple[Longs, Longs]:
+    """The place of one of each distinct row of (N, 3), and for each row the number of its like among them (N,)."""
+    key = np.zeros(len(rows), np.int64)
+    for column in rows.T:
+        values, number = np.unique(column, return_inverse=True)
+        key = key * len(values) + number
+    _, first, like = np.unique(key, return_index=True, return_inverse=True)
+    return first, like

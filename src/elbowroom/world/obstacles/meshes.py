@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.clusters import clusters_of
+from elbowroom.world.obstacles.clusters import clusters_of, distinct_rows
 from elbowroom.world.obstacles.layout import EDGE, LINE, PER_METRE
 from elbowroom.world.obstacles.shapes import Mesh
 
@@ -63,14 +63,14 @@ def _faces(corners: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 def _edges(corners: Floats, cluster: Longs, normals: Floats) -> _Edges:
     """The edges of each cluster, once; without those between two triangles of one face."""
-    points, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    ends = number.reshape(-1, 3)
+    first, number = distinct_rows(corners.reshape(-1, 3))
+    points, ends = corners.reshape(-1, 3)[first], number.reshape(-1, 3)
     begin, end = ends.ravel(), np.roll(ends, -1, axis=1).ravel()
     face = np.repeat(np.arange(len(ends)), 3)
     key = (cluster[face] * len(points) + np.minimum(begin, end)) * len(points) + np.maximum(begin, end)
     order = np.argsort(key, kind="stable")
-    _, first, uses = np.unique(key[order], return_index=True, return_counts=True)
-    one, other = order[first], order[np.minimum(first + 1, len(order) - 1)]
+    _, begins, uses = np.unique(key[order], return_index=True, return_counts=True)
+    one, other = order[begins], order[np.minimum(begins + 1, len(order) - 1)]
     opposite = (uses == 2) & (begin[one] == end[other])
     level = np.einsum("ei,ei->e", normals[face[one]], normals[face[other]]) >= _FLAT
     kept = one[~(opposite & level)]
