@@ -1,10 +1,29 @@
 """A walk played again on the page: its timeline, a second run beside it, and the way back to the live walk."""
 
 from collections.abc import Callable
+from pathlib import Path
 
+import pytest
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.controller import Controller
+from elbowroom.control.recording import Recorder
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
+
+
+@pytest.fixture(scope="module")
+def recorded_walk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A walk of two seconds, without assistance: nothing has to be planned for it."""
+    file = tmp_path_factory.mktemp("runs") / "walk.elbow"
+    controller = Controller(Humanoid.default(), Scene.load("doorway"), assist=False)
+    with Recorder(file, controller) as recorder:
+        for _ in range(120):
+            recorder.append(Command(forward=1.0), 1 / 60, controller.step(Command(forward=1.0), 1 / 60), assist=False)
+    return file
 
 
 def _walk_to(live: LivePage, z: float) -> None:
@@ -57,3 +76,15 @@ def test_a_replay_is_filmed_to_its_end(open_page: Open) -> None:
     assert download.value.suggested_filename.rpartition(".")[2] in ("mp4", "webm")
     assert download.value.path().stat().st_size > 1000
     live.wait("s.replay.filming === false")
+
+
+def test_a_recording_that_is_dropped_is_replayed(open_page: Open, recorded_walk: Path) -> None:
+    live = open_page("scene=empty", viewport=(1000, 640))
+    live.page.set_input_files("#file", recorded_walk)
+    state = live.wait("s.replay && s.replay.time > 0.1")
+    assert state["replay"]["frames"] > 50
+    live.page.keyboard.press("Space")
+    live.page.locator("#replay input[type=range]").fill("1.0")
+    live.wait("s.root.z > 0.4 && s.avatarLoaded")
+    live.page.keyboard.press("k")
+    live.wait("s.replay === null && s.root.z < 0.1")

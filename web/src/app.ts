@@ -96,6 +96,7 @@ export class App implements SessionListener, MenuListener {
     this.session = new Session(sessionUrl(), this, wishes);
     this.subscribe();
     requestAnimationFrame(() => this.frame());
+    if (query.has("replay")) void this.replayRun(null);
   }
 
   // What the server says.
@@ -236,6 +237,10 @@ export class App implements SessionListener, MenuListener {
   }
 
   file(file: File): void {
+    if (/\.elbow$/i.test(file.name)) {
+      void this.replayRun(file);
+      return;
+    }
     this.lastFile = file;
     this.veil.upload(file.name);
     uploadFile(file)
@@ -311,6 +316,20 @@ export class App implements SessionListener, MenuListener {
     if (!this.replay.active) return;
     this.menu.setOpen(false);
     this.hold();
+  }
+
+  /** Shows a recording: a file, or the one that the server was started with. */
+  private async replayRun(file: File | null): Promise<void> {
+    this.veil.upload(file?.name ?? "…");
+    try {
+      await this.replay.showRun(file);
+      this.menu.setOpen(false);
+      this.hold();
+    } catch (error) {
+      this.notices.show("error", words(error));
+    } finally {
+      this.veil.upload(null);
+    }
   }
 
   private hold(): void {

@@ -60,8 +60,13 @@ def play(
     serve_until_interrupted(library, host, port, open_page=open_page)
 
 
-def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int, *, open_page: bool) -> None:
-    """Serve the page with a library until Ctrl-C; raises `InputError` where there is no such library or port."""
+def serve_until_interrupted(
+    make: "Callable[[], Library]", host: str, port: int, *, open_page: bool, query: str = ""
+) -> None:
+    """Serve the page with a library until Ctrl-C; raises `InputError` where there is no such library or port.
+
+    The page opens with `query` in its address.
+    """
     from rich.console import Console
 
     from elbowroom.server.ending import ended_by_signals
@@ -83,7 +88,9 @@ def serve_until_interrupted(make: "Callable[[], Library]", host: str, port: int,
         first_steps(library)
         _tell_port(console, opened, port)
         _tell_openness(console, opened)
-        serve(library, opened, host, lambda: _ready(library, url_of(opened), open_page))
+        serve(
+            library, opened, host, lambda: _ready(library, url_of(opened) + (f"/?{query}" if query else ""), open_page)
+        )
     console.print("Stopped.")
 
 

@@ -1,5 +1,7 @@
-"""`elbowroom replay`: a recording repeated bit for bit."""
+"""`elbowroom replay`: a recording repeated bit for bit, or shown on the page."""
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -7,12 +9,14 @@ import typer
 
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
+from elbowroom.cli.play import serve_until_interrupted
 
 if TYPE_CHECKING:
     from elbowroom.control.recording import Recording
     from elbowroom.control.replay import ReplayResult
+    from elbowroom.server.library import Library
 
-EXAMPLES = "Examples:  elbowroom replay run.elbow  |  elbowroom replay run.elbow --avatar alice.vrm --json"
+EXAMPLES = "Examples:  elbowroom replay --show run.elbow  |  elbowroom replay run.elbow --avatar alice.vrm --json"
 DIFFERENT = 1
 
 
@@ -20,10 +24,15 @@ def replay(
     recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
     *,
     avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    show: Annotated[bool, typer.Option("--show", help="Show what was recorded on the page, with a timeline.")] = False,
+    port: Annotated[int, typer.Option(help="With --show: port; the next free one if busy, 0: any.")] = 8765,
+    open_page: Annotated[bool, typer.Option("--open/--no-open", help="With --show: open a browser.")] = True,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Run the recorded commands again and compare every frame, bit for bit. Exit code 0: identical and whole, 1: not.
+
+    With `--show` the recorded frames are shown on the page as they are, until Ctrl-C.
 
     Bit for bit holds for one processor that kernels are compiled for, and one version of what compiles them: where they
     are others, the last bits may differ, and this says so.
@@ -32,12 +41,30 @@ def replay(
     from elbowroom.control.replay import replay as run_again
 
     recorded = Recording(recording)
+    if show:
+        library = partial(library_of, recorded, avatar)
+        serve_until_interrupted(library, "127.0.0.1", port, open_page=open_page, query="replay")
+        return
     compile_first(quiet=quiet)
     with progress_bar("Replaying", None, quiet) as bar:
         humanoid = recorded.header.avatar.load(avatar)
         result = run_again(recorded, humanoid, lambda done: bar.move(done, f"{done} frames"))
     _report(recorded, result, json)
     raise typer.Exit(0 if result.identical and recorded.note is None else DIFFERENT)
+
+
+def library_of(recorded: "Recording", avatar: Path | None) -> "Library":
+    """The scene and the avatar of a recording, and the recording to begin with."""
+    from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.server.library import Library
+    from elbowroom.world.scene import Scene
+
+    header, path = recorded.header, str(recorded.path)
+    told = header.avatar
+    read = LoadSettings(told.bones or None, told.include_hair, told.height)
+    library = Library.open(avatar=avatar, read=None if avatar is None else read, motions=header.motions)
+    scene = Scene.from_dict(header.scene, path)
+    return replace(library, scenes=library.scenes | {scene.name: scene}, scene=scene.name, run=recorded.path)
 
 
 def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:

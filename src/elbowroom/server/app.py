@@ -25,6 +25,7 @@ from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.heap import hand_back
 from elbowroom.server.library import Library
 from elbowroom.server.reports import scene_message
+from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.schema.progress import Notice
 from elbowroom.server.session import Session
 from elbowroom.server.uploads import UploadDesk
@@ -54,12 +55,14 @@ def client_is_built() -> bool:
 
 def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") -> Starlette:
     """The application for one server; `bound_host` is the address that it listens on, `name` the name asked for."""
-    handlers = _Handlers(library)
+    handlers, desk = _Handlers(library), UploadDesk(library)
     routes: list[BaseRoute] = [
         Route("/api/health", handlers.health),
         Route("/api/catalog", handlers.catalog),
         Route("/api/scenes/{name}", handlers.scene),
-        Route("/api/avatars", UploadDesk(library).take, methods=["POST"]),
+        Route("/api/avatars", desk.take, methods=["POST"]),
+        Route("/api/runs", desk.show, methods=["POST"]),
+        Route("/api/run", handlers.run),
         Route("/avatars/{avatar}.glb", handlers.avatar),
         WebSocketRoute("/ws", handlers.session),
         Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),
@@ -105,6 +108,20 @@ class _Handlers:
             return Response(status_code=408)
         except (BusyError, ApartError, FullDiskError):
             return JSONResponse({"error": "a course is being made already; try again in a moment"}, 503)
+
+    async def run(self, request: Request) -> Response:
+        """The recording that the server was started with."""
+        if self._library.run is None:
+            return JSONResponse({"error": "no recording is shown here"}, 404)
+        try:
+            shown = shown_run(self._library, self._library.run, self._library.run.name)
+            return run_response(await while_there(request, shown))
+        except InputError as error:
+            return JSONResponse({"error": str(error)}, 422)
+        except ClientDisconnect:
+            return Response(status_code=408)
+        except (ApartError, FullDiskError):
+            return JSONResponse({"error": "the recording could not be read; the server's log says more"}, 500)
 
     def avatar(self, request: Request) -> Response:
         try:

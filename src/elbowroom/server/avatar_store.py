@@ -68,7 +68,7 @@ class AvatarStore:
     def choices(self, owner: str = "") -> list[AvatarChoice]:
         """What the menu offers to the page with this key: the stock avatar, even before it is read, and its own."""
         own = [upload for upload in self._uploads.items() if owner and upload.sender.key == owner]
-        known = [*self._lasting(), *own]
+        known = [*self.lasting(), *own]
         stock = [] if any(avatar.id == STOCK for avatar in known) else [AvatarChoice(STOCK, "Stock avatar")]
         return stock + [AvatarChoice(avatar.id, avatar.title) for avatar in known]
 
@@ -118,10 +118,11 @@ class AvatarStore:
         name = re.sub(r"[^a-z0-9]+", "-", stem.lower()).strip("-")[:_LONGEST_NAME] or "avatar"
         if re.fullmatch(r"[0-9a-f]{16}", name):
             name = f"avatar-{name}"
-        taken = {STOCK} | {avatar.id for avatar in self._lasting()}
+        taken = {STOCK} | {avatar.id for avatar in self.lasting()}
         return next(free for number in count(1) if (free := name if number == 1 else f"{name}-{number}") not in taken)
 
-    def _lasting(self) -> list[StoredAvatar]:
+    def lasting(self) -> list[StoredAvatar]:
+        """Those that nobody sent: they stay."""
         with self._lock:
             return list(self._kept.values())
 

@@ -46,6 +46,7 @@ class Library:
     courses: Courses = field(default_factory=Courses)
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
+    run: Path | None = None  # a recording that the page opens with
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
     @classmethod

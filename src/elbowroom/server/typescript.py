@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from elbowroom.server import pose_frame
 from elbowroom.server.codec import camel, tag
 from elbowroom.server.messages import ClientMessage, ServerMessage
-from elbowroom.server.schema import bounds, commands, menus, picture, progress
+from elbowroom.server.schema import bounds, commands, menus, picture, progress, runs
 from elbowroom.server.schema.bounds import Length, Range
 
 _SCALARS = {float: "number", int: "number", str: "string", bool: "boolean", types.NoneType: "null"}
@@ -78,7 +78,7 @@ def _constants() -> str:
 
 def _schema_classes() -> list[type]:
     """The dataclasses of the schema, in the order of the source."""
-    modules = (commands, menus, picture, progress)
+    modules = (commands, menus, picture, progress, runs)
     return [kind for module in modules for kind in vars(module).values() if _is_defined_in(module, kind)]
 
 

@@ -1,11 +1,11 @@
-"""Avatar and motion files that arrive over HTTP: received into files, read in processes of their own."""
+"""Avatars, motions and recordings that arrive over HTTP: received into files, read in processes of their own."""
 
 import asyncio
 import contextlib
 import errno
 import secrets
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +19,7 @@ from elbowroom.server.clip_store import SentMotions
 from elbowroom.server.codec import plain
 from elbowroom.server.library import Library
 from elbowroom.server.page_key import Sender, page_key
+from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.schema.bounds import MAX_UPLOAD
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
 from elbowroom.server.while_there import while_there
@@ -69,12 +70,32 @@ class UploadDesk:
 
     async def take(self, request: Request) -> Response:
         """POST: the raw bytes of an avatar or motion file, `?name=` its name. Answers 201 with an `Uploaded`."""
+
+        async def taken(sender: Sender) -> Response:
+            return JSONResponse(plain(await self._taken(request, sender)), 201)
+
+        return await self._admitted(request, taken)
+
+    async def show(self, request: Request) -> Response:
+        """POST: the raw bytes of a recording, `?name=` its name. Answers with the run, see `schema.runs`."""
+
+        async def shown(sender: Sender) -> Response:  # noqa: ARG001
+            name = request.query_params.get("name", "run.elbow")[:_NAME]
+            with self._files() as (file, _):
+                await _receive(request, file, self._pace)
+                async with self._reading:
+                    return run_response(await while_there(request, shown_run(self._library, file, name)))
+
+        return await self._admitted(request, shown)
+
+    async def _admitted(self, request: Request, work: Callable[[Sender], Awaitable[Response]]) -> Response:
+        """What the work answers, or why it is not done: each machine may have a few files read at once."""
         sender = Sender(request.client.host if request.client else "", page_key(request.query_params))
         if self._senders[sender.address] >= _EACH or self._senders.total() >= _AT_ONCE:
             return _refused(503, "other files are being read; try again in a moment")
         self._senders[sender.address] += 1
         try:
-            return JSONResponse(plain(await self._taken(request, sender)), 201)
+            return await work(sender)
         except InputError as error:
             return _refused(422, str(error))
         except tuple(_REFUSALS) as error:

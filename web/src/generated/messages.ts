@@ -408,6 +408,21 @@ export interface Pong {
   time: number;
 }
 
+/** What stands before the pose frames of a run: its place and its avatar, how many frames there are and how long. */
+export interface Run {
+  /** of the file */
+  name: string;
+  scene: SceneMessage;
+  avatar: AvatarMessage;
+  planner: string;
+  /** the avatar that was recorded, where another one stands in for it; else "" */
+  standIn: string;
+  /** what is missing of the recording; else "" */
+  note: string;
+  frames: number;
+  frameBytes: number;
+}
+
 export type ClientMessage = Input | Configure | ClockMessage | Reset | Overlays | Ping;
 
 export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Notice | Pong;

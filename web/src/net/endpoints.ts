@@ -16,6 +16,16 @@ export function uploadUrl(name: string): string {
   return `api/avatars?${new URLSearchParams({ name, key: pageKey() })}`;
 }
 
+/** The address that reads a recording of this name. */
+export function runUrl(name: string): string {
+  return `api/runs?${new URLSearchParams({ name, key: pageKey() })}`;
+}
+
+/** The address of the recording that the server was started with. */
+export function shownRunUrl(): string {
+  return "api/run";
+}
+
 let key = "";
 
 /** The secret by which the server knows which files are this tab's; it outlives a reload, not the tab. */

@@ -49,10 +49,14 @@ export class ReplayDoor {
     else this.host.say("info", text("replay.none"));
   }
 
-  /** Shows a run that came as a file. */
-  async show(take: Take): Promise<void> {
+  /** Shows a recording: a file, or the one that the server was started with. @throws Error with one sentence for the user */
+  async showRun(file: File | null): Promise<void> {
+    const { readRun, shownRun } = await import("./run_file");
+    const { take, run } = await (file ? readRun(file) : shownRun());
     this.files.push(take);
     await this.open(this.takes(), take);
+    if (run.standIn) this.host.say("warning", text("replay.standIn", run.standIn));
+    if (run.note) this.host.say("warning", run.note);
   }
 
   /** The next pose of the replay; null where none is shown. */

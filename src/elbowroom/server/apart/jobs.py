@@ -1,8 +1,9 @@
 """The work that is done apart. A job takes texts and returns records; what it raises is told by `__main__`."""
 
 import contextlib
+import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,4 +56,20 @@ def make_course(name: str) -> dict[str, Any]:
     return course_scene(name).to_dict()
 
 
-JOBS: dict[str, Callable[..., object]] = {job.__name__: job for job in (read_upload, read_clip, make_course)}
+def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
+    """The frames of a recording as `run_frames.PosedRun` has them, its fields in order; raises `InputError`.
+
+    `known` tells the avatars of the server: JSON of their references by id.
+    """
+    from elbowroom.control.avatar_reference import AvatarReference
+    from elbowroom.server.run_frames import posed_run
+
+    references = {avatar: AvatarReference(**reference) for avatar, reference in json.loads(known).items()}
+    try:
+        run = posed_run(Path(file), references)
+    except InputError as error:
+        raise InputError(str(error).replace(file, name)) from None
+    return tuple(getattr(run, field.name) for field in fields(run))
+
+
+JOBS: dict[str, Callable[..., object]] = {job.__name__: job for job in (read_upload, read_clip, make_course, pose_run)}
