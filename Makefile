@@ -1,7 +1,7 @@
 # make run    walk an avatar through a scene in the browser      make test   lint, types, all tests
 # make env    .venv with the `elbowroom` command                 make docs   pages and API reference, in site/
 # make clean  forget .venv, the built client and site/             make fuzz   damaged files for every reader
-# make pictures  those of README and docs again
+# make pictures  those of README and docs again                 make strangers  other programs read what we export
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
@@ -13,7 +13,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test test-long lint types unit web-test browser docs fuzz pictures clean format
+.PHONY: help env run test test-long lint types unit web-test browser docs fuzz pictures strangers clean format
 
 help:
 	@sed -n '1,4s/^# //p' Makefile
@@ -89,6 +89,13 @@ pictures: $(VENV)/developer
 	@$(BIN)/elbowroom bench plan --plots docs/images
 	@if test -n "$(AVATARS)"; then $(BIN)/elbowroom inspect --quiet --pose-sheet docs/images/pose-sheet.png $(AVATARS); \
 	else echo "pose-sheet.png stays as it is: name its avatars, make pictures AVATARS='a.vrm b.glb'"; fi
+
+strangers: $(VENV)/developer
+	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
+	@sh tools/install_browser.sh
+	@sh tools/install_judges.sh $(BIN)/python
+	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
+	@$(BIN)/python tools/strangers $(ARGS)
 
 format: $(VENV)/developer
 	@$(BIN)/ruff check --fix .

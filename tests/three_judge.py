@@ -54,6 +54,25 @@ async ([glb, clip, times]) => {
 }
 """
 
+_BVH = """
+async ([text, times]) => {
+  const { THREE } = window.judge;
+  const { BVHLoader } = await import("three/addons/loaders/BVHLoader.js");
+  const { skeleton, clip } = new BVHLoader().parse(text);
+  const mixer = new THREE.AnimationMixer(skeleton.bones[0]);
+  const action = mixer.clipAction(clip);
+  action.setLoop(THREE.LoopOnce);
+  action.clampWhenFinished = true;
+  action.play();
+  return times.map((time) => {
+    mixer.setTime(time);
+    skeleton.bones[0].updateMatrixWorld(true);
+    const place = new THREE.Vector3();
+    return Object.fromEntries(skeleton.bones.map((bone) => [bone.name, bone.getWorldPosition(place).toArray()]));
+  });
+}
+"""
+
 _BONES = """
 async ([avatar, vrma, times]) => {
   const { THREE, animation, load } = window.judge;
@@ -113,6 +132,15 @@ class ThreeJudge:
         """World position and rotation of every node at these times of a clip."""
         found: list[list[list[float]]] = self._page.evaluate(_NODES, [_text(glb), clip, times])
         return found
+
+    def bvh(self, text: str, times: list[float]) -> list[dict[str, list[float]]]:
+        """World position of every joint of a BVH file at these times, by name, in the file's unit."""
+        found: list[dict[str, list[float]]] = self._page.evaluate(_BVH, [text, times])
+        return found
+
+    def release(self) -> str:
+        """The version of three.js."""
+        return str(self._page.evaluate("window.judge.THREE.REVISION"))
 
     def bones(self, avatar: bytes, vrma: bytes, times: list[float]) -> list[dict[str, list[float]]]:
         """Normalised local rotation and position of every bone of a VRM that plays a VRM animation."""

@@ -73,6 +73,15 @@ def test_three_shows_an_exported_glb_where_we_do(
     assert np.abs(found - animation.joints_in_world()[list(FRAMES)]).max() < MILLIMETRE
 
 
+@pytest.mark.parametrize("root", ["hips", "root"])
+def test_three_plays_an_exported_bvh_where_we_do(three: ThreeJudge, folder: Path, root: str) -> None:
+    animation = animation_of(STOCK, folder)
+    text = written(animation, STOCK, "bvh", root).decode()
+    shown = three.bvh(text, [frame / animation.fps for frame in FRAMES])
+    found = np.array([[pose[bone] for bone in STOCK.skeleton.names] for pose in shown]) * 0.01
+    assert np.abs(found - animation.joints_in_world()[list(FRAMES)]).max() < MILLIMETRE
+
+
 def test_three_vrm_plays_an_exported_vrm_animation_as_we_do(three: ThreeJudge, folder: Path) -> None:
     animation = animation_of(STOCK, folder)
     vrma = written(animation, STOCK, "vrma")

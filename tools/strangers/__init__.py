@@ -1,0 +1,1 @@
+"""How other programs read what we export: `make strangers`."""
