@@ -6,14 +6,16 @@ import os
 import sys
 import threading
 import webbrowser
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli import clip_options
+from elbowroom.cli import clip_options, vmc_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.vmc_options import stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -44,6 +46,9 @@ def play(
     unit: clip_options.Unit = None,
     up: clip_options.Up = None,
     fps: clip_options.Fps = None,
+    vmc: vmc_options.Vmc = None,
+    vmc_root: vmc_options.VmcRoot = "root",
+    vmc_bundles: vmc_options.VmcBundles = True,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
     from elbowroom.body.load_settings import LoadSettings
@@ -54,10 +59,12 @@ def play(
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
     read = LoadSettings(bones, include_hair, height)
 
-    def library() -> Library:
-        return Library.open(scene, avatar, settings, motions, read)
+    with stream_to(vmc, vmc_root, bundles=vmc_bundles) or contextlib.nullcontext() as stream:
 
-    serve_until_interrupted(library, host, port, open_page=open_page)
+        def library() -> Library:
+            return replace(Library.open(scene, avatar, settings, motions, read), vmc=stream)
+
+        serve_until_interrupted(library, host, port, open_page=open_page)
 
 
 def serve_until_interrupted(

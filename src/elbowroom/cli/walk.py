@@ -1,16 +1,18 @@
 """`elbowroom walk`: the paper's crossing test, without a screen."""
 
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli import clip_options
+from elbowroom.cli import clip_options, vmc_options
 from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -42,6 +44,9 @@ def walk(
     unit: clip_options.Unit = None,
     up: clip_options.Up = None,
     fps: clip_options.Fps = None,
+    vmc: vmc_options.Vmc = None,
+    vmc_root: vmc_options.VmcRoot = "root",
+    vmc_bundles: vmc_options.VmcBundles = True,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
@@ -49,6 +54,7 @@ def walk(
 
     A scripted user walks forward, and when stuck backs up and tries again. Exit code 0: through in time, 1: not.
     """
+    check_vmc(vmc, vmc_root)
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
     compile_first(quiet=quiet)
     from elbowroom.control.recording import Recorder
@@ -65,14 +71,16 @@ def walk(
     with (
         progress_bar(f"Walking through {place.title}", limit, quiet) as bar,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
+        stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
-        result = run_crossing(controller, settings, _listener(bar, recorder))
+        send = None if stream is None else in_time(stream, humanoid)
+        result = run_crossing(controller, settings, _listener(bar, recorder, send))
     _report(result, record, json)
     raise typer.Exit(0 if result.passed else FELL_SHORT)
 
 
-def _listener(bar: Bar, recorder: "Recorder | None") -> "Listener":
-    """What every step is told to: the recording, and now and then the progress bar."""
+def _listener(bar: Bar, recorder: "Recorder | None", send: "Callable[[Frame], None] | None") -> "Listener":
+    """What every step is told to: the recording, a receiver, and now and then the progress bar."""
     count = 0
 
     def listen(command: "Command", dt: float, frame: "Frame") -> None:
@@ -80,6 +88,8 @@ def _listener(bar: Bar, recorder: "Recorder | None") -> "Listener":
         count += 1
         if recorder is not None:
             recorder.append(command, dt, frame)
+        if send is not None:
+            send(frame)
         if count % _FRAMES_PER_UPDATE == 0:
             bar.move(frame.time, f"{frame.time:4.1f} s" + (" stuck" if frame.stuck else ""))
 

@@ -19,6 +19,7 @@ from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.courses import Courses
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.server.schema.menus import Catalog, SceneChoice
+from elbowroom.server.vmc_stream import VmcStream
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
 
@@ -47,6 +48,7 @@ class Library:
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
     run: Path | None = None  # a recording that the page opens with
+    vmc: VmcStream | None = None  # where what is shown is sent too
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
     @classmethod

@@ -76,6 +76,8 @@ class Session:
             await self._close(sender, error)
         finally:
             self._library.hold(self)
+            if self._library.vmc is not None:
+                self._library.vmc.release(self)
             await _stop(sender)
             with contextlib.suppress(AttributeError):  # where it had not begun
                 self._stage.close()
@@ -164,6 +166,8 @@ class Session:
     def _show(self) -> None:
         self._tell(self._stage.advance(self._now()))
         self._send_frame()
+        if self._library.vmc is not None:
+            self._library.vmc.show(self, self._stage.walk.avatar.humanoid, self._stage.moment())
 
     def _send_frame(self) -> None:
         self._outbox.put_frame(self._stage.frame(self._now()))

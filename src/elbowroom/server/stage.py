@@ -17,6 +17,7 @@ from elbowroom.server.reports import blocked_message, finite, group_reports, pla
 from elbowroom.server.schema.commands import ClockMessage, Input, Overlays
 from elbowroom.server.schema.menus import Settings
 from elbowroom.server.schema.progress import Crossed, Nearest, Plan, Status
+from elbowroom.server.vmc import Moment
 from elbowroom.server.walk import Walk
 
 STEP = 1.0 / 60.0  # seconds of a single step
@@ -135,6 +136,12 @@ class Stage:
         self._busy.append(self._stepping + perf_counter() - began)
         self._stepping = 0.0
         return packed
+
+    def moment(self) -> Moment:
+        """The pose shown now, for a puppet of the avatar elsewhere."""
+        frame = self.walk.frame
+        x, z, heading = frame.root[:3].tolist()
+        return Moment(frame.time, (x, 0.0, z), heading, self.walk.node_pose())
 
     def status(self, now: float) -> Status:
         """The state in numbers."""
