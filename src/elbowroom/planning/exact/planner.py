@@ -25,7 +25,7 @@ from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.stillness import SAME_TIME
+from elbowroom.planning.stillness import SAME_TIME, is_still
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -91,9 +91,12 @@ class ExactPlanner:
         memory, stand = self.memory, self.memory.standing
         before = memory.version
         again = alone and stand is not None and stand.answers(query, before)
-        whole = NewPlan(self._body, root_planner, query, self._horizon(query)).made(left)
+        moves = not is_still(query.root.as_array()[3:6])
+        hurry = query.hurry or (moves and memory.command != query.command)
+        memory.command = query.command
+        whole = NewPlan(self._body, root_planner, query, self._horizon(query), hurry).made(left)
         turns = stand.left - 1 if again and stand is not None else memory.attempts.left
-        known = alone and memory.version == before and stands(whole, query)
+        known = alone and not hurry and memory.version == before and stands(whole, query)
         memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None
         lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None

@@ -28,6 +28,7 @@ Bools = NDArray[np.bool_]
 _NARROW = 0.06  # metres of clearance of legs or trunk below which a cell is looked into
 _PLACES = 9  # within such a cell, from one side to the other
 _DOUBT = 0.005  # metres by which the map may say too little
+_MOST = 240  # cells of a grid that are looked into: beyond them the map is believed
 
 
 class Grid(NamedTuple):
@@ -66,6 +67,7 @@ class Room:
         aside = math.cos(line.heading), -math.sin(line.heading)
         known, capsules = np.zeros(shape, np.bool_), _turned_to(line.facing, turned.capsules)
         self._near, self._passing = near, passing
+        self._looks = 0
         self._cells = _Cells(
             self.clear, self.shift, known, places, aside, grid, capsules, body.groups, body.radii, turned.discs.reach
         )
@@ -76,7 +78,9 @@ class Room:
 
     def look_into(self, cells: Indices) -> bool:
         """Look into those narrow cells of a path, column and turn (m, 2) in each row; whether any was not known."""
-        return _look_into(self._cells, cells, self._near, self._passing)
+        looks = _look_into(self._cells, cells, self._near, self._passing, _MOST - self._looks)
+        self._looks += looks
+        return looks > 0
 
 
 class _Cells(NamedTuple):
@@ -95,18 +99,18 @@ class _Cells(NamedTuple):
 
 
 @exact_kernel
-def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans) -> bool:
-    """`Room.look_into` among what stands near and passes.
+def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans, most: int) -> int:
+    """`Room.look_into` among what stands near and passes, until at least `most` cells were; how many were.
 
     Where legs turn out to lack room, the cells beside that one are looked into too: paths would lead there next.
     """
-    fresh, columns, turns = False, room.clear.shape[2], room.clear.shape[3]
+    looks, columns, turns = 0, room.clear.shape[2], room.clear.shape[3]
     standing, moving = unfilled(near), unfilled(at_span(passing, 0))
     for i in range(cells.shape[0]):
         j, t = cells[i, 0], cells[i, 1]
-        if not _in_doubt(room, i, j, t):
+        if looks >= most or not _in_doubt(room, i, j, t):
             continue
-        fresh = True
+        looks += 1
         stand = first_of(standing, _copy_near(near, room, room.places[i, j], standing))
         move = first_of(moving, _copy_near(at_span(passing, i), room, room.places[i, j], moving))
         _measure(room, (i, j, t), 0.0, stand, move)
@@ -114,8 +118,9 @@ def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans) -> bo
             for m in range(max(j - 1, 0), min(j + 2, columns)):
                 for n in range(max(t - 1, 0), min(t + 2, turns)):
                     if _in_doubt(room, i, m, n):
+                        looks += 1
                         _measure(room, (i, m, n), (m - j) * room.grid.aside, stand, move)
-    return fresh
+    return looks
 
 
 @exact_kernel
@@ -170,9 +175,10 @@ def _measure(room: _Cells, cell: tuple[int, int, int], beside: float, standing: 
     for g in range(3):
         part = slice(room.groups[g], room.groups[g + 1])
         for near in (standing, moving):
-            clearance_into(segments[part], room.radii[part], near, least)
-            for n in range(_PLACES):
-                found[g, n] = min(found[g, n], least[n])
+            if how_many(near) > 0:
+                clearance_into(segments[part], room.radii[part], near, least)
+                for n in range(_PLACES):
+                    found[g, n] = min(found[g, n], least[n])
     at = float(middle)
     for g in range(3):
         if found[g, middle] < comfort:

@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 
 from elbowroom.planning.exact.plan.upper_body_search import Effort
-from elbowroom.planning.result import JointEvidence
+from elbowroom.planning.result import LocalPlan
 
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _SOON = 1.05  # seconds ahead: what is nearer is thought through at once
-_MOST = 2e6  # capsules checked for joint steps in a plan, after which none is begun any more
-_TRIPLE = 2.5  # capsules that settling a triple costs as much as checking
+# Work is counted in capsules checked, some 10 ns each. These cost as much as so many of them:
+_TRIPLE, _NODE, _PATH, _PLACE = 2.5, 10, 150_000, 60  # a triple, a node, a path for the upper body, a place of the root
+_MOST, _MOST_IN_A_HURRY = 4e6, 1e6  # work of a plan after which nothing is begun but a safe end
 
 
 def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
@@ -22,7 +23,7 @@ class AttemptOrder:
 
     def __init__(self) -> None:
         self._turn = self._paths = 0
-        self._work = 0.0  # of joint steps in this plan, in capsules checked
+        self._work, self._most = 0.0, _MOST  # of this plan, in capsules checked
         self._seen: tuple[float, float] | None = None  # the place that ended the commanded path in the plan before
         self.thought_through: tuple[float, float] | None = None  # the place that ended the commanded path when it was
 
@@ -31,18 +32,24 @@ class AttemptOrder:
         """Paths that have yet to have their turn after the last plan."""
         return max(self._paths - 1, 0)
 
-    def begin(self) -> None:
+    def begin(self, *, hurry: bool) -> None:
         """Begin a plan."""
-        self._paths, self._work = 0, 0.0
+        self._paths, self._work, self._most = 0, 0.0, _MOST_IN_A_HURRY if hurry else _MOST
 
-    def enter(self, joint: JointEvidence | None) -> None:
-        """A joint step was made."""
-        self._work += 0.0 if joint is None else joint.checks + _TRIPLE * joint.states
+    def enter_root(self, checks: int) -> None:
+        """A root path was made, for which so many places and postures were looked at."""
+        self._work += _PLACE * checks
+
+    def enter(self, upper: LocalPlan) -> None:
+        """A path was sought for the upper body."""
+        self._work += _PATH + sum(row.checks + _NODE * row.nodes for row in upper.evidence)
+        if upper.joint is not None:
+            self._work += upper.joint.checks + _TRIPLE * upper.joint.states
 
     @property
     def spent(self) -> bool:
         """Whether this plan has cost as much as it may: nothing dear is begun any more, the best so far will do."""
-        return self._work > _MOST
+        return self._work > self._most
 
     def can_wait(self, place: tuple[float, float], ahead: float) -> bool:
         """Whether the commanded path, ending at a place (x, z) `ahead` seconds from now, need not be thought through.

@@ -1,7 +1,7 @@
 """A new plan from where the avatar is, where none goes on from an earlier one: what is tried, and in which order."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -21,7 +21,8 @@ from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.stillness import STILL
 
-_EARLIER = (1, 2, 3, 5, 8, 13)  # key frames before the one that was not reached, at which braking is tried
+_EARLIER = (1, 3, 8)  # key frames before the one that was not reached, at which braking is tried
+_SAFELY = (3,)  # the same where the plan has cost as much as it may
 _FARTHER = 0.05  # metres that a slower path must get beyond the place where a faster one failed
 _FAR_OFF = 1.2  # seconds until a place that is not asked about yet
 _WORTH = 0.3  # seconds that a path must cost less than one that was found, to be searched more closely before it
@@ -43,6 +44,7 @@ class NewPlan:
     root_planner: RootPlanner
     query: MotionQuery
     horizon: int  # key intervals that it leads over
+    hurry: bool  # something else is wanted than before: what is found soon now, what is better in the next plan
 
     def made(self, left: FullPlan | None) -> FullPlan:
         """The first of these that there is: a root path on which each group finds a path, the commanded one first;
@@ -52,7 +54,7 @@ class NewPlan:
         """
         tried: list[_Tried] = []
         found = self._group_by_group(left, tried)
-        if found is None and not self.query.hurry:
+        if found is None and not self.hurry:
             found = self._all_together(tried)
         return found or self._stop(tried)
 
@@ -62,19 +64,22 @@ class NewPlan:
         The paths that were of no use are added to `tried`.
         """
         query, attempts, blocked_at = self.query, self.body.memory.attempts, 0.0
-        attempts.begin()
+        attempts.begin(hurry=self.hurry)
         at = query.root, query.command, self.horizon, query.interval, query.time, self.body.settings.paces
         for root in self.root_planner.candidates(*at):
+            attempts.enter_root(root.checks)
+            if tried and self.hurry and attempts.spent:
+                break
             if tried and self._leads_nowhere_new(root, blocked_at + _FARTHER):
                 continue
             upper = self._upper_body(root.path, Effort.QUICK)
-            blocked = not tried and upper.reached < self.horizon and not query.hurry
+            blocked = not tried and upper.reached < self.horizon
             until_then = (
                 self._braked(root, upper.reached) if blocked and left is None and self._can_wait(upper) else None
             )
             if until_then is not None:
                 return until_then
-            if blocked and attempts.is_new(_place(upper)):
+            if blocked and not self.hurry and attempts.is_new(_place(upper)):
                 refined = None if left is None else prolonged(self.body, left, root, query, Effort.REFINED)
                 if refined is not None:
                     attempts.found()
@@ -83,7 +88,7 @@ class NewPlan:
             if upper.reached == self.horizon:
                 if not tried:
                     attempts.found()
-                cheaper = None if query.hurry else self._cheaper(tried, root)
+                cheaper = None if self.hurry else self._cheaper(tried, root)
                 return cheaper or FullPlan(root, upper.plan, upper.margins)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
@@ -130,7 +135,7 @@ class NewPlan:
         among_moving = len(self.root_planner.moving) > 0
         root, upper = max(tried, key=lambda one: one.upper.reached) if among_moving else tried[0]
         self.root_planner.follow(root)
-        why = None if self.query.hurry else self._why(upper)
+        why = None if self.hurry else self._why(upper)
         plan, previous = self._braked(root, upper.reached), self.body.memory.recent.continued(self.query)
         if plan is None and (previous is None or among_moving):
             plan = self._braked(root, upper.reached, harsh=True)
@@ -139,8 +144,9 @@ class NewPlan:
 
     def _braked(self, root: RootPlan, reached: int, *, harsh: bool = False) -> FullPlan | None:
         """A plan on a root path that is braked as late as possible; the upper body came as far as `reached` on it."""
-        brakings = [(moving, Effort.QUICK) for moving in _moving(reached)]
-        brakings += [] if self.query.hurry else [(0, Effort.JOINT)]
+        spent = self.body.memory.attempts.spent
+        brakings = [(moving, Effort.QUICK) for moving in _moving(reached, _SAFELY if spent else _EARLIER)]
+        brakings += [] if self.hurry or spent else [(0, Effort.JOINT)]
         for moving, effort in brakings:
             states = root.path.states.copy()
             brake(states, moving, self.query.interval, self.root_planner.bounds)
@@ -179,7 +185,7 @@ class NewPlan:
         start, query = StartState(self.query.upper, self.query.velocity, harsh=harsh), self.query
         previous = self.body.memory.recent.previous(path)
         upper = self.body.plan(path, start, previous, query.others, effort, query.go_on)
-        self.body.memory.attempts.enter(upper.search.evidence_log.joint)
+        self.body.memory.attempts.enter(upper.plan)
         return upper
 
     def _leads_nowhere_new(self, root: RootPlan, least: float) -> bool:
@@ -194,9 +200,9 @@ def _place(upper: UpperPlan) -> tuple[float, float]:
     return x, z
 
 
-def _moving(reached: int) -> Iterator[int]:
-    """Key frames at which to begin to brake, latest first; at last at once."""
-    yield from (reached - earlier for earlier in _EARLIER if reached - earlier > 0)
+def _moving(reached: int, before: Sequence[int]) -> Iterator[int]:
+    """Key frames at which to begin to brake, so many `before` the one that was reached; at last at once."""
+    yield from (reached - earlier for earlier in before if reached - earlier > 0)
     yield 0
 
 

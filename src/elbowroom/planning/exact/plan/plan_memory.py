@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.caches import PlanCaches, new_caches, with_set
 from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
 from elbowroom.planning.exact.plan.attempts import AttemptOrder
@@ -37,6 +38,7 @@ class PlanMemory:
         # what the next plan goes on from
         self.recent = RecentPlans()
         self.ongoing: OngoingPlan | None = None
+        self.command: Command | None = None  # what was asked for last
         self.attempts = AttemptOrder()
         self.blockade: Blockade | None = None  # why there was no path when that was asked last
         self.asked_at = math.inf, math.inf  # x, z of who asked
