@@ -51,6 +51,10 @@ class BodyCheck:
         """
         return np.inf if self.alone else self._least(self._posed(root, upper), root, time)
 
+    def body(self, root: Floats, upper: Floats) -> Floats:
+        """The ends of the capsules as seen from the root's place, and their radii, (C, 7) metres."""
+        return np.column_stack([self._posed(root, upper)[:, :, 0], self._radii]).astype(np.float64)
+
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
         return np.inf if self.alone else self._least(self._posed(root, upper), root, time, others_at=-np.inf)

@@ -19,7 +19,8 @@ from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.neighbour import Neighbour, boxes_of
+from elbowroom.control.neighbour import Neighbour, Walker
+from elbowroom.control.passing import expected, way_made
 from elbowroom.control.planners import Planners
 from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.rehearsal import Held
@@ -107,6 +108,8 @@ class Controller:
         self._assist = self.settings.assist
         self._plan_report: PlanReport | None = None
         self._command = Command()
+        self._stands_by = True  # whether the user wants nothing
+        self._travel: float | None = None  # radians, the heading that the last plan means to travel
         self._flow = self._next = Phase.PLAN
         self._blocked = self._resting = self._halting = False
         self.late_plans = 0  # that could not be shown any more when they came
@@ -139,7 +142,16 @@ class Controller:
     def prediction(self) -> Neighbour:
         """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
         onward = self._command.forward > 0.0
-        return neighbour(self.humanoid, self._check.model, self._shown, self._queue, onward=onward)
+        return neighbour(self.humanoid, self._check.model, self._walker(), self._shown, self._queue, onward=onward)
+
+    def _walker(self, command: Command | None = None) -> Walker:
+        """Where this avatar is, and where to it is asked to go, with what was planned for last or with a command."""
+        if self._stands_by:
+            return Walker(self._shown.root[:2], np.zeros(2))
+        wanted = steering.direction(command or self._command, self._shown.root[2])
+        if self._travel is not None and not (command and steering.changed(self._command, command)):
+            wanted = np.array([math.sin(self._travel), math.cos(self._travel)])
+        return Walker(self._shown.root[:2], wanted)
 
     @property
     def phase(self) -> Phase:
@@ -171,9 +183,18 @@ class Controller:
         if not 0.0 <= dt <= LONGEST_STEP:
             raise InputError(f"dt: {dt} is not between 0 and {LONGEST_STEP:g} seconds")
         turns = math.ceil(dt / LONGEST_TURN)
-        flows = [self._turn(wanted, dt / turns) for _ in range(turns)]
+        flows = [self._turn(self._aside(wanted), dt / turns) for _ in range(turns)]
         self._flow = next((flow for flow in (Phase.RESET, Phase.PLAN) if flow in flows), Phase.PLAY)
         return self._frame(wanted)
+
+    def _aside(self, command: Command) -> Command:
+        """What to do under a command: a step aside, where nothing is wanted and others want to pass."""
+        self._stands_by = command.idle
+        if not command.idle or not self.others or not self._assist:
+            return command
+        shown, free_map = self._shown, self.scene.obstacles.free_map
+        body = self._check.body(shown.root, shown.upper)
+        return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
 
     def _turn(self, command: Command, dt: float) -> Phase:
         self._take_plan(command)
@@ -211,7 +232,7 @@ class Controller:
         hurry = not self._errands.immediate and steering.changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState(*start.root.tolist()), self.settings
-        others = self._others_beside(start, time)
+        others = self._others_beside(start, time, command)
         query = MotionQuery(
             time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
             hurry,
@@ -223,11 +244,12 @@ class Controller:
         self._errands.ask(Question(query, self._assist, held, reserve), self._wayfinder.answer, self._queue)
         self._take_plan(command)
 
-    def _others_beside(self, start: Playback, time: float) -> Moving:
+    def _others_beside(self, start: Playback, time: float, command: Command) -> Moving:
         """The others' boxes; slimmer, where a motion starts within one: it is larger than the body that it holds."""
-        others = boxes_of(self.others)
-        if not len(others):
-            return others
+        if not self.others:
+            return Moving()
+        body = self._check.body(start.root, start.upper)
+        others = expected(self._walker(command), body, self.others, self.scene.obstacles.free_map)
         clearance = self._check.clearance_from(others, start.root, start.upper, time)
         return slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others
 
@@ -258,6 +280,7 @@ class Controller:
         self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
         self._halting = not found and (self._halting or steering.overturned(self._command, command))
         self._command, self._next, self._resting = command, Phase.PLAY, False
+        self._travel = answer.travel
         self._blocked = not found and self._queue.empty
         self._queue.start_count()
         if answer.uppers is not None:

@@ -15,9 +15,22 @@ from elbowroom.world.obstacles.moving import Moving
 Floats = NDArray[np.float64]
 
 
+class Walker(NamedTuple):
+    """Who wants to go where."""
+
+    place: Floats  # (2,) metres, x and z
+    wanted: Floats  # (2,) of length 1, where to; zero of who wants to stand
+
+    @property
+    def walks(self) -> bool:
+        """Whether it wants to go somewhere."""
+        return bool(self.wanted.any())
+
+
 class Neighbour(NamedTuple):
     """Another avatar, as it plans to move."""
 
+    walker: Walker
     boxes: Moving  # that hold its parts
     times: Floats  # (m,) seconds, increasing: the moments whose bodies are known
     axes: Floats  # (m, C, 6) its capsules' axes then, in the world

@@ -14,7 +14,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.control.body_check import configuration
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
-from elbowroom.control.neighbour import Neighbour
+from elbowroom.control.neighbour import Neighbour, Walker
 from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.shapes import Box, extents_of
 
@@ -27,7 +27,7 @@ _MOMENTS = np.arange(10) / 60  # seconds from now: a key interval
 
 
 def neighbour(
-    humanoid: Humanoid, model: BodyModel, shown: Playback, queue: KeyFrameQueue, *, onward: bool
+    humanoid: Humanoid, model: BodyModel, walker: Walker, shown: Playback, queue: KeyFrameQueue, *, onward: bool
 ) -> Neighbour:
     """What others are told about an avatar that is shown now, and will show what is in the queue; as `predicted`."""
     coming = queue.unplayed()
@@ -40,7 +40,7 @@ def neighbour(
     played = [shown, *(queue.at(min(float(time), float(coming.times[-1]))) for time in times[1:])]
     soon = KeyFrames(times, np.array([one.root for one in played]), np.array([one.upper for one in played]))
     axes = posture_capsules(model, _postures(soon), soon.roots).transpose(2, 0, 1).astype(np.float64)
-    return Neighbour(predicted(humanoid, model, keys, onward=onward), times, axes, humanoid.capsules.radii)
+    return Neighbour(walker, predicted(humanoid, model, keys, onward=onward), times, axes, humanoid.capsules.radii)
 
 
 def predicted(humanoid: Humanoid, model: BodyModel, keys: KeyFrames, *, onward: bool) -> Moving:

@@ -3,8 +3,13 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+
+Floats = NDArray[np.float64]
 
 _BENT = math.radians(20.0)  # a change of walking direction that is worth a plan of its own
 _REVERSED = math.radians(90.0)
@@ -50,6 +55,16 @@ def overturned(planned: Command, command: Command) -> bool:
     if command.idle:
         return not planned.idle
     return not planned.idle and _angle(planned, command) > _REVERSED
+
+
+def direction(command: Command, heading: float) -> Floats:
+    """Where to a command wants an avatar to go that faces `heading`: (2,) of length 1, x and z; zero for nowhere."""
+    if _speed(command) < _TREMOR_SHARE:
+        return np.zeros(2)
+    way = command.direction
+    if way is None:
+        way = heading + math.atan2(command.strafe, command.forward)
+    return np.array([math.sin(way), math.cos(way)])
 
 
 def _speed(command: Command) -> float:

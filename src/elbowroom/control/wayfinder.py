@@ -40,6 +40,7 @@ class Answer(NamedTuple):
     path: RootPath
     uppers: Floats | None  # (n+1, LOCAL) along the path; None where there is no way
     velocities: Floats | None  # (n+1, LOCAL) where the planner has chosen them
+    travel: float | None = None  # radians, the heading that it means to travel; None where that is nowhere
 
 
 class Wayfinder:
@@ -84,7 +85,9 @@ class Wayfinder:
                 self._planners.root.memory = memory
                 return None
             found = local.status is PlanStatus.FOUND
-            answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities)
+            line = self._planners.root.memory.line
+            travel = None if line is None else line.heading
+            answer = Answer(root, local, root.path, local.configurations if found else None, local.velocities, travel)
             return self._way_out(answer, question) if question.held is not None else answer
 
     def _search(self, question: Question) -> Motion:

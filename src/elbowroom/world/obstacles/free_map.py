@@ -53,6 +53,15 @@ class FreeMap:
         ]
         return Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
 
+    def distances(self, places: Floats, height: float) -> Floats32:
+        """How far what stands lower than `height` is from places (..., 2), x and z, to some centimetres."""
+        low, high = (edge(places.reshape(-1, 2), axis=0) for edge in (np.min, np.max))
+        window = self.window(low, high)
+        cells = np.rint((places - (window.x, window.z)) / CELL).astype(np.int64)
+        i, k = (np.minimum(cells[..., axis], window.distances.shape[axis + 1] - 1) for axis in (0, 1))
+        found: Floats32 = window.distances[height > LEVELS][:, i, k].min(axis=0)
+        return found
+
     def _tile(self, i: int, k: int) -> Floats32:
         """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z."""
         tile = self._tiles.get((i, k))

@@ -1,0 +1,127 @@
+"""Two who walk towards each other where there is little room: each keeps to its half, nobody is driven back."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.control.controller import Controller
+from elbowroom.control.neighbour import Neighbour, Walker
+from elbowroom.control.passing import expected, way_made
+from elbowroom.planning.command import Command
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+AVATAR = Humanoid.default()
+DT = 1 / 60
+FORWARD, NOTHING = Command(forward=1.0), Command()
+STEP = 0.3  # metres
+BODY = np.array([[-0.2, 0.0, 0.0, 0.2, 1.7, 0.0, 0.05]])  # one capsule as broad as shoulders
+
+
+def corridor(width: float) -> Scene:
+    middle = 0.5 * width + 0.1
+    walls = [{"type": "box", "center": [side * middle, 1.1, 3.0], "size": [0.2, 2.2, 30.0]} for side in (-1, 1)]
+    return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": walls})
+
+
+class Meeting(NamedTuple):
+    """How it ended."""
+
+    passed: bool
+    touched: bool
+    back: float  # metres, the farthest that one was driven back
+
+
+def meeting(width: float, left: tuple[float, float], second: Command = FORWARD, seconds: float = 12.0) -> Meeting:
+    """Two in a corridor, `left` of its middle as seen by the first; the first walks, the second does as it is told."""
+    one = Controller(AVATAR, corridor(width), start=RootState(left[0], 0.0, 0.0))
+    two = Controller(AVATAR, corridor(width), start=RootState(left[1], 5.0, math.pi))
+    farthest, back, touched = np.full(2, -np.inf), 0.0, False
+    for _ in range(round(seconds / DT)):
+        one.others, two.others = (two.prediction(),), (one.prediction(),)
+        mine, yours = one.step(FORWARD, DT), two.step(second, DT)
+        touched |= mine.touching or yours.touching
+        come = np.array([mine.root[1], 5.0 - yours.root[1]])
+        farthest = np.maximum(farthest, come)
+        back = max(back, float((farthest - come).max()))
+        if mine.root[1] > yours.root[1] + 0.8:
+            return Meeting(True, touched, back)
+    return Meeting(False, touched, back)
+
+
+@pytest.mark.parametrize(("width", "left"), [(1.2, (0.0, 0.0)), (0.95, (0.0, 0.0)), (1.4, (0.02, 0.0))])
+def test_two_who_meet_head_on_share_the_way(width: float, left: tuple[float, float]) -> None:
+    met = meeting(width, left)
+    assert met.passed
+    assert not met.touched
+    assert met.back < STEP
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("width", [0.95, 1.05, 1.2, 1.35, 1.5])
+def test_wherever_two_meet_they_share_the_way(width: float) -> None:
+    rng, room = np.random.default_rng(round(100 * width)), 0.5 * width - 0.32
+    for _ in range(6):
+        met = meeting(width, (float(rng.uniform(-room, room)), float(rng.uniform(-room, room))))
+        assert met.passed
+        assert not met.touched
+        assert met.back < STEP
+
+
+@pytest.mark.parametrize("width", [0.95, 1.2, 1.6])
+def test_who_stands_is_passed_and_not_driven_back(width: float) -> None:
+    met = meeting(width, (0.0, 0.0), NOTHING)
+    assert met.passed
+    assert not met.touched
+    assert met.back < STEP
+
+
+def seen(x: float, z: float, wanted: tuple[float, float]) -> Neighbour:
+    """Somebody at a place who wants to go somewhere."""
+    walker = Walker(np.array([x, z]), np.array(wanted))
+    return Neighbour(walker, Moving(), np.zeros(1), np.zeros((1, 1, 6)), np.zeros(1))
+
+
+def test_both_find_the_same_halves() -> None:
+    """What one takes for the other's half begins where the other takes its own to begin, less what both keep."""
+    rng = np.random.default_rng(2)
+    for _ in range(40):
+        width = float(rng.uniform(0.95, 3.0))
+        free_map, room = corridor(width).obstacles.free_map, 0.5 * width - 0.3
+        x, there = rng.uniform(-room, room, 2).tolist()
+        gap = float(rng.uniform(2.0, 6.0))
+        ahead, back = (0.0, 1.0), (0.0, -1.0)
+        mine = expected(Walker(np.array([x, 0.0]), np.array(ahead)), BODY, (seen(there, gap, back),), free_map)
+        yours = expected(Walker(np.array([there, gap]), np.array(back)), BODY, (seen(x, 0.0, ahead),), free_map)
+        (centers, _), (others, _) = mine.poses(0.0), yours.poses(0.0)
+        theirs, own = centers[0, 0], others[0, 0]
+        breadths = mine.half_sizes[0, 0] + yours.half_sizes[0, 0]
+        assert abs(theirs[0] - own[0]) - breadths == pytest.approx(0.02, abs=0.02)
+        assert abs(theirs[2] + own[2] - gap) < 0.02
+
+
+def test_who_does_not_come_is_left_as_told() -> None:
+    free_map, own = corridor(1.2).obstacles.free_map, Walker(np.zeros(2), np.array([0.0, 1.0]))
+    for other in (seen(0.0, 3.0, (0.0, 1.0)), seen(0.0, 3.0, (0.0, 0.0)), seen(0.0, -3.0, (0.0, -1.0))):
+        assert expected(own, BODY, (other,), free_map).tracks == other.boxes.tracks
+
+
+def test_who_stands_makes_way_only_where_there_is_no_room() -> None:
+    own = Walker(np.zeros(2), np.zeros(2))
+    comes = (seen(0.0, 2.0, (0.0, -1.0)),)
+    assert way_made(own, 0.0, BODY, comes, corridor(2.0).obstacles.free_map).idle
+    assert way_made(own, 0.0, BODY, (seen(0.0, 2.0, (0.0, 1.0)),), corridor(1.2).obstacles.free_map).idle
+    aside = way_made(own, 0.0, BODY, comes, corridor(1.2).obstacles.free_map)
+    assert aside.strafe < -0.5
+    assert abs(aside.forward) < 1e-9
+    turned = way_made(own, math.pi / 2, BODY, comes, corridor(1.2).obstacles.free_map)
+    assert turned.forward < -0.5
+    nearer = way_made(own._replace(place=np.array([0.2, 0.0])), 0.0, BODY, comes, corridor(1.2).obstacles.free_map)
+    assert nearer.strafe > 0.5
