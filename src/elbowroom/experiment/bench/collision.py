@@ -76,20 +76,21 @@ def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: Non
     clear = clearance(few.segments, few.radii, few.boxes.standing)
     answers = [other.touching() for other in others]
     near, out = inputs.boxes.standing, np.empty(inputs.segments.shape[2], np.float32)
+    own_call = partial(clearance_into, inputs.segments, inputs.radii, near, out)
     own_rates: list[float] = []
     shaped = shaped_obstacles(inputs, settings.seed)
     shape_rates: dict[str, list[float]] = {name: [] for name in shaped}
     rates: list[list[float]] = [[] for _ in others]
     for number in range(settings.rounds):
-        own_rates.append(_rate(inputs.checks, lambda: clearance_into(inputs.segments, inputs.radii, near, out)))
+        own_rates.append(checks_per_second(inputs.checks, own_call))
         for name, other_near in shaped.items():
             shape_rates[name].append(
-                _rate(
+                checks_per_second(
                     inputs.checks, partial(clearance_into, inputs.segments, inputs.radii, other_near, out), _FEW_CALLS
                 )
             )
         for i, other in enumerate(others):
-            rates[i].append(_rate(other.checks, other.touching))
+            rates[i].append(checks_per_second(other.checks, other.touching))
         tick(number + 1)
     return CollisionReport(
         vector_bits=vector_bits(),
@@ -108,7 +109,7 @@ def run(settings: CollisionSettings, tick: Callable[[int], None] = lambda _: Non
     )
 
 
-def _rate(checks: int, call: Callable[[], object], calls: int = _CALLS) -> float:
+def checks_per_second(checks: int, call: Callable[[], object], calls: int = _CALLS) -> float:
     """Checks a second of processor time, the same for all: other work on the machine counts little."""
     best = np.inf
     for _ in range(calls):
