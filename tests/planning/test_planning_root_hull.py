@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import leg_capsules
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.hull import ground_below, to_look_at
+from elbowroom.planning.root.hull import ground_below, to_check
 from elbowroom.planning.root.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
 from elbowroom.world.obstacles.clearance import clearance
@@ -48,7 +48,7 @@ def test_no_contact_is_left_out_and_much_is() -> None:
         obstacles = Scene.load(scene).obstacles
         body, near = LowerBody(AVATAR, obstacles), obstacles.standing
         for states in walks(ord(scene), 40):
-            moving, stopping = to_look_at(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.ground)
+            moving, stopping = to_check(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.ground)
             shown = least_by_owner(body, near, dense_states(states, 0.15, SPACING, every))
             stops = least_by_owner(body, near, stopping_states(states, 0.15, BOUNDS, SPACING, every))
             assert not np.any(~moving & (shown < 0.01))

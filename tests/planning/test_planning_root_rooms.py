@@ -84,8 +84,8 @@ def test_a_cell_that_was_looked_into_has_the_clearance_of_the_body_at_its_best_p
     rng, room = np.random.default_rng(seed), room_among(boxes, passing)
     cells = np.stack([rng.integers(0, GRID.columns, GRID.rows), rng.integers(0, len(ANGLES), GRID.rows)], axis=1)
     narrow = [min(room.clear[:2, i, j, t]) < 0.06 for i, (j, t) in enumerate(cells)]
-    assert room.look_into(cells) == any(narrow)
-    assert not room.look_into(cells)
+    assert room.check_narrow(cells) == any(narrow)
+    assert not room.check_narrow(cells)
     capsules, (sine, cosine) = BODY.going(0.0, SPEEDS).capsules, (np.sin(LINE.facing), np.cos(LINE.facing))
     for i, (j, t) in enumerate(cells):
         left = GRID.aside * (j - GRID.columns // 2) + room.shift[i, j, t]
@@ -103,14 +103,14 @@ def test_a_cell_that_was_looked_into_has_the_clearance_of_the_body_at_its_best_p
 
 
 def test_the_map_hardly_ever_closes_a_cell_that_is_free() -> None:
-    """What it takes for closed is not looked into: so it must be right about that."""
+    """What it takes for closed is not checked: so it must be right about that."""
     closed, wrong = 0, 0
     for seed in range(6):
         boxes = boxes_near(LINE, seed, 5)
         guessed, known = room_among(boxes, NOTHING), room_among(boxes, NOTHING)
         for j in range(GRID.columns):
             for t in range(len(ANGLES)):
-                known.look_into(np.tile([j, t], (GRID.rows, 1)))
+                known.check_narrow(np.tile([j, t], (GRID.rows, 1)))
         shut = guessed.clear[0] < GRID.margin
         closed, wrong = closed + int(shut.sum()), wrong + int((shut & (known.clear[0] >= GRID.margin)).sum())
     assert closed > 100

@@ -6,7 +6,7 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.ahead import WayFinder
+from elbowroom.planning.root.ahead import RouteFinder
 from elbowroom.planning.root.cost import prices_of, seconds_lost
 from elbowroom.planning.root.leg_check import LegCheck
 from elbowroom.planning.root.line import new_line, wanted_speed
@@ -14,7 +14,7 @@ from elbowroom.planning.root.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root.query import RootQuery
+from elbowroom.planning.root.query import Asked, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
@@ -30,9 +30,9 @@ class Paths:
     def __init__(self, scene: str) -> None:
         self.body = LowerBody(Humanoid.default(), Scene.load(scene).obstacles)
         self.check = LegCheck(self.body, BOUNDS, SETTINGS.skin, SETTINGS.spacing)
-        self.ways = WayFinder(SETTINGS, self.body)
+        self.routes = RouteFinder(SETTINGS, self.body)
         hull, ground, grids = self.body.hull, self.body.ground, self.body.grids
-        self.walker = Walker(BOUNDS, self.ways.half, SETTINGS.skin, hull, ground, grids, prices_of(SETTINGS))
+        self.walker = Walker(BOUNDS, self.routes.half, SETTINGS.skin, hull, ground, grids, prices_of(SETTINGS))
 
     def agree(self, start: RootState, command: Command, pace: float) -> bool:
         """Whether nothing is near; if so, the query must say the same."""
@@ -42,7 +42,8 @@ class Paths:
             MovingAround(self.body, STILL, 0.0, HORIZON, INTERVAL),
         )
         found = straight_walk(self.walker, start.as_array(), line, speed, pace, stretch)
-        query = RootQuery(SETTINGS, self.check, self.ways, start, HORIZON, INTERVAL, REACH, around)
+        asked = Asked(start, command, HORIZON, INTERVAL, 0.0)
+        query = RootQuery(SETTINGS, self.check, self.routes, asked, REACH, around)
         answer = query.travelled(line, pace * speed, SIGHT)
         free, states, stands, lost, x, z = found
         if not free:

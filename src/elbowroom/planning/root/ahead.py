@@ -1,4 +1,4 @@
-"""The way that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
+"""The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.hull import way_is_open
+from elbowroom.planning.root.hull import route_is_open
 from elbowroom.planning.root.line import TravelLine, straight_route
 from elbowroom.planning.root.lower_body import LowerBody, Neighbours
 from elbowroom.planning.root.plan import RootPlannerSettings
@@ -16,40 +16,40 @@ from elbowroom.world.walkable import WalkableMap, walkable_window
 
 Floats = NDArray[np.float64]
 
-_BEHIND = 0.64  # metres behind the start that a way round may use
+_BEHIND = 0.64  # metres behind the start that a detour may use
 _MORE = 1e-3  # metres
-_LOOKS = 0.04  # metres between looks along a way
+_SPACING = 0.04  # metres between samples along a route
 
 
-class Way(NamedTuple):
-    """A way to go."""
+class Route(NamedTuple):
+    """Where to walk."""
 
-    route: Floats  # (m, 2) corner points, x and z
+    corners: Floats  # (m, 2) x and z
     detour: bool  # whether it leads round something
     ends: bool  # whether it ends before an obstacle
     checks: int  # places whose clearance was computed
 
 
-class WayFinder:
-    """Finds ways for the standing figure of one body."""
+class RouteFinder:
+    """Finds routes for the standing figure of one body."""
 
     def __init__(self, settings: RootPlannerSettings, body: LowerBody) -> None:
         self._settings, self._body = settings, body
         self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
-    def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Way:
-        """The way from a start along a line of travel among `obstacles`, `sight` metres of it."""
+    def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Route:
+        """The route from a start along a line of travel among `obstacles`, `sight` metres of it."""
         straight = straight_route(float(start.x), float(start.z), line, sight)
-        if way_is_open(straight, self.half, obstacles.ground):
-            return Way(straight, detour=False, ends=False, checks=0)
+        if route_is_open(straight, self.half, obstacles.ground):
+            return Route(straight, detour=False, ends=False, checks=0)
         free, checks = self._free_length(straight, obstacles)
         if free >= sight:
-            return Way(straight, detour=False, ends=False, checks=checks)
+            return Route(straight, detour=False, ends=False, checks=checks)
         return self._round(straight, free, line, obstacles, sight, checks)
 
     def _free_length(self, route: Floats, obstacles: Neighbours) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
-        points, along = route_points(route, _LOOKS)
+        points, along = route_points(route, _SPACING)
         clear = self._body.standing_clearance(obstacles, points)
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
         blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
@@ -63,8 +63,8 @@ class WayFinder:
         obstacles: Neighbours,
         sight: float,
         checks: int,
-    ) -> Way:
-        """The way round what stands `free` metres on in the straight way."""
+    ) -> Route:
+        """The detour what stands `free` metres on in the straight route."""
         s, (ahead, left) = self._settings, line.coordinates(*straight[0].tolist())
         windows: dict[float, WalkableMap] = {}
         for margin, cell in s.searches:
@@ -75,8 +75,8 @@ class WayFinder:
             route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
             gained = line.coordinates(*route[-1])[0] - ahead
             if gained > free + s.worth_it:
-                return Way(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
-        return Way(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
+                return Route(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
+        return Route(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
 
     def _window(self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, sight: float) -> WalkableMap:
         """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""

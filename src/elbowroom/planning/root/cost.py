@@ -22,7 +22,7 @@ class Prices(NamedTuple):
     """What costs seconds besides being behind."""
 
     acceleration: float  # m/s^2: who starts slower than wanted is allowed the time that it takes to get faster
-    dead_end: float  # seconds, of a way that ends before something
+    dead_end: float  # seconds, of a route that ends before something
     aside: float  # seconds for each metre beside the line, and
     turned: float  # for each radian that the body is turned, over the whole path
 
@@ -45,7 +45,7 @@ def seconds_lost(
 ) -> float:
     """What a path costs, states (n+1, 7) of `duration` seconds, against the line of travel at the wanted speed.
 
-    `ends` says that its way ends before something.
+    `ends` says that its route ends before something.
     """
     lost = lost_on_line(prices_of(settings), line, speed, states, duration, ends)
     if speed < SLOW or not around:

@@ -1,7 +1,7 @@
-"""Past what the straight way leaves no room for: aside, turned sideways, or both, as cheaply as possible.
+"""Past what the straight route leaves no room for: aside, turned sideways, or both, as cheaply as possible.
 
-Along the line of travel lies a grid of places, and at each of them the body may face the line's way or be turned away
-from it. The cheapest way through that grid, by dynamic programming over its rows, is an *evasion*: how far to the side
+Along the line of travel lies a grid of places, and at each of them the body may face along the line or be turned away
+from it. The cheapest path through that grid, by dynamic programming over its rows, is an *evasion*: how far to the side
 to walk, and how far to turn the body, at each step ahead. Costs are seconds: sideways one walks slower, and every metre
 aside, every turn and every lack of room costs some.
 
@@ -62,9 +62,9 @@ class EvasionSettings:
     legs: float = 30.0  # of each metre walked, for each metre of room that the legs lack
     # The same for the trunk and for hanging arms: an evasion for each pair.
     bodies: tuple[tuple[float, float], ...] = ((60.0, 30.0), (60.0, 2.0))
-    keeping: float = 0.004  # of each row: what another way must be better than the one being followed
+    keeping: float = 0.004  # of each row: what another path must be better than the one being followed
     ends: tuple[float, float] = (3.0, 0.2)  # for the squared distance and the squared angle at the end
-    slack: float = 0.03  # clearance beyond which a way is free to be pulled taut
+    slack: float = 0.03  # clearance beyond which a path is free to be pulled taut
 
     @property
     def columns(self) -> int:
@@ -85,7 +85,7 @@ WIDE = EvasionSettings(
 
 
 class Evasion(NamedTuple):
-    """A way through the grid."""
+    """A path through the grid."""
 
     profile: Profile
     whole: bool  # whether it leads to the last row
@@ -164,7 +164,7 @@ class EvasionGrid(NamedTuple):
         return int(self.room.shift.size)
 
     def cheapest(self, bodies: tuple[float, float], kept: Profile | None, care: float = 0.0) -> Evasion:
-        """The cheapest way, with `bodies` as in the settings; `kept` is the one being followed.
+        """The cheapest path, with `bodies` as in the settings; `kept` is the one being followed.
 
         Legs keep `care` metres more than the settings ask for.
         """
@@ -181,16 +181,16 @@ class EvasionGrid(NamedTuple):
         )
         left, turned = self._at_first_row()
         begin = self._cells(np.array([left]), np.array([turned]))[0]
-        self.room.look_into(begin[None])
+        self.room.check_narrow(begin[None])
         for _ in range(_ROUNDS):
             cells, cost = cheapest(self.room.clear, standing, prices, begin, favoured)
-            if not self.room.look_into(cells):
+            if not self.room.check_narrow(cells):
                 break
         places = pulled_taut(self.room.clear, self.room.shift, cells, left, s.aside, s.slack)
-        way = np.stack([places, s.angles[cells[:, 1]]], axis=1)
+        path = np.stack([places, s.angles[cells[:, 1]]], axis=1)
         if cells[0, 1] == begin[1]:
-            way[0, 1] = turned
-        return Evasion(Profile(self.grid.first, s.step, way), len(way) == rows, cost)
+            path[0, 1] = turned
+        return Evasion(Profile(self.grid.first, s.step, path), len(path) == rows, cost)
 
     def _at_first_row(self) -> tuple[float, float]:
         """Distance from the line and turn at the first row's place, of who moves on as the start does.

@@ -1,4 +1,4 @@
-"""The cheapest way through a grid of places and turns, row by row, and how it is evened out.
+"""The cheapest path through a grid of places and turns, row by row, and how it is evened out.
 
 Dynamic programming: the rows are settled one after the other, each cell once.
 """
@@ -35,15 +35,15 @@ class Prices(NamedTuple):
 
 
 @exact_kernel
-def pulled_taut(clear: Floats32, shift: Floats32, way: Indices, begin: float, aside: float, slack: float) -> Floats:
+def pulled_taut(clear: Floats32, shift: Floats32, path: Indices, begin: float, aside: float, slack: float) -> Floats:
     """The distances (m,) from the line of a path through cells, evened out as far as there is room beyond `slack`.
 
     `clear` (3, rows, columns, turns) and `shift` (rows, columns, turns) as in `Room`.
     """
-    count = way.shape[0]
+    count = path.shape[0]
     middle, free, out = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
-        j, t = way[i, 0], way[i, 1]
+        j, t = path[i, 0], path[i, 1]
         middle[i] = aside * (j - shift.shape[1] // 2) + shift[i, j, t]
         free[i] = max(min(clear[0, i, j, t], clear[1, i, j, t]) - slack, 0.0)
         out[i] = middle[i]
@@ -59,7 +59,7 @@ def pulled_taut(clear: Floats32, shift: Floats32, way: Indices, begin: float, as
 def cheapest(
     clear: Floats32, standing: Floats, prices: Prices, begin: Indices, favoured: Indices
 ) -> tuple[Indices, float]:
-    """Columns and turns (m, 2) of the cheapest way from the cell `begin` to the farthest row that can be reached.
+    """Columns and turns (m, 2) of the cheapest path from the cell `begin` to the farthest row that can be reached.
 
     `standing` (turns,) is what a row costs in each turn; `favoured` (rows, 2) the cells that are liked.
     """
@@ -77,13 +77,13 @@ def cheapest(
             total = cost[last, j, t] + prices.ends[0] * (aside * aside) + prices.ends[1] * (turned * turned)
             if total < least:
                 least, end_j, end_t = total, j, t
-    way = np.empty((last + 1, 2), np.int64)
+    path = np.empty((last + 1, 2), np.int64)
     for i in range(last, -1, -1):
-        way[i, 0], way[i, 1] = end_j, end_t
+        path[i, 0], path[i, 1] = end_j, end_t
         move = parents[i, end_j, end_t]
         if i > 0:
             end_j, end_t = end_j - (move // 3 - 1), end_t - (move % 3 - 1)
-    return way, least
+    return path, least
 
 
 @exact_kernel
@@ -130,7 +130,7 @@ def _settle(
 
 @exact_kernel
 def _best_move(clear: Floats32, prices: Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
-    """The cheapest way to a cell from the row before it, and by which of nine moves."""
+    """The cheapest path to a cell from the row before it, and by which of nine moves."""
     best, move = np.inf, 0
     for m in range(9):
         dj, dt = m // 3 - 1, m % 3 - 1

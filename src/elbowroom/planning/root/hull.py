@@ -1,4 +1,4 @@
-"""Rectangles on the ground that hold legs and pelvis during a key interval: what is far from them needs no look.
+"""Rectangles on the ground that hold legs and pelvis during a key interval: what is far from them is not checked.
 
 Posing legs costs a thousand times more than telling that a rectangle is beside a box. So the exact check of a path is
 left for the key intervals whose rectangle meets a box.
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 _STEPS = (6, 2, 2)  # cells of the table of strides: forward, lateral, turn
-_GREATEST = (2.4, 0.8, 2.6)  # m/s, m/s, rad/s; what is faster is always looked at
+_GREATEST = (2.4, 0.8, 2.6)  # m/s, m/s, rad/s; what is faster is always checked
 _STRAIGHT = (0.005, 0.01)  # m/s, rad/s: who goes aside or turns no faster has the stride of one who does not, nearly
 _PHASES = 16
 _SPARE = 0.01  # metres: strides between those that were measured, and nearly straight ones
@@ -147,7 +147,7 @@ def _change(a: Floats, b: Floats) -> float:
 
 
 @exact_kernel
-def to_look_at(
+def to_check(
     states: Floats, interval: float, braking: float, swinging: float, skin: float, hull: StrideHull, ground: Ground
 ) -> tuple[Bools, Bools]:
     """Which key intervals (n,), and which stops from their ends (n,), may come within `skin` of something.
@@ -173,7 +173,7 @@ def to_look_at(
 
 
 @exact_kernel
-def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Ground) -> Bools:
+def states_to_check(states: Floats, skin: float, hull: StrideHull, ground: Ground) -> Bools:
     """Which states (N, 7), each by itself, may come within `skin` of something, (N,)."""
     near, low, high = np.empty(states.shape[0], np.bool_), np.empty(2), np.empty(2)
     for n in range(states.shape[0]):
@@ -184,7 +184,7 @@ def states_to_look_at(states: Floats, skin: float, hull: StrideHull, ground: Gro
 
 
 @exact_kernel
-def way_is_open(route: Floats, half: float, ground: Ground) -> bool:
+def route_is_open(route: Floats, half: float, ground: Ground) -> bool:
     """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z."""
     low, high = np.empty(2), np.empty(2)
     low[0], low[1], high[0] = -half, -half, half

@@ -1,6 +1,6 @@
 """What is known of the legs among things that stand: how near they come in a key interval, and in a stop.
 
-Who follows a path walks its key intervals again in the next plan, and what stands has not moved. So each is looked at
+Who follows a path walks its key intervals again in the next plan, and what stands has not moved. So each is checked
 once, and known under the very bits of the states that it depends on: what is recalled is what would be found.
 """
 
@@ -22,7 +22,7 @@ class KnownLegs:
         self._least: dict[Name, float] = {}
 
     def recalled(self, names: list[Name], wanted: Bools, skin: float) -> tuple[Floats32, Bools]:
-        """What is known (n,) of those `wanted` (n,), infinity elsewhere; and which have still to be looked at (n,).
+        """What is known (n,) of those `wanted` (n,), infinity elsewhere; and which have still to be checked (n,).
 
         None is after the first that is known to come nearer than `skin`.
         """
@@ -38,7 +38,7 @@ class KnownLegs:
         return found, fresh
 
     def learn(self, names: list[Name], fresh: Bools, found: Floats32) -> None:
-        """Remember what was found (n,) for those that were looked at."""
+        """Remember what was found (n,) for those that were checked."""
         if len(self._least) > _MOST:
             self._least.clear()
         for k in np.flatnonzero(fresh).tolist():

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.hull import states_to_look_at, to_look_at
+from elbowroom.planning.root.hull import states_to_check, to_check
 from elbowroom.planning.root.leg_cache import KnownLegs
 from elbowroom.planning.root.lower_body import LowerBody, Neighbours
 from elbowroom.planning.root.motion import MotionBounds, dense_states, stopping_states
@@ -19,10 +19,10 @@ Bools = NDArray[np.bool_]
 
 
 class LegCheck:
-    """How legs are looked at, of one body: what does not change from plan to plan, and what is known by now."""
+    """How legs are checked, of one body: what does not change from plan to plan, and what is known by now."""
 
     def __init__(self, body: LowerBody, bounds: MotionBounds, skin: float, spacing: float) -> None:
-        """`skin` is the clearance to ask for in metres, `spacing` the seconds between looks."""
+        """`skin` is the clearance to ask for in metres, `spacing` the seconds between samples."""
         self.body, self.bounds, self.skin, self.spacing = body, bounds, skin, spacing
         self.known = KnownLegs()
 
@@ -54,7 +54,7 @@ class FreeLegs:
     def _skin(self) -> float:
         """The clearance to ask for: less where the start has little."""
         full, standing = self._check.skin, np.array([self._start, self._start])
-        if self._near.empty or not self._to_look_at(standing, 2.0 * full)[0].any():
+        if self._near.empty or not self._to_check(standing, 2.0 * full)[0].any():
             return full
         return min(full, max(0.5 * float(self._clearance(standing[:1])[0]), 0.0))
 
@@ -64,10 +64,10 @@ class FreeLegs:
         self.checks += len(states)
         return self._check.body.clearance(self._near, states)
 
-    def _to_look_at(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
+    def _to_check(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""
         bounds = self._check.bounds
-        return to_look_at(
+        return to_check(
             states, self._interval, bounds.braking, bounds.turn_acceleration, skin, self._check.body.hull,
             self._near.ground,
         )  # fmt: skip
@@ -87,7 +87,7 @@ class FreeLegs:
         kept = len(states) - 1
         if self._near.empty:
             return kept
-        moving, stopping = self._to_look_at(states, self._check.skin)
+        moving, stopping = self._to_check(states, self._check.skin)
         if moving.any():
             kept = self._before_contact(states, moving, stops=False)
         if stopping[:kept].any():
@@ -106,7 +106,7 @@ class FreeLegs:
                 shown, owner = stopping_states(states, self._interval, bounds, spacing, fresh)
             else:
                 shown, owner = dense_states(states, self._interval, spacing, fresh)
-            near = states_to_look_at(shown, self._check.skin, self._check.body.hull, self._near.ground)
+            near = states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground)
             np.minimum.at(found, owner[near] - 1, self._clearance(shown[near]))
             self._check.known.learn(names, fresh, found)
         touching = np.flatnonzero(found < self._skin)

@@ -14,11 +14,11 @@ from elbowroom.planning.root.motion import RootMotionSettings
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", float, Floats)
 
-_SOON, _SLANT = 0.6, 1.5  # metres ahead, and for each metre beside it, after which a way comes to the line
+_SOON, _SLANT = 0.6, 1.5  # metres ahead, and for each metre beside it, after which a route comes to the line
 
 
 class TravelLine(NamedTuple):
-    """The straight line that a held command asks for; a way round leads back to it."""
+    """The straight line that a held command asks for; a detour leads back to it."""
 
     asked: tuple[float, float]  # what the command says about the direction; the line lives while it stays the same
     x: float
@@ -46,8 +46,8 @@ def new_line(start: RootState, command: Command, motion: RootMotionSettings) -> 
         heading = float(command.direction)
         return TravelLine(asked, x, z, heading, heading, True)
     facing = start.heading + 0.5 * start.turn * abs(start.turn) / motion.turn_acceleration  # where a turn comes to rest
-    way = facing + math.atan2(command.strafe, command.forward)
-    return TravelLine(asked, x, z, way, facing, command.forward > 0.0 and command.strafe == 0.0)
+    going = facing + math.atan2(command.strafe, command.forward)
+    return TravelLine(asked, x, z, going, facing, command.forward > 0.0 and command.strafe == 0.0)
 
 
 def asked_direction(command: Command) -> tuple[float, float]:
@@ -59,7 +59,7 @@ def asked_direction(command: Command) -> tuple[float, float]:
 
 @exact_kernel
 def straight_route(x: float, z: float, line: TravelLine, sight: float) -> Floats:
-    """The corner points (3, 2), x and z, of a way from a place to a line of travel and along it, to the end of sight.
+    """The corner points (3, 2), x and z, of a route from a place to a line of travel and along it, to the end of sight.
 
     It comes to the line at 34 degrees, and nowhere nearer than 0.6 m.
     """

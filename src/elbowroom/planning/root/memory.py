@@ -30,7 +30,7 @@ class RootMemory(NamedTuple):
     def travel_line(self, start: RootState, command: Command, motion: RootMotionSettings, widest: float) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed.
 
-        `widest` is the breadth in metres of a way round. Who was turned aside by an evasion still means the way that it
+        `widest` is the breadth in metres of a detour. Who was turned aside by an evasion still means the way that it
         led from.
         """
         line = self.line
@@ -47,7 +47,7 @@ class RootMemory(NamedTuple):
         return abs(math.remainder(start.heading - self.evading[1].facing, math.tau)) > _TURNED
 
     def _continues(self, start: RootState, line: TravelLine, widest: float) -> bool:
-        """Whether a start goes on from the last path, within the breadth of a way round."""
+        """Whether a start goes on from the last path, within the breadth of a detour."""
         if self.last is None or abs(line.coordinates(start.x, start.z)[1]) >= widest:
             return False
         places = self.last[:, :2].tolist()

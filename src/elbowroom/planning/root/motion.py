@@ -24,7 +24,7 @@ _PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
 _FIRST = plain(0)
 _STILL = 1e-9  # lengths and speeds that are divided by are at least this
 _REST = 1e-6  # m/s and rad/s: what is slower stands
-_SIDLE = 0.6  # radians: the greatest angle between the way and the body's front when walking forward
+_SIDLE = 0.6  # radians: the greatest angle between the path and the body's front when walking forward
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
 _NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
@@ -135,7 +135,7 @@ def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds)
 
 @helper
 def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, float, float]:
-    """The point `look_ahead` metres along the route after the point nearest to (x, z), and the way left to its end."""
+    """The point `look_ahead` metres along the route after the point nearest to (x, z), and what is left of it."""
     best, leg, part = np.inf, 0, 0.0
     for i in range(route.shape[0] - 1):
         dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
@@ -171,16 +171,16 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
             speed = min(speed, np.sqrt(bounds.acceleration * max(0.0, left - 0.5 * now * interval)))
-        way = heading
+        course = heading
         if (aim_x - x) ** 2 + (aim_z - z) ** 2 > 1e-6:
-            way = np.arctan2(aim_x - x, aim_z - z)
-        turn = turn_towards(states[k], way if travel.turns else travel.facing, interval, bounds)
+            course = np.arctan2(aim_x - x, aim_z - z)
+        turn = turn_towards(states[k], course if travel.turns else travel.facing, interval, bounds)
         if travel.turns:
             front = heading + 0.5 * interval * (states[k, 5] + turn)
-            error = wrapped(way - front)
+            error = wrapped(course - front)
             speed *= min(max(1.25 * np.cos(error), 0.0), 1.0)
-            way = front + min(max(error, -_SIDLE), _SIDLE)
-        limited_step(states, k, speed * np.sin(way), speed * np.cos(way), turn, interval, bounds)
+            course = front + min(max(error, -_SIDLE), _SIDLE)
+        limited_step(states, k, speed * np.sin(course), speed * np.cos(course), turn, interval, bounds)
 
 
 @exact_kernel

@@ -61,7 +61,7 @@ class MovingAround:
 
     @cached_property
     def standing(self) -> Neighbours:
-        """What could move but stays where it is for now, a little larger: there are ways round it as round walls."""
+        """What could move but stays where it is for now, a little larger: there are detours it as round walls."""
         stays = np.all(np.ptp(places_of(self._swept), axis=0) < _STAYS, axis=1)
         staying = some_of(span_of(grown_aside(self._swept, _POLITE), 0), stays)
         corners = corners_of(staying)
@@ -71,7 +71,7 @@ class MovingAround:
     def gap(self, states: Floats, radius: float, height: float) -> float:
         """The least distance, metres, of an upright cylinder from what moves, at the key states (n+1, 7) of a path.
 
-        It is looked at from above; what passes overhead is left out. Infinite where nothing moves.
+        It is checked from above; what passes overhead is left out. Infinite where nothing moves.
         """
         gaps = gaps_from_above(first_spans(self._swept, len(states) - 1), states[1:, :2], height)
         return float(gaps.min(initial=np.inf)) - radius

@@ -5,7 +5,6 @@ Which of them are wanted, and in which order, is the root planner's business.
 
 from collections.abc import Iterator
 from time import perf_counter_ns
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,9 +12,8 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
-from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.command import Command
-from elbowroom.planning.root.ahead import WayFinder
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.planning.root.ahead import RouteFinder
 from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
 from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.leg_check import LegCheck
@@ -26,22 +24,12 @@ from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.profile import Profile
-from elbowroom.planning.root.query import Answer, RootQuery
+from elbowroom.planning.root.query import Answer, Asked, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
 _NEAR = 1.0  # metres
-
-
-class Asked(NamedTuple):
-    """What a path is asked for."""
-
-    start: RootState
-    command: Command
-    horizon: int  # key intervals
-    interval: float  # seconds
-    start_time: float  # seconds
 
 
 class RootPaths:
@@ -55,9 +43,9 @@ class RootPaths:
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
         )
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
-        self._ways = WayFinder(settings, body)
+        self._routes = RouteFinder(settings, body)
         self._walker = Walker(
-            self.bounds, self._ways.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
+            self.bounds, self._routes.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
         )
         self.evasions = tuple(
             EvasionFinder(humanoid, scene.obstacles, grid) for grid in (settings.evasion, settings.wide)
@@ -85,18 +73,18 @@ class RootPaths:
         """The paths from one start; the same while the same is asked for."""
         key = (asked.start, *asked[2:], self._others)
         if self._last is None or self._last[0] != key:
-            start, _, horizon, interval, start_time = asked
+            _, _, horizon, interval, start_time = asked
             around = MovingAround(self._check.body, self._moving, start_time, horizon, interval)
             reach = self._reach(horizon * interval)
-            self._last = key, RootQuery(self.settings, self._check, self._ways, start, horizon, interval, reach, around)
+            self._last = key, RootQuery(self.settings, self._check, self._routes, asked, reach, around)
         return self._last[1]
 
     def _sight(self, asked: Asked, speed: float) -> float:
-        """How far ahead the way is looked at, metres."""
+        """How far ahead the route is checked, metres."""
         return max(self.settings.sight, speed * asked.horizon * asked.interval + self.settings.beyond)
 
     def _reach(self, duration: float) -> float:
-        """Nothing farther from a start is met by a path of `duration` seconds, or by a way round; metres."""
+        """Nothing farther from a start is met by a path of `duration` seconds, or by a detour; metres."""
         s = self.settings
         run = s.motion.run_speed * (duration + 1.0)
         return max(s.sight + s.widest_detour, run + s.beyond) + 1.0
@@ -104,16 +92,16 @@ class RootPaths:
     def stopped(self, asked: Asked) -> RootPlan:
         """To a stand, or out of the way of what comes."""
         began, query = perf_counter_ns(), self._query(asked)
-        looks, place = query.checks, (asked.start.x, asked.start.z)
+        before, place = query.checks, (asked.start.x, asked.start.z)
         answer = Answer(query.stop(), RootPlanKind.STRAIGHT, place, False)
-        return _plan(asked, answer, query.checks - looks, began)
+        return _plan(asked, answer, query.checks - before, began)
 
     def steered(self, asked: Asked, pace: float) -> RootPlan:
         """As a user turns the body by hand."""
         began, query = perf_counter_ns(), self._query(asked)
-        looks = query.checks
+        before = query.checks
         answer = query.steered(pace * wanted_velocities(asked.command, self.settings.motion))
-        return _plan(asked, answer, query.checks - looks, began)
+        return _plan(asked, answer, query.checks - before, began)
 
     def travelled(self, asked: Asked, line: TravelLine, pace: float) -> RootPlan:
         """Along a line of travel."""
@@ -127,9 +115,9 @@ class RootPaths:
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
                 return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
         query = self._query(asked)
-        looks = query.checks
+        before = query.checks
         answer = query.travelled(line, pace * speed, sight)
-        return _plan(asked, answer, query.checks - looks, began, self._lost(asked, line, speed, answer))
+        return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
 
     def evaded(
         self, asked: Asked, line: TravelLine, finder: EvasionFinder, kept: Profile | None
@@ -137,24 +125,24 @@ class RootPaths:
         """Evasions from a line of travel, each once; `kept` is the one being followed."""
         start, command, _, _, start_time = asked
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(command, self.settings.motion)
-        evasion, looks = finder.settings, query.checks
+        evasion, before = finder.settings, query.checks
         speeds = (speed, min(speed, evasion.sideways))
         grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self._moving, start_time)
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
             for care in evasion.cares:
-                way = grid.cheapest(bodies, kept, care)
-                if any(np.array_equal(way.profile.rows, other.rows) for other in profiles):
+                found = grid.cheapest(bodies, kept, care)
+                if any(np.array_equal(found.profile.rows, other.rows) for other in profiles):
                     break
-                profiles.append(way.profile)
-                answer = query.evaded(line, way, speed)
-                checks, lost = grid.cells + query.checks - looks, self._lost(asked, line, speed, answer)
-                yield _plan(asked, answer, checks, began, lost), way.profile
+                profiles.append(found.profile)
+                answer = query.evaded(line, found, speed)
+                checks, lost = grid.cells + query.checks - before, self._lost(asked, line, speed, answer)
+                yield _plan(asked, answer, checks, began, lost), found.profile
                 if answer.whole:
                     break
 
     def steps_aside(self, asked: Asked) -> Iterator[RootPlan]:
-        """Short ways out of the way of what moves."""
+        """Short steps out of the way of what moves."""
         place = asked.start.x, asked.start.z
         for states in self._query(asked).steps_aside():
             yield _plan(asked, Answer(states, RootPlanKind.EVASION, place, False), 0, perf_counter_ns())

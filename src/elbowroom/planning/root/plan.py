@@ -17,29 +17,29 @@ class RootPlanKind(Enum):
     EVASION = "evasion"  # aside of the line of travel, or with the body turned
     DETOUR = "detour"  # round an obstacle, at full speed
     SHORTENED = "shortened"  # slower than commanded, or ending early
-    STOPPED = "stopped"  # no way on
+    STOPPED = "stopped"  # no path on
 
 
 @dataclass(frozen=True)
 class RootPlannerSettings:
-    """How far the root planner looks and how close it goes. Metres, seconds."""
+    """How far the root planner looks ahead and how close it goes. Metres, seconds."""
 
     motion: RootMotionSettings = field(default_factory=RootMotionSettings)
     route: RouteSettings = field(default_factory=RouteSettings)
     evasion: EvasionSettings = field(default_factory=EvasionSettings)
     wide: EvasionSettings = WIDE
-    wide_from: float = 0.3  # seconds lost by what is known, from which on wide ways are thought of
-    sight: float = 3.2  # how far ahead the way is looked at, at least as far as one gets within the plan
+    wide_from: float = 0.3  # seconds lost by what is known, from which on wide detours are thought of
+    sight: float = 3.2  # how far ahead the route is checked, at least as far as one gets within the plan
     beyond: float = 0.5  # and so much farther
-    widest_detour: float = 1.6  # how far from the line of travel a way round may lead
-    worth_it: float = 0.4  # progress beyond that of the straight way for which a way round is taken
-    # Searches for a way round, in turn: the clearance that it must have, and the cells of the map.
+    widest_detour: float = 1.6  # how far from the line of travel a detour may lead
+    worth_it: float = 0.4  # progress beyond that of the straight route for which a detour is taken
+    # Searches for a detour, in turn: the clearance that it must have, and the cells of the map.
     searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
-    margin: float = 0.01  # clearance of the straight way
+    margin: float = 0.01  # clearance of the straight route
     skin: float = 0.01  # clearance that posed legs keep along a path
     spacing: float = 0.0125  # seconds between checked states
     untroubled: float = 0.15  # seconds lost below which nothing else is thought of
-    dead_end: float = 2.0  # seconds that a way costs that ends before an obstacle
+    dead_end: float = 2.0  # seconds that a route costs that ends before an obstacle
     aside_cost: float = 0.5  # seconds lost for each metre beside the line, and
     turned_cost: float = 0.15  # for each radian that the body is turned, over the whole path
     polite: float = 0.15  # metres that are kept from what moves
@@ -58,10 +58,10 @@ class RootPlan(NamedTuple):
 
     path: RootPath
     kind: RootPlanKind
-    goal: tuple[float, float]  # x, z of the short-term goal: where the looked-at route ends
+    goal: tuple[float, float]  # x, z of the short-term goal: where the checked route ends
     checks: int  # postures and places whose clearance was computed
     nanoseconds: int
-    lost: float = 0.0  # seconds that it costs against a walk as commanded, ways aside and turns included
+    lost: float = 0.0  # seconds that it costs against a walk as commanded, evasions and turns included
 
     def along(self, path: RootPath) -> "RootPlan":
         """The same plan on another path."""

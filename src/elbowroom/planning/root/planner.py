@@ -1,7 +1,7 @@
 """From a command to a short, collision-free root path for what cannot bend: the legs and the pelvis.
 
-Straight where the way is free, round the obstacle where it is not, a stop before it where there is no way. The upper
-body is not looked at: what only it would touch diverts nobody.
+Straight where that is free, round the obstacle where it is not, a stop before it where there is no route. The upper
+body is not checked: what only it would touch diverts nobody.
 
 A path is accepted if the posed legs and the pelvis are free at dense samples of exactly the motion that playback will
 show, and if from each of its key frames a stop would be free too. So the next plan always has a way out: to brake.
@@ -18,8 +18,9 @@ from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.line import TravelLine, wanted_speed
 from elbowroom.planning.root.memory import Evading, RootMemory
 from elbowroom.planning.root.motion import MotionBounds
-from elbowroom.planning.root.paths import Asked, RootPaths
+from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
@@ -154,7 +155,7 @@ class RootPlanner:
             yield from self._steps_aside(asked, direct)
 
     def _steps_aside(self, asked: Asked, evading: Evading) -> Iterator[RootPlan]:
-        """Short ways out of the way of what moves."""
+        """Short steps out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
             yield self._taken(plan, evading)
 

@@ -17,11 +17,11 @@ _COMFORT = 2.2  # rad/s: a turn that is faster is walked more slowly
 _SEEN = 0.6  # metres ahead
 _LEAST = 0.05  # m/s: slower than this nobody walks
 _AWRY, _WRY = 0.25, 0.6  # radians: who is turned so far from what the place asks for walks slower, or waits
-_EAGER = 0.9  # the part of being off the way that is mended within a key interval
+_EAGER = 0.9  # the part of being off the path that is mended within a key interval
 
 
 class Profile(NamedTuple):
-    """A way along a line of travel: rows at equal steps ahead."""
+    """A path along a line of travel: rows at equal steps ahead."""
 
     first: float  # metres ahead of the line's first point, of the first row
     step: float  # metres between rows

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.root.ahead import Way, WayFinder
+from elbowroom.planning.command import Command
+from elbowroom.planning.root.ahead import Route, RouteFinder
 from elbowroom.planning.root.evasion import Evasion
 from elbowroom.planning.root.leg_check import FreeLegs, LegCheck
 from elbowroom.planning.root.line import TravelLine
@@ -25,46 +26,54 @@ Floats = NDArray[np.float64]
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 
 
+class Asked(NamedTuple):
+    """What a path is asked for."""
+
+    start: RootState
+    command: Command
+    horizon: int  # key intervals
+    interval: float  # seconds
+    start_time: float  # seconds
+
+
 class Answer(NamedTuple):
     """What a path is going to be made of."""
 
     states: Floats  # (n+1, 7)
     kind: RootPlanKind
     goal: tuple[float, float]  # x, z
-    ends: bool  # whether the way that was looked at ends before something
+    ends: bool  # whether the route that was checked ends before something
     whole: bool = True  # whether it is walked as planned, to the end
 
 
 class RootQuery:
-    """All that is asked of one start: paths of `horizon` key intervals, `interval` seconds each."""
+    """The paths from one start over the same key times, whatever the command."""
 
     def __init__(
         self,
         settings: RootPlannerSettings,
         check: LegCheck,
-        ways: WayFinder,
-        start: RootState,
-        horizon: int,
-        interval: float,
+        routes: RouteFinder,
+        asked: Asked,
         reach: float,
         around: MovingAround,
     ) -> None:
-        """`reach` is the metres from the start beyond which nothing is met."""
+        """`reach` is the metres from the start beyond which nothing is met; the command `asked` for does not count."""
         self.settings, self.bounds, self.around = settings, check.bounds, around
-        self.start, self.horizon, self.interval = start, horizon, interval
-        self._near = check.body.near(start.x, start.z, reach)
-        self._legs, self._ways = FreeLegs(check, self._near, around, start, interval), ways
-        self._way: tuple[TravelLine, float, Way] | None = None
-        self._looks = 0
+        self.start, _, self.horizon, self.interval, _ = asked
+        self._near = check.body.near(self.start.x, self.start.z, reach)
+        self._legs, self._routes = FreeLegs(check, self._near, around, self.start, self.interval), routes
+        self._route: tuple[TravelLine, float, Route] | None = None
+        self._places = 0
 
     @property
     def checks(self) -> int:
         """The number of postures and places whose clearance was computed."""
-        return self._looks + self._legs.checks
+        return self._places + self._legs.checks
 
     @cached_property
     def _mapped(self) -> Neighbours:
-        """What ways lead round: what stands, and what could move but stays where it is."""
+        """What routes lead round: what stands, and what could move but stays where it is."""
         return self._near + self.around.standing if self.around else self._near
 
     def _blank(self) -> Floats:
@@ -106,7 +115,7 @@ class RootQuery:
         return best
 
     def steps_aside(self) -> Iterator[Floats]:
-        """Those short ways back, to both sides and on that are free, in the order in which they are liked."""
+        """Those short steps back, to both sides and on that are free, in the order in which they are liked."""
         return (states for states in self._steps_aside() if self._legs.kept(states) == self.horizon)
 
     def _steps_aside(self) -> Iterator[Floats]:
@@ -146,25 +155,25 @@ class RootQuery:
         return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
     def travelled(self, line: TravelLine, speed: float, sight: float) -> Answer:
-        """Walk along the line of travel, of which `sight` metres are looked at, or round what stands in it."""
-        way = self._way_along(line, sight)
+        """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it."""
+        route = self._route_along(line, sight)
 
         def candidate(share: float) -> Floats:
             states = self._blank()
-            travel = Travel(share * speed, line.facing, line.turns, way.ends)
-            follow(states, way.route, travel, self.interval, self.bounds)
+            travel = Travel(share * speed, line.facing, line.turns, route.ends)
+            follow(states, route.corners, travel, self.interval, self.bounds)
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
-        kind = self._kind(states, whole=number == 0, detour=way.detour)
-        return Answer(states, kind, _place(way.route[-1]), way.ends)
+        kind = self._kind(states, whole=number == 0, detour=route.detour)
+        return Answer(states, kind, _place(route.corners[-1]), route.ends)
 
-    def _way_along(self, line: TravelLine, sight: float) -> Way:
-        """The way along a line of travel; the same at every pace."""
-        if self._way is None or self._way[:2] != (line, sight):
-            self._way = line, sight, self._ways.ahead(self.start, line, self._mapped, sight)
-            self._looks += self._way[2].checks
-        return self._way[2]
+    def _route_along(self, line: TravelLine, sight: float) -> Route:
+        """The route along a line of travel; the same at every pace."""
+        if self._route is None or self._route[:2] != (line, sight):
+            self._route = line, sight, self._routes.ahead(self.start, line, self._mapped, sight)
+            self._places += self._route[2].checks
+        return self._route[2]
 
     def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
         """Walk along an evasion from the line of travel, or as much of it as is free."""

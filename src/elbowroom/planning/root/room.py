@@ -25,10 +25,10 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-_NARROW = 0.06  # metres of clearance of legs or trunk below which a cell is looked into
+_NARROW = 0.06  # metres of clearance of legs or trunk below which a cell is checked
 _PLACES = 9  # within such a cell, from one side to the other
 _DOUBT = 0.005  # metres by which the map may say too little
-_MOST = 240  # cells of a grid that are looked into: beyond them the map is believed
+_MOST = 240  # cells of a grid that are checked: beyond them the map is believed
 
 
 class Grid(NamedTuple):
@@ -67,7 +67,7 @@ class Room:
         aside = math.cos(line.heading), -math.sin(line.heading)
         known, capsules = np.zeros(shape, np.bool_), _turned_to(line.facing, turned.capsules)
         self._near, self._passing = near, passing
-        self._looks = 0
+        self._checked = 0
         self._cells = _Cells(
             self.clear, self.shift, known, places, aside, grid, capsules, body.groups, body.radii, turned.discs.reach
         )
@@ -76,11 +76,11 @@ class Room:
         if any_in(passing):
             _pass(self.clear, discs, places, passing, LEVELS, grid)
 
-    def look_into(self, cells: Indices) -> bool:
-        """Look into those narrow cells of a path, column and turn (m, 2) in each row; whether any was not known."""
-        looks = _look_into(self._cells, cells, self._near, self._passing, _MOST - self._looks)
-        self._looks += looks
-        return looks > 0
+    def check_narrow(self, cells: Indices) -> bool:
+        """Check those narrow cells of a path, column and turn (m, 2) in each row; whether any was not known."""
+        count = _check_narrow(self._cells, cells, self._near, self._passing, _MOST - self._checked)
+        self._checked += count
+        return count > 0
 
 
 class _Cells(NamedTuple):
@@ -88,7 +88,7 @@ class _Cells(NamedTuple):
 
     clear: Floats32  # as in `Room`
     shift: Floats32
-    known: Bools  # (rows, columns, T) cells that were looked into
+    known: Bools  # (rows, columns, T) cells that were checked
     places: Floats  # (rows, columns, 2) of their middles
     left: tuple[float, float]  # a metre to the left of the line, x and z
     grid: Grid
@@ -99,18 +99,18 @@ class _Cells(NamedTuple):
 
 
 @exact_kernel
-def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans, most: int) -> int:
-    """`Room.look_into` among what stands near and passes, until at least `most` cells were; how many were.
+def _check_narrow(room: _Cells, cells: Indices, near: Nearby, passing: Spans, most: int) -> int:
+    """`Room.check_narrow` among what stands near and passes, until at least `most` cells were; how many were.
 
-    Where legs turn out to lack room, the cells beside that one are looked into too: paths would lead there next.
+    Where legs turn out to lack room, the cells beside that one are checked too: paths would lead there next.
     """
-    looks, columns, turns = 0, room.clear.shape[2], room.clear.shape[3]
+    count, columns, turns = 0, room.clear.shape[2], room.clear.shape[3]
     standing, moving = unfilled(near), unfilled(at_span(passing, 0))
     for i in range(cells.shape[0]):
         j, t = cells[i, 0], cells[i, 1]
-        if looks >= most or not _in_doubt(room, i, j, t):
+        if count >= most or not _in_doubt(room, i, j, t):
             continue
-        looks += 1
+        count += 1
         stand = first_of(standing, _copy_near(near, room, room.places[i, j], standing))
         move = first_of(moving, _copy_near(at_span(passing, i), room, room.places[i, j], moving))
         _measure(room, (i, j, t), 0.0, stand, move)
@@ -118,9 +118,9 @@ def _look_into(room: _Cells, cells: Indices, near: Nearby, passing: Spans, most:
             for m in range(max(j - 1, 0), min(j + 2, columns)):
                 for n in range(max(t - 1, 0), min(t + 2, turns)):
                     if _in_doubt(room, i, m, n):
-                        looks += 1
+                        count += 1
                         _measure(room, (i, m, n), (m - j) * room.grid.aside, stand, move)
-    return looks
+    return count
 
 
 @exact_kernel

@@ -1,8 +1,8 @@
-"""The way round: the cheapest route over a window of the walkable map, pulled tight.
+"""The detour: the cheapest route over a window of the walkable map, pulled tight.
 
 The window lies along the line of travel: its first axis runs ahead, its middle column is the line itself. Dijkstra's
 search (Numer. Math. 1, 1959) settles every free cell; the cell whose progress best repays its cost is the goal, so that
-a wall without a way round gives a route that ends before it. Costs: metres walked, dearer beside the line and close to
+a wall without a detour gives a route that ends before it. Costs: metres walked, dearer beside the line and close to
 obstacles.
 """
 
@@ -61,7 +61,7 @@ def find_route(
     """Corner points (m, 2), world x and z, of the route from `start`, given in metres ahead and left in the window.
 
     `line` is the distance of the line of travel from the window's first column. The route is a single point if the
-    start has no way on.
+    start has no path on.
     """
     cell = window.cell
     search = Search(
@@ -225,7 +225,7 @@ def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
 
 @exact_kernel
 def _in_sight(grid: Floats32, search: Search, here: float, a: Floats, b: Floats) -> bool:
-    """Whether the straight way between two points keeps the clearance."""
+    """Whether the straight route between two points keeps the clearance."""
     steps = int(np.ceil(2.0 * max(abs(b[0] - a[0]), abs(b[1] - a[1]))))
     for k in range(steps + 1):
         t = k / max(steps, 1)

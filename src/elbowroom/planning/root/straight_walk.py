@@ -1,7 +1,7 @@
 """The walk straight on where nothing is near: what most paths are, made in one piece.
 
 Compiled code is entered once for it, where `RootQuery` enters it for each of its steps. What it says is what the query
-would say; wherever something is near enough to be looked at, it leaves the word to that.
+would say; wherever something is near enough to be checked, it leaves the word to that.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.cost import Prices, lost_on_line
-from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, to_look_at, way_is_open
+from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, route_is_open, to_check
 from elbowroom.planning.root.line import TravelLine, straight_route
 from elbowroom.planning.root.motion import MotionBounds, Travel, follow, gets_nowhere
 from elbowroom.world.obstacles.broad_phase import Grids
@@ -37,7 +37,7 @@ class Stretch(NamedTuple):
 
     horizon: int  # key intervals
     interval: float  # seconds
-    sight: float  # metres along the line that are looked at
+    sight: float  # metres along the line that are checked
     reach: float  # metres: nothing farther from the start is met
 
 
@@ -48,12 +48,12 @@ def straight_walk(
     """A walk from `start` (7,) along a line of travel, whose wanted speed it makes at a share `pace`.
 
     Returns whether nothing is near; if so, the states (n+1, 7), whether they get nowhere, the seconds that they lose,
-    and x and z of the end of the way.
+    and x and z of the end of the route.
     """
     who, x, z = walker, start[0], start[1]
     states = np.empty((stretch.horizon + 1, ROOT_STATE))
     ground, route = ground_near(who.ground, who.grids, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
-    ends = not way_is_open(route, who.half, ground)
+    ends = not route_is_open(route, who.half, ground)
     if ends:
         return False, states, False, 0.0, 0.0, 0.0
     for c in range(ROOT_STATE):
@@ -61,7 +61,7 @@ def straight_walk(
     travel = Travel(pace * speed, line.facing, line.turns, ends)
     follow(states, route, travel, stretch.interval, who.bounds)
     braking, swinging = who.bounds.braking, who.bounds.turn_acceleration
-    moving, stopping = to_look_at(states, stretch.interval, braking, swinging, who.skin, who.hull, ground)
+    moving, stopping = to_check(states, stretch.interval, braking, swinging, who.skin, who.hull, ground)
     lost = lost_on_line(who.prices, line, speed, states, stretch.horizon * stretch.interval, ends)
     free = not (moving.any() or stopping.any())
     return free, states, gets_nowhere(states), lost, route[-1, 0], route[-1, 1]
