@@ -157,3 +157,14 @@ def test_a_scene_with_a_mesh_is_written_and_read_again() -> None:
     for field, wrong in (("faces", [[0, 1, 8]]), ("faces", [[0, 1, 2.5]]), ("vertices", [[0, 0, 0]]), ("faces", [])):
         with pytest.raises(InputError, match=field):
             Scene.of("meshed", [row | {field: wrong}], finish=(0.0, 6.0))
+
+
+def test_the_least_clearance_among_many_pieces_is_that_from_all_of_them() -> None:
+    rng = np.random.default_rng(9)
+    obstacles = standing(soup(rng, 6000, 2.0))
+    assert len(obstacles.standing.rows) > 500
+    for around in (0.3, 3.0, 30.0):
+        for begin in rng.uniform(-around, around, (20, 3)):
+            axis = np.concatenate([begin, begin + rng.uniform(-0.3, 0.3, 3)]).astype(np.float32)[None]
+            found = obstacles.clearance(axis[:, :, None], [0.04], (0.0, 0.0), 0.0)
+            assert found == pytest.approx(float(clearance(axis[:, :, None], [0.04], obstacles.standing)[0]), abs=1e-7)

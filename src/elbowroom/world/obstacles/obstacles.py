@@ -25,7 +25,8 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
-_NEAR, _WIDER, _FAR = 2.0, 4.0, 1e6  # metres: where the nearest is looked for first, by how much farther, and at most
+_NEAR, _WIDER, _FAR = 2.0, 4.0, 1e6  # metres: where the nearest is looked for first, how many times farther, at most
+_NEARER, _MANY = 0.5, 500  # metres: and where there are so many
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,12 @@ class Obstacles:
     def _grids(self) -> Grids:
         least, most = bounds_of(self.standing)
         return grids_of(least[:, [0, 2]], most[:, [0, 2]])
+
+    @cached_property
+    def _heights(self) -> Floats:
+        """The lowest and the highest point (B, 2) of boxes round those that stand."""
+        least, most = bounds_of(self.standing)
+        return np.stack([least[:, 1], most[:, 1]], axis=1)
 
     @cached_property
     def corners(self) -> Floats:
@@ -185,13 +192,16 @@ class Obstacles:
         ends = np.moveaxis(axes.reshape(len(axes), 2, 3, -1), 2, -1).reshape(-1, 3)
         widest = float(np.max(radii, initial=0.0))
         least, most = ends.min(axis=0) - widest, ends.max(axis=0) + widest
-        reach, many = _NEAR, len(self.standing.rows)
+        many = len(self.standing.rows)
+        reach = _NEAR if many < _MANY else _NEARER
         while many and reach < _FAR:
             low, high = (x + least[0] - reach, z + least[2] - reach), (x + most[0] + reach, z + most[2] + reach)
             numbers = self.numbers_near(low, high)
-            yield reach, numbers
             if len(numbers) == many:
+                yield reach, numbers
                 return
+            lowest, highest = self._heights[numbers].T
+            yield reach, numbers[(lowest <= most[1] + reach) & (highest >= least[1] - reach)]
             reach *= _WIDER
 
 
