@@ -116,9 +116,14 @@ def way(depth: float) -> tuple[Floats, Floats]:
     return keys, np.zeros_like(keys)
 
 
+def nowhere(keys: Floats, velocities: Floats) -> NDArray[np.bool_]:
+    """The trunk keeps off the thighs."""
+    return np.zeros(len(keys) - 1, np.bool_)
+
+
 def test_who_stays_upright_is_not_looked_at() -> None:
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), lambda: np.tile(np.linspace(0.0, 0.7, 9), (7, 1)))
+    crouch = Crouch(wall_before_the_knees(), standing(), lambda: np.tile(np.linspace(0.0, 0.7, 9), (7, 1)), nowhere)
     assert not crouch.rules_out(*way(0.0), extra)
     assert not extra.any()
 
@@ -126,7 +131,7 @@ def test_who_stays_upright_is_not_looked_at() -> None:
 def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
     legs, lowerings = wall_before_the_knees(), np.linspace(0.0, 0.7, 9)
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(legs, standing(), lambda: np.tile(lowerings, (7, 1)))
+    crouch = Crouch(legs, standing(), lambda: np.tile(lowerings, (7, 1)), nowhere)
     assert crouch.rules_out(*way(0.7), extra)
     touching = legs.clearances(np.zeros((9, 7)), lowerings) < 0.01
     assert 0 < touching.sum() < 8
@@ -137,7 +142,7 @@ def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
 def test_in_the_end_nobody_crouches() -> None:
     lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), lambda: lowerings)
+    crouch = Crouch(wall_before_the_knees(), standing(), lambda: lowerings, nowhere)
     closed = []
     for _ in range(ROUNDS - 1):
         assert crouch.rules_out(*way(0.7), extra)
@@ -154,3 +159,14 @@ def test_every_node_has_its_lowering() -> None:
     for t in range(4):
         np.testing.assert_array_equal(found[t, :5], postures[:, 2])
         assert found[t, 5:].tolist() == [goals[t, 2], previous[t, 2], start[2], max(start[2], goals[t, 2])]
+
+
+def test_who_would_lay_the_trunk_on_the_thighs_comes_up() -> None:
+    lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
+    extra = np.zeros((7, 9), np.float32)
+    free = LoweredLegs(MODEL, Obstacles())
+    crouch = Crouch(free, standing(), lambda: lowerings, lambda keys, _: keys[1:, COLUMN] > 0.55)
+    assert crouch.rules_out(*way(0.7), extra)
+    assert np.isinf(extra[3, -1])
+    assert not np.isinf(extra[0]).any()
+    assert not crouch.rules_out(*way(0.5), extra)

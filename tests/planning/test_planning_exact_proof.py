@@ -12,6 +12,7 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.memory.cache_index import begin_round
+from elbowroom.planning.exact.sweep.levers import levers_of
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
     KinematicChain,
@@ -19,13 +20,13 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
     RootSweeps,
     chain_of,
     configurations_at,
-    levers_of,
     moves_between,
     new_limb_sweeps,
     new_root_sweeps,
     root_sweeps,
 )
-from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
+from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
+from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.layout import Nearby
@@ -67,9 +68,8 @@ class Body:
             above.entries.ids[on], above.places[on], above.turns[on], above.sway[on], roots.entries.keys[root],
             roots.places[root], above.entries.keys[on],
         )  # fmt: skip
-        at, _ = limb_sweep(
-            ways, self.postures[group], self.levers[group], self.chain, carried_by, ends, near, 0.0
-        )  # fmt: skip
+        limb = MovedLimb(self.postures[group], self.levers[group], self.chain)
+        at, _ = limb_sweep(new_scratch(limb.postures, self.chain.waist, near), ways, limb, carried_by, ends, near, 0.0)
         return at
 
     def world(self, roots: Floats, waists: Floats, arms: Floats) -> tuple[Floats, Floats]:

@@ -126,6 +126,7 @@ class DofGroup(Enum):
         acceleration=60.0,  # half a radian in 0.22 s
         shares=(0.40, 0.35, 0.25),
         turned_back=("neck", "head"),
+        clear_of=("ROOT",),
         undone=0.65,  # so that the gaze stays ahead
     )
     LEFT_ARM = _arm("left", ("ROOT", "WAIST"))

@@ -22,11 +22,13 @@ from elbowroom.planning.exact.memory.previous_plan import StartState, jolts
 from elbowroom.planning.exact.plan.ongoing import leads_to
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, levers_of, new_limb_sweeps
+from elbowroom.planning.exact.sweep.levers import levers_of
+from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, new_limb_sweeps
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
-from elbowroom.planning.exact.sweep.proof import Carrier, limb_sweep
+from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
+from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
@@ -83,7 +85,8 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
     task = OwnBodyTask(previous, previous, previous[0], True, goals, around, path.states)
     own_body_costs(body.own_body_nodes(arm, postures, body.resting(arm, postures)), task)
-    OwnMotion(own_parts(model, body.pairs)).contacts(path, bent, np.zeros_like(bent), goals, 0)
+    chain = chain_of(model, limb_of(model, DofGroup.WAIST), postures.reach)
+    OwnMotion(own_parts(model, body.pairs, chain)).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
@@ -144,4 +147,5 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     carrier = Carrier(0, places, turns, np.full(SWEEP, 0.1), states, places, states)
     box = _one_box((postures.reach, 0.0, 0.0), (0.01, 0.01, 0.01)).standing
     ends = (rest[0], rest[0], rest[0], rest[0])
-    limb_sweep(ways, postures, levers_of(model, limb), chain, carrier, ends, box, 0.0)
+    moved = MovedLimb(postures, levers_of(model, limb), chain)
+    limb_sweep(new_scratch(postures, chain.waist, box), ways, moved, carrier, ends, box, 0.0)

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import ARMS, CHILDREN, DofGroup, clamp, side_by_side
+from elbowroom.body.dof import ARMS, CHILDREN, SEARCH_ORDER, DofGroup, clamp, side_by_side
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.root import ROOT_STATE
@@ -64,7 +64,9 @@ def _clear(swing: Swing, model: BodyModel, pairs: SelfPairs, lifts: Floats, ease
     keys = _changed(swing, lifts, eases)
     uppers = side_by_side(keys)[:KEYS]
     clear = self_clearances(model, pairs, roots, uppers) >= 0.0
-    beside = [[CHILDREN.index(other) for other in CHILDREN if other is arm or arm in other.clear_of] for arm in ARMS]
+    beside = [
+        [SEARCH_ORDER.index(other) for other in CHILDREN if other is arm or arm in other.clear_of] for arm in ARMS
+    ]
     return np.stack([np.logical_and.reduce(clear[rows]) for rows in beside])
 
 

@@ -3,7 +3,8 @@
 A pair of capsules may overlap by 2 cm, as capsules wrap the mesh generously and contact of their rims is no contact of
 bodies; or that much more than it does when the avatar stands and walks naturally, as some builds leave it no choice.
 So the natural walk is free for every avatar. Not looked at is what a joint holds together: the parts of one arm, the
-parts of the trunk, and an upper arm against the trunk below the neck, where its shoulder is rooted.
+parts of the trunk, the trunk against the pelvis, and an upper arm against the trunk below the neck, where its shoulder
+is rooted.
 """
 
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import CHILDREN, DOF, LOCAL, DofGroup, columns_of
+from elbowroom.body.dof import CHILDREN, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
@@ -37,7 +38,7 @@ class SelfPairs(NamedTuple):
     allowed: dict[tuple[DofGroup, DofGroup], Floats32]  # (C, K) metres: least distance of the axes; `EXEMPT`
     first: Indices  # (P,) the same as a list of all pairs that are looked at: one capsule
     second: Indices  # (P,) and the other
-    kinds: Indices  # (P,) the number among `CHILDREN` of the group that has to keep clear
+    kinds: Indices  # (P,) the number in `SEARCH_ORDER` of the group that has to keep clear
     limits: Floats32  # (P,) metres
 
     def beside(self, group: DofGroup, others: tuple[DofGroup, ...]) -> tuple[Indices, Floats32]:
@@ -65,9 +66,11 @@ def self_pairs(model: BodyModel, goals: GoalFunction | None = None) -> SelfPairs
     """Measure the natural walk of a body, or what `goals` make of it."""
     natural = _natural_walk(model, goals or natural_walk())
     capsules = {group: model.capsules_of(group).indices for group in DofGroup}
-    allowed = {(group, other): _allowed(model, natural, group, other) for group in CHILDREN for other in group.clear_of}
+    allowed = {
+        (group, other): _allowed(model, natural, group, other) for group in SEARCH_ORDER for other in group.clear_of
+    }
     listed = [
-        (capsules[group][c], capsules[other][k], CHILDREN.index(group), limit[c, k])
+        (capsules[group][c], capsules[other][k], SEARCH_ORDER.index(group), limit[c, k])
         for (group, other), limit in allowed.items()
         for c, k in np.argwhere(limit > EXEMPT)
     ]
@@ -81,7 +84,9 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
     touching = one.radii[:, None] + two.radii
     distances = np.array([[clear_pairs(natural[a], natural[b]).min() for b in two.indices] for a in one.indices])
     least: Floats32 = (np.minimum(distances, touching) - OVERLAP).astype(np.float32)
-    if other not in CHILDREN:
+    if group not in CHILDREN:
+        least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
+    elif other not in CHILDREN:
         column = model.chains[DofGroup.WAIST].column
         turned_back = column.joints[column.shares < 0.0]
         least[0, ~np.isin(two.joints, turned_back)] = EXEMPT  # its joint is rooted there
@@ -121,7 +126,7 @@ def seen_from_chest(model: BodyModel, capsules: Indices, uppers: Floats, roots: 
 
 
 def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: Floats) -> Floats32:
-    """How much nearer parts could come to each other, the nearest pair's, metres: shape (len(CHILDREN), N).
+    """How much nearer parts could come to each other, the nearest pair's, metres: shape (len(SEARCH_ORDER), N).
 
     A row holds the pairs of one group and those that it must keep clear of, for root states (N, 7) and upper bodies
     (N, LOCAL). Negative: in contact.
@@ -129,7 +134,7 @@ def self_clearances(model: BodyModel, pairs: SelfPairs, roots: Floats, uppers: F
     here = roots.copy()
     here[:, :3] = 0.0
     capsules = posture_capsules(model, _postures(uppers), here)
-    return pair_clearances(capsules, pairs.first, pairs.second, pairs.kinds, pairs.limits, len(CHILDREN))
+    return pair_clearances(capsules, pairs.first, pairs.second, pairs.kinds, pairs.limits, len(SEARCH_ORDER))
 
 
 @kernel

@@ -25,7 +25,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 )
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
-from elbowroom.planning.exact.sweep.own_motion import OwnMotion
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -48,6 +48,7 @@ class PlanCaches(NamedTuple):
     groups: Mapping[DofGroup, GroupCache]
     own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the groups that hang on the waist
     own_motion: OwnMotion
+    own_trunk: OwnMotion  # of the waist's parts alone
     horizon: int
 
     @property
@@ -72,7 +73,8 @@ def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horiz
     made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
     groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
-    return PlanCaches(groups, own_nodes, OwnMotion(model.own_parts), horizon)
+    trunk = parts_of(model.own_parts, DofGroup.WAIST)
+    return PlanCaches(groups, own_nodes, OwnMotion(model.own_parts), OwnMotion(trunk, _CACHED * horizon), horizon)
 
 
 def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:

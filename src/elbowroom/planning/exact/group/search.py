@@ -22,7 +22,8 @@ from elbowroom.planning.exact.lattice.paths import keys_into, traced
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.edges import MOST_EDGES, close_edges, close_near, promising_edges
-from elbowroom.planning.exact.sweep.proof import ENOUGH, Carrier, limb_sweep_in
+from elbowroom.planning.exact.sweep.halving import ENOUGH
+from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import Scratch, new_scratch
 from elbowroom.world.obstacles.rows import at_span
 
@@ -76,13 +77,12 @@ def _proven(
     scratch, cache, task, _, margins = question
     group, checks, harsh = cache.group, 0, False
     sweeps, interval = group.sweeps, task.interval
+    limb = MovedLimb(group.postures, group.levers, cache.chain)
     begin_round(sweeps.entries)
     for k in range(entries.shape[0]):
         a, m, b, n = keys[k], tangents[k], keys[k + 1], tangents[k + 1]
         carrier, near = _carrier(cache, task, k), at_span(task.obstacles, k)
-        at, count = limb_sweep_in(
-            scratch, sweeps, group.postures, group.levers, cache.chain, carrier, (a, m, b, n), near, margins[k]
-        )
+        at, count = limb_sweep(scratch, sweeps, limb, carrier, (a, m, b, n), near, margins[k])
         entries[k] = at
         checks += count
         much = peak_acceleration(a, m, b, n, interval) > group.acceleration

@@ -18,10 +18,10 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, chain_of, levers_of
+from elbowroom.planning.exact.sweep.levers import levers_of
+from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, chain_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
-from elbowroom.planning.exact.sweep.own_motion import own_parts
-from elbowroom.planning.exact.sweep.own_samples import OwnParts
+from elbowroom.planning.exact.sweep.own_motion import OwnParts, own_parts
 from elbowroom.planning.goal import GoalFunction, natural_walk
 from elbowroom.planning.model.limb import Limb, limb_of, pose
 from elbowroom.planning.model.self_contact import clear_of_trunk
@@ -66,12 +66,12 @@ class UpperBodyModel:
         """Measure an avatar that has learnt `motions`; takes a tenth of a second. `upper_body_model` shares it."""
         body, goals = body_model(humanoid), natural_walk(motions)
         limbs = {group: limb_of(body, group) for group in LOCAL_GROUPS}
-        points = {group: _points(limb, motions.clips(group), settings) for group, limb in limbs.items()}
-        reaches = {group: _reach(group, limb) for group, limb in limbs.items()}
         own_body = OwnBody(body, goals)
+        points = {group: _points(own_body, limb, motions.clips(group), settings) for group, limb in limbs.items()}
+        reaches = {group: _reach(group, limb) for group, limb in limbs.items()}
         chain = chain_of(body, limbs[DofGroup.WAIST], max(reaches[group] for group in CHILDREN))
         sets: dict[DofGroup, PostureSet] = {}
-        parts = own_parts(body, own_body.pairs)
+        parts = own_parts(body, own_body.pairs, chain)
         made = UpperBodyModel(settings, interval, body, goals, limbs, points, reaches, sets, chain, own_body, parts)
         sets |= {group: made.set_of(group, points[group]) for group in LOCAL_GROUPS}
         return made
@@ -82,7 +82,7 @@ class UpperBodyModel:
         postures = postures_of(limb, points, settings.mean_speed_of(group) * self.interval)
         postures = postures._replace(reach=self.reaches[group])
         resting = np.zeros(postures.moves.shape[1], np.bool_)
-        if group.clear_of:
+        if group in CHILDREN:
             resting = self.own_body.resting(group, postures)
         speed, acceleration = settings.speed_of(group), settings.acceleration_of(group)
         return PostureSet(postures, levers_of(self.body, limb), limits(group), speed, acceleration, resting)
@@ -105,11 +105,13 @@ def _reach(group: DofGroup, limb: Limb) -> float:
     return float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE
 
 
-def _points(limb: Limb, clips: tuple[MotionClip, ...], settings: ExactSettings) -> Floats:
-    """The postures of a group: those of its clips that keep clear of the trunk."""
+def _points(own: OwnBody, limb: Limb, clips: tuple[MotionClip, ...], settings: ExactSettings) -> Floats:
+    """The postures of a group: those of its clips that keep clear of the trunk, or the trunk of the thighs."""
     samples = settings.samples_of(clips[0].group)
 
     def accept(configurations: Floats) -> Bools:
+        if clips[0].group is DofGroup.WAIST:
+            return ~own.folded(configurations)
         return clear_of_trunk(pose(limb, configurations), limb.trunk, limb.allowed)
 
     return ActivityGraph.from_clips(clips, samples, 1.0, 1024, accept).vertices.copy()

@@ -15,14 +15,14 @@ Floats = NDArray[np.float64]
 def drawn_postures(group: DofGroup, around: Floats, count: int, spread: float) -> Floats:
     """`count` postures (count, d) within the limits: one half all over, the other within `spread` of `around` (d,)."""
     low, high = limits(group).T
-    even = _even(count, group.size)
+    even = evenly_spread(count, group.size)
     half = count // 2
     everywhere = low + even[:half] * (high - low)
     nearby = around + spread * (2.0 * even[half:] - 1.0)
     return clamp(group, np.concatenate([nearby, everywhere]))
 
 
-def _even(count: int, size: int) -> Floats:
+def evenly_spread(count: int, size: int) -> Floats:
     """Points (count, size) of the additive recurrence with the powers of the generalised golden ratio."""
     ratio = 2.0
     for _ in range(60):

@@ -64,8 +64,11 @@ class ChildSearch:
             contact = self._self_contact(found)
             if contact is None:
                 return found
-            first, touching, whole = *contact, True
-            self._remember(paths, *contact)
+            number, touching = contact
+            if number == 0:
+                return GroupPaths((), waist, touching)
+            first, whole = number - 1, True
+            self._remember(paths, number, touching)
         return GroupPaths(tuple(paths[:-1]), paths[-1], touching)
 
     def _path(
@@ -116,15 +119,15 @@ class ChildSearch:
             around[:, columns_of(group)] = path.keys
         return around
 
-    def _remember(self, paths: list[GroupPath], child: int, interval: int) -> None:
+    def _remember(self, paths: list[GroupPath], number: int, interval: int) -> None:
         """Remember what a child did at both ends of an interval in which it ran into the body."""
-        around = self._around(paths[: 1 + child])
+        around = self._around(paths[:number])
         for t in range(max(interval, 1), interval + 2):
-            posture = paths[1 + child].keys[t].copy()
-            self._contacts.append(Contact(CHILDREN[child], t, around[t], posture))
+            posture = paths[number].keys[t].copy()
+            self._contacts.append(Contact(SEARCH_ORDER[number], t, around[t], posture))
 
     def _self_contact(self, found: GroupPaths) -> tuple[int, int] | None:
-        """The child and the first interval in which the shown motion runs into the body, or None."""
+        """The group, by its number, and the first interval in which its motion runs into the body, or None."""
         problem, keys, rates = self._problem, found.keys, found.velocities
-        children = self._caches.own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
-        return next(((child, k) for k, child in enumerate(children.tolist()) if child >= 0), None)
+        groups = self._caches.own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        return next(((group, k) for k, group in enumerate(groups.tolist()) if group >= 0), None)

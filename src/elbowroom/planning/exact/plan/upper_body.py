@@ -138,6 +138,6 @@ class UpperBodyPlanner:
                 here = blocked._replace(depth=depth, goal=search.goals[depth, columns_of(group)])
                 known = Known(group, model.limbs[group], model.reaches[group], self.memory.known(group))
                 if number == 0:
-                    yield group, waists_for(known, here, self._refinement)
+                    yield group, waists_for(model.own_body, known, here, self._refinement)
                 else:
                     yield group, children_for(model.own_body, known, here, self._refinement)

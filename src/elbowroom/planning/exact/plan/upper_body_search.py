@@ -228,7 +228,13 @@ class UpperBodySearch:
             lanes[: len(postures.configurations)] = postures.configurations
             return node_lowerings(lanes, self.goals[:, at], previous, self.problem.begins.upper[at])
 
-        crouch = Crouch(self.legs, self.path, lowerings)
+        def folds(keys: Floats, velocities: Floats) -> Bools:
+            uppers, rates = self.goals.copy(), np.zeros_like(self.goals)
+            uppers[:, at], rates[:, at] = keys, velocities
+            begin = self.problem.begins.ahead
+            return self.caches.own_trunk.contacts(self.path, uppers, rates, self.goals, begin) >= 0
+
+        crouch = Crouch(self.legs, self.path, lowerings, folds)
         for attempt in range(ROUNDS):
             way = self._search(closed, follow)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):

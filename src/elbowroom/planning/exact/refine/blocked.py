@@ -42,7 +42,7 @@ class Known(NamedTuple):
     postures: Floats  # (V, d) that it has already
 
 
-def waists_for(known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
+def waists_for(body: OwnBody, known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
     """Waist postures (k, d) that are free in a blocked slice and unlike those that are known."""
     limb = known.limb
     drawn = drawn_postures(known.group, blocked.goal, settings.drawn, settings.near)
@@ -51,7 +51,7 @@ def waists_for(known: Known, blocked: Blocked, settings: RefinementSettings) -> 
     clear, _ = clearances_under(
         lanes, places, turns, span_of(blocked.around.obstacles, blocked.depth), np.ones(1, np.bool_)
     )
-    free = clear[0, : len(drawn)] >= blocked.margin
+    free = (clear[0, : len(drawn)] >= blocked.margin) & ~body.folded(drawn)
     return _worth(drawn, free, known.postures, blocked.goal, settings)
 
 

@@ -1,8 +1,9 @@
 """Crouching only where the legs have room: what a way of the waist does to them is checked, and ruled out where wrong.
 
-Most ways do not crouch at all, and cost nothing here. Of one that does, the shown motion of the legs is checked. Where
-they touch, every posture is looked at around every key time, once for the path; where that does not help, because they
-touch between key times, postures that crouch as deep are ruled out there, and at last all crouching.
+Most ways do not crouch at all, and cost nothing here. Of one that does, the shown motion of the legs is checked, and
+that the trunk keeps off the thighs. Where legs touch what stands about, every posture is looked at around every key
+time, once for the path; where that does not help, because they touch between key times, or under the trunk, postures
+that crouch as deep are ruled out there, and at last all crouching.
 """
 
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
 
 _COLUMN = LOWERING - DofGroup.WAIST.at.start
 _MARGIN = (
@@ -30,9 +32,18 @@ _SHALLOWER = 0.1  # half leg lengths by which to come up where legs touch betwee
 class Crouch:
     """The lowerings of one waist's search along one root path, and which of them the legs cannot follow."""
 
-    def __init__(self, legs: LoweredLegs, path: RootPath, lowerings: Callable[[], Floats]) -> None:
-        """`lowerings` gives those of all nodes of the search, (n+1, V)."""
-        self._legs, self._path, self._lowerings = legs, path, lowerings
+    def __init__(
+        self,
+        legs: LoweredLegs,
+        path: RootPath,
+        lowerings: Callable[[], Floats],
+        folds: Callable[[Floats, Floats], Bools],
+    ) -> None:
+        """`lowerings` gives those of all nodes of the search, (n+1, V).
+
+        `folds` tells in which key intervals (n,) a way lays the trunk on the thighs.
+        """
+        self._legs, self._path, self._lowerings, self._folds = legs, path, lowerings, folds
         self._known: Floats | None = None
         self._round = 0
         self._margin: float | None = None
@@ -45,18 +56,19 @@ class Crouch:
         if self._margin is None:
             now = self._legs.clearances(self._path.states[:1], deep[:1])
             self._margin = min(_MARGIN, max(0.5 * float(now[0]), 0.0))
-        blocked = np.flatnonzero(self._legs.blocked_intervals(self._path, deep, rates, self._margin))
-        if not len(blocked):
+        blocked = self._legs.blocked_intervals(self._path, deep, rates, self._margin)
+        folded = self._folds(keys, velocities)
+        if not (blocked | folded).any():
             return False
         self._round += 1
         if self._known is None:
             self._known = self._lowerings()
-        if self._round == 1:
+        if self._round == 1 and blocked.any():
             extra[self._legs.blocked_nodes(self._path, self._known, self._margin)] = np.inf
         elif self._round == ROUNDS - 1:
             extra[1:][self._known[1:] > _UPRIGHT] = np.inf
         else:
-            self._come_up(blocked, deep, self._known, extra)
+            self._come_up(np.flatnonzero(blocked | folded), deep, self._known, extra)
         return True
 
     def _come_up(self, blocked: NDArray[np.intp], deep: Floats, lowerings: Floats, extra: Floats32) -> None:

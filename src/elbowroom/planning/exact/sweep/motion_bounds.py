@@ -1,11 +1,9 @@
 """How frames and limbs go through one key interval, and how far any point of them can get between two looks.
 
 A **root way** is the pelvis frame at the looks, SWEEP parts of the interval; a **limb way** is what a limb does there.
-`sway` is a length: no point that is carried, within `span` of the frame, moves farther in that part.
-
-Points on rigid links: a point at distance r from the axis of a joint that turns at the rate w moves at most at r w;
-speeds of joints along a chain add up; a frame's own speed is added. Rates are bounded over a part from those at its
-ends: a cubic's rate is a parabola, which leaves the chord of its ends by at most |jerk| h^2 / 8.
+`sway` is a length: no point that is carried, within `span` of the frame, moves farther in that part. What a limb adds
+is its levers times its moves: what its components change at most in that part. Rates are bounded over a part from those
+at its ends: a cubic's rate is a parabola, which leaves the chord of its ends by at most |jerk| h^2 / 8.
 """
 
 from typing import NamedTuple
@@ -13,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import hips_sinks, quickness, walk_into
+from elbowroom.body.gait import quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
-from elbowroom.planning.model.frames import compose_into
-from elbowroom.planning.model.limb import Limb, LimbScratch
+from elbowroom.planning.exact.sweep.levers import MOVES, ROTATION, lift_of
+from elbowroom.planning.model.limb import Limb
 from elbowroom.planning.root.path import interpolate_between, rates_at
 
 Floats = NDArray[np.float64]
@@ -28,7 +26,6 @@ Ends = tuple[Floats, Floats, Floats, Floats]  # posture, velocity, posture, velo
 
 SWEEP = 12  # parts of a key interval between two looks
 _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is smaller
-_ROTATION = 1.15  # a rotation vector of up to 1.7 rad changes at most so much faster than the rotation turns
 
 
 class KinematicChain(NamedTuple):
@@ -92,67 +89,18 @@ def chain_of(model: BodyModel, waist: Limb, reach: float) -> KinematicChain:
     column = waist.chain.column
     spine, shares = column.joints[column.shares > 0.0], column.shares[column.shares > 0.0]
     stem = _stretch(model.offsets, spine)
-    lever = _ROTATION * sum(
+    lever = ROTATION * sum(
         float(share) * (_stretch(model.offsets, spine[i + 1 :]) + reach) for i, share in enumerate(shares)
     )
     span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + reach
     gait = model.gait
     return KinematicChain(
-        gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, _lift(model)
+        gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, lift_of(model)
     )
-
-
-def _lift(model: BodyModel) -> float:
-    """How far the hips move, down and back, for a unit of lowering, metres."""
-    return float(np.linalg.norm(hips_sinks(model.gait.half_leg, np.zeros(1), np.ones(1))))
 
 
 def _stretch(offsets: Floats, joints: NDArray[np.int64]) -> float:
     return sum(float(np.linalg.norm(offsets[joint])) for joint in joints)
-
-
-def levers_of(model: BodyModel, limb: Limb) -> Floats:
-    """Bounds (C, 3) on the speed of any point of a capsule's axis in the carrier's frame, m/s for each unit of rate.
-
-    The columns belong to the rate of the first two components together, of the third and of the fourth. Waist: bend
-    and twist turn each spine joint by its part, neck and head back by theirs; the third lowers all. Arm: the
-    swing turns it about the shoulder, the third component about the upper arm's own axis, the fourth about the elbow.
-    """
-    return _arm_levers(model, limb) if limb.chain.is_arm else _column_levers(model, limb)
-
-
-def _column_levers(model: BodyModel, limb: Limb) -> Floats:
-    chain = limb.chain
-    levers = np.zeros((len(chain.joints), 3))
-    levers[:, 1] = _lift(model) if chain.carries else 0.0
-    turning = dict(zip(chain.column.joints.tolist(), np.abs(chain.column.shares).tolist(), strict=True))
-    for c, joint in enumerate(chain.joints):
-        ends = chain.ends[c].reshape(2, 3)
-        far, speed, at = float(np.linalg.norm(ends, axis=1).max()), 0.0, int(joint)
-        while at != chain.start:
-            speed += turning.get(at, 0.0) * far
-            far += float(np.linalg.norm(model.offsets[at]))
-            at = int(model.parents[at])
-        levers[c, 0] = _ROTATION * speed
-    return levers
-
-
-def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
-    chain = limb.chain
-    levers = np.zeros((len(chain.joints), 3))
-    shoulder, elbow = int(chain.arm.joints[0]), int(chain.arm.joints[1])
-    forearm = model.offsets[elbow]
-    for c, joint in enumerate(chain.joints):
-        ends = chain.ends[c].reshape(2, 3)
-        far, at = float(np.linalg.norm(ends, axis=1).max()), int(joint)
-        if at == shoulder:
-            levers[c] = far, float(np.hypot(ends[:, 1], ends[:, 2]).max()), 0.0
-            continue
-        while at != elbow:
-            far += float(np.linalg.norm(model.offsets[at]))
-            at = int(model.parents[at])
-        levers[c] = np.linalg.norm(forearm) + far, np.hypot(forearm[1], forearm[2]) + far, far
-    return levers
 
 
 @exact_kernel
@@ -291,21 +239,31 @@ def moves_between(ends: Ends, interval: float, count: int) -> Floats:
 
 
 @exact_kernel
-def carry(
-    chain: KinematicChain,
-    waist: LimbScratch,
-    moved: Floats,
-    places: Floats,
-    turns: Floats,
-    sway: Floats,
-    chest: Floats,
-    chest_turns: Floats,
-    chest_sway: Floats,
-) -> None:
-    """The chest's frames in the world and its sway, for a posed `waist` on pelvis frames (N, 3), (N, 4) and their sway.
+def stride_moves(a: Floats, b: Floats, interval: float, count: int) -> Floats:
+    """What a root's stride changes at most in each of `count` equal parts of a key interval, (count, 3).
 
-    They are written to `chest` (N, 3), `chest_turns` (N, 4) and `chest_sway` (N-1,).
+    Its velocity over the ground in its own axes (m/s), its turning rate (rad/s), its phase.
     """
-    compose_into(places, turns, waist.places, waist.turns, places.shape[0], chest, chest_turns)
-    for i in range(sway.shape[0]):
-        chest_sway[i] = sway[i] + chain.lever * moved[i, 0] + chain.lift * moved[i, 1]
+    moved, part = np.empty((count, MOVES)), interval / count
+    ax, az, bx, bz, first, last = rates_at(a, b)
+    jerk_x, jerk_z = _jerk(a[0], ax, b[0], bx, interval), _jerk(a[1], az, b[1], bz, interval)
+    jerk_turn, bend = _jerk(a[2], a[5], b[2], b[5], interval), part * part / 8.0
+    x, z, turn = (bx - ax) / interval, (bz - az) / interval, (b[5] - a[5]) / interval
+    speed, acceleration, spin, twist, done = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(count + 1):
+        t = i * part
+        off = t - 0.5 * interval  # a cubic's second derivative is its mean in the middle
+        before, pushed, span, wound, passed = speed, acceleration, spin, twist, done
+        speed = np.hypot(ax + t * (x + 0.5 * jerk_x * (t - interval)), az + t * (z + 0.5 * jerk_z * (t - interval)))
+        acceleration = np.hypot(x + jerk_x * off, z + jerk_z * off)
+        spin, twist = abs(a[5] + t * (turn + 0.5 * jerk_turn * (t - interval))), abs(turn + jerk_turn * off)
+        done = i / count
+        if first + last > 0.0:
+            done = done * (2.0 * first + (last - first) * done) / (first + last)
+        if i > 0:
+            ground = max(speed, before) + np.hypot(jerk_x, jerk_z) * bend
+            turning = max(spin, span) + abs(jerk_turn) * bend
+            moved[i - 1, 0] = part * (max(acceleration, pushed) + ground * turning)
+            moved[i - 1, 1] = part * max(twist, wound)
+            moved[i - 1, 2] = abs(b[6] - a[6]) * (done - passed)
+    return moved

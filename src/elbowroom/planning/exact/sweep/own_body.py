@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, DofGroup
+from elbowroom.body.dof import LOCAL, SEARCH_ORDER, DofGroup
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.whole_body import whole_body
@@ -19,7 +19,14 @@ from elbowroom.planning.exact.memory.row_contents import CONTENT
 from elbowroom.planning.exact.memory.row_index import new_row_index
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, OwnBodyNodes, touches_body
 from elbowroom.planning.goal import GoalFunction
-from elbowroom.planning.model.self_pairs import SelfPairs, neighbours_of, seen_from_chest, self_pairs
+from elbowroom.planning.model.self_pairs import (
+    SelfPairs,
+    neighbours_of,
+    seen_from_chest,
+    self_clearances,
+    self_pairs,
+    with_waist,
+)
 from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
@@ -53,13 +60,21 @@ class OwnBody:
 
     def resting(self, group: DofGroup, postures: Postures) -> Bools:
         """Which postures (W,) touch the body at some phase of the natural walk, all other groups being natural."""
-        states = np.zeros((_PHASES + 1, ROOT_STATE))
-        states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
+        states = _walking()
         natural = self._goals(RootPath(0.0, 1.0, states))
         parts = self.parts(group, neighbours_of(group), natural, states)
         found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
         touching: Bools = np.any(found, axis=0)
         return touching
+
+    def folded(self, waists: Floats) -> Bools:
+        """Which waists (V, d) lay the trunk on the thighs at some phase of the natural walk."""
+        states, uppers = _walking(), with_waist(waists)
+        gaps = self_clearances(
+            self.model, self.pairs, np.tile(states, (len(waists), 1)), np.repeat(uppers, len(states), axis=0)
+        )[SEARCH_ORDER.index(DofGroup.WAIST)]
+        found: Bools = gaps.reshape(len(waists), -1).min(axis=1) < SPARE
+        return found
 
     def own_body_nodes(self, group: DofGroup, postures: Postures, resting: Bools) -> OwnBodyNodes:
         """What a group is held against with `postures`, for `own_body_costs`; nothing checked yet.
@@ -72,3 +87,10 @@ class OwnBody:
             new_row_index(_REMEMBERED, CONTENT + LOCAL),
             np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
         )  # fmt: skip
+
+
+def _walking() -> Floats:
+    """Root states (N, 7) of a stand and of a walk at several phases."""
+    states = np.zeros((_PHASES + 1, ROOT_STATE))
+    states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
+    return states

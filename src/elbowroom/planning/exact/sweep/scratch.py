@@ -21,17 +21,6 @@ from elbowroom.world.obstacles.rows import shift, unfilled
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-Longs = NDArray[np.int64]
-
-HALVINGS = 4  # of the parts of a key interval in a proof
-
-
-class Parts(NamedTuple):
-    """Parts of an interval that are not proven yet, in two sets that take turns."""
-
-    at: Floats  # (2, N) where they begin
-    sample: Longs  # (2, N) the look before them
-    ends: Floats32  # (2, N, 2, C) clearances at both their ends
 
 
 class Scratch(NamedTuple):
@@ -60,13 +49,12 @@ class Scratch(NamedTuple):
     rates: Floats  # (SWEEP+2, 4) of the joints at the looks; the last row is for their jerks
     key: Floats  # (1 + 4 d,) of a limb's way
     axis: Floats  # (6,) of a capsule
-    parts: Parts
 
 
 @exact_kernel
 def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
     """Room for a search among `postures` on the waist's limb `stem`, past no more than these obstacles."""
-    limb, scratch = postures.limb, SWEEP << HALVINGS
+    limb = postures.limb
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
     checks = clearance_scratch(postures.lanes.shape[0] * count, count, obstacles)
     spread = np.empty(checks.spread.shape, np.float32)
@@ -95,7 +83,6 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
         np.empty((SWEEP + 2, 4)),
         np.empty(1 + 4 * size),
         np.empty(6),
-        Parts(np.empty((2, scratch)), np.empty((2, scratch), np.int64), np.empty((2, scratch, 2, count), np.float32)),
     )
 
 
