@@ -12,7 +12,6 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.memory.cache_index import begin_round
-from elbowroom.planning.exact.sweep.levers import levers_of
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
     KinematicChain,
@@ -27,6 +26,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 )
 from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import new_scratch
+from elbowroom.planning.model.levers import levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.layout import Nearby

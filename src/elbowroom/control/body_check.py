@@ -1,6 +1,8 @@
 """The last word before a pose is shown: how far the whole body is from every obstacle, and from every other avatar."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +10,8 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.neighbour import Neighbour
+from elbowroom.planning.halving import begun, due, settle
+from elbowroom.planning.model.levers import body_levers
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
@@ -15,13 +19,22 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_BETWEEN = np.array([0.25, 0.5, 0.75])  # at 60 frames a second: 240 poses
-_UNTIL = np.append(_BETWEEN, 1.0)
+_HALVINGS = 5  # of the time between two frames
+_LOOKS = 8  # at once
+_BOTH = np.array([0.0, 1.0])  # the frames themselves
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
     """The configuration `q` (14,) of a root state (7,) and an upper body (11,)."""
     return np.concatenate([root[:3], upper])
+
+
+class Frames(NamedTuple):
+    """Two frames that are shown one after the other."""
+
+    roots: tuple[Floats, Floats]  # (7,)
+    uppers: tuple[Floats, Floats]  # (11,)
+    times: tuple[float, float]  # seconds
 
 
 class BodyCheck:
@@ -30,7 +43,10 @@ class BodyCheck:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
-        self._obstacles = scene.obstacles
+        self._levers = body_levers(humanoid)
+        self._obstacles, moving = scene.obstacles, scene.obstacles.moving
+        self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
+        self._moving = Obstacles(moving=moving)
         self._empty = not len(scene.obstacles.shapes) and not len(scene.obstacles.moving)
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
 
@@ -64,21 +80,39 @@ class BodyCheck:
         segments = self._posed(root, upper)
         return Obstacles(moving=moving).clearance(segments, self._radii, root[:2], time)
 
-    def clearance_between(
-        self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats], times: tuple[float, float]
-    ) -> float:
-        """The least clearance, metres, of the poses that a screen shows between two frames: straight interpolants.
+    def free_between(self, frames: Frames, clearances: tuple[float, float]) -> bool:
+        """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
 
-        Where others move as they mean to, until the second frame.
+        Where others move as they mean to, until the second frame. `clearances` are those of the frames.
         """
-        looks = _UNTIL if self.others else _BETWEEN
-        root = roots[0] + looks[:, None] * (roots[1] - roots[0])
-        upper = uppers[0] + looks[:, None] * (uppers[1] - uppers[0])
-        segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, roots[0]))
-        if not self.restless:
-            return self._obstacles.clearance(segments, self._radii, roots[0][:2], times[0])
-        moments = times[0] + looks * (times[1] - times[0])
-        return min(self._least(segments[:, :, i : i + 1], roots[0], float(time)) for i, time in enumerate(moments))
+        way, first, last = self._levers.travel(frames.roots, frames.uppers), *frames.times
+        ways, gaps = [way], np.array([[clearances[0]], [clearances[1]]], np.float32)
+        if self.restless:
+            ways += [way + self._moving.moving.fastest * (last - first)]
+            ways += [way + other.travel(first, last) for other in self.others]
+            gaps = self._gaps(frames, _BOTH)
+        proof = begun(gaps, np.array([ways]), 1, 0.0, _HALVINGS)
+        parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
+        while (count := due(proof, parts, shares)) > 0:
+            settle(proof, self._gaps(frames, shares[:count]), count)
+        return bool(proof.least.min() >= 0.0)
+
+    def _gaps(self, frames: Frames, shares: Floats) -> Floats32:
+        """The clearances at shares (N,) of the time between two frames: from what stands (N, 1).
+
+        Where anything moves by itself, from that too and from each of the others (N, 2 + others).
+        """
+        (first, last), (begin, end), origin = frames.roots, frames.uppers, frames.roots[0][:2]
+        root, upper = first + shares[:, None] * (last - first), begin + shares[:, None] * (end - begin)
+        segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, first))
+        gaps = []
+        for i, time in enumerate((frames.times[0] + shares * (frames.times[1] - frames.times[0])).tolist()):
+            axes = np.ascontiguousarray(segments[:, :, i : i + 1])
+            row = [self._standing.clearance(axes, self._radii, origin, time)]
+            if self.restless:
+                row.append(self._moving.clearance(axes, self._radii, origin, time))
+            gaps.append(row + [other.clearance(axes, self._radii, origin, time) for other in self.others])
+        return np.array(gaps, np.float32)
 
     def _posed(self, root: Floats, upper: Floats) -> Floats32:
         """The capsules' axes (C, 6, 1) as seen from the root."""

@@ -12,7 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.clips.clip import Clip, motions_of
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control import steering
-from elbowroom.control.body_check import BodyCheck, configuration
+from elbowroom.control.body_check import BodyCheck, Frames, configuration
 from elbowroom.control.canned import standing_posture
 from elbowroom.control.desk import ImmediateDesk, PlanningDesk
 from elbowroom.control.errands import Errands
@@ -42,8 +42,6 @@ LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
-_FAR = 0.15  # metres of clearance that no part of the body crosses within a frame
-_FAR_MOVING = 0.6  # the same where things move by themselves
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
 
 
@@ -331,10 +329,11 @@ class Controller:
         """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
         if self._check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
-        if clearance < 0.0 or min(clearance, self._clearance) > (_FAR_MOVING if self._check.restless else _FAR):
-            return clearance >= 0.0
+        if clearance < 0.0:
+            return False
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
-        return self._check.clearance_between(roots, uppers, (self._shown_at, self._queue.time)) >= 0.0
+        frames = Frames(roots, uppers, (self._shown_at, self._queue.time))
+        return self._check.free_between(frames, (self._clearance, clearance))
 
     def _clearance_of(self, posed: Playback) -> float:
         """Of a pose, now."""

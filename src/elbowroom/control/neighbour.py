@@ -44,6 +44,12 @@ class Neighbour(NamedTuple):
         found: Floats = self.axes[k] + (place - k) * (self.axes[after] - self.axes[k])
         return found
 
+    def travel(self, first: float, last: float) -> float:
+        """No point of its body moves farther between two times, metres."""
+        times = [first, *self.times[(self.times > first) & (self.times < last)].tolist(), last]
+        ends = np.array([self.at(time) for time in times]).reshape(len(times), -1, 3)
+        return float(np.linalg.norm(np.diff(ends, axis=0), axis=2).sum(axis=0).max(initial=0.0))
+
     def clearance(self, axes: NDArray[np.float32], radii: NDArray[np.float32], origin: Floats, time: float) -> float:
         """The least distance, metres, of capsules (C, 6, 1) that lie about `origin` (x, z) from its body at a time.
 

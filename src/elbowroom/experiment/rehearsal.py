@@ -22,7 +22,6 @@ from elbowroom.planning.exact.memory.previous_plan import StartState, jolts
 from elbowroom.planning.exact.plan.ongoing import leads_to
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.levers import levers_of
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, chain_of, new_limb_sweeps
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
@@ -30,6 +29,7 @@ from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
 from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.model.self_pairs import with_waist
@@ -85,8 +85,7 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
     task = OwnBodyTask(previous, previous, previous[0], True, goals, around, path.states)
     own_body_costs(body.own_body_nodes(arm, postures, body.resting(arm, postures)), task)
-    chain = chain_of(model, limb_of(model, DofGroup.WAIST), postures.reach)
-    OwnMotion(own_parts(model, body.pairs, chain)).contacts(path, bent, np.zeros_like(bent), goals, 0)
+    OwnMotion(own_parts(model, body.pairs, body_levers(humanoid))).contacts(path, bent, np.zeros_like(bent), goals, 0)
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:

@@ -90,6 +90,16 @@ class Moving:
         halves: Floats = np.array([extents_of(track.shape) for track in self.tracks]).reshape(-1, 3)
         return halves
 
+    @cached_property
+    def fastest(self) -> float:
+        """No point of any of them ever moves faster, m/s."""
+        speeds = [0.0]
+        for track in self.tracks:
+            spans, reach = np.diff(track.times), float(np.linalg.norm(extents_of(track.shape)))
+            ways = np.linalg.norm(np.diff(track.centers, axis=0), axis=1) + reach * np.abs(np.diff(track.yaws))
+            speeds.extend((ways / spans).tolist())
+        return max(speeds)
+
     def poses(self, times: ArrayLike) -> tuple[Floats, Floats]:
         """Centres (M, B, 3) and yaws (M, B) at times (M,)."""
         count = len(np.atleast_1d(times))

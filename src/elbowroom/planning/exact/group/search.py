@@ -22,9 +22,9 @@ from elbowroom.planning.exact.lattice.paths import keys_into, traced
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.edges import MOST_EDGES, close_edges, close_near, promising_edges
-from elbowroom.planning.exact.sweep.halving import ENOUGH
 from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import Scratch, new_scratch
+from elbowroom.planning.halving import ENOUGH
 from elbowroom.world.obstacles.rows import at_span
 
 Floats = NDArray[np.float64]

@@ -18,11 +18,11 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.levers import levers_of
 from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, chain_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnParts, own_parts
 from elbowroom.planning.goal import GoalFunction, natural_walk
+from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import Limb, limb_of, pose
 from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.paper.activity_graph import ActivityGraph
@@ -71,7 +71,7 @@ class UpperBodyModel:
         reaches = {group: _reach(group, limb) for group, limb in limbs.items()}
         chain = chain_of(body, limbs[DofGroup.WAIST], max(reaches[group] for group in CHILDREN))
         sets: dict[DofGroup, PostureSet] = {}
-        parts = own_parts(body, own_body.pairs, chain)
+        parts = own_parts(body, own_body.pairs, body_levers(humanoid))
         made = UpperBodyModel(settings, interval, body, goals, limbs, points, reaches, sets, chain, own_body, parts)
         sets |= {group: made.set_of(group, points[group]) for group in LOCAL_GROUPS}
         return made

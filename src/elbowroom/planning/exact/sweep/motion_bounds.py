@@ -16,7 +16,7 @@ from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
-from elbowroom.planning.exact.sweep.levers import MOVES, ROTATION, lift_of
+from elbowroom.planning.model.levers import MOVES, ROTATION, lift_of
 from elbowroom.planning.model.limb import Limb
 from elbowroom.planning.root.path import interpolate_between, rates_at
 

@@ -17,10 +17,10 @@ from elbowroom.body.whole_body import WholeBody, posed_body, whole_body
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
-from elbowroom.planning.exact.sweep.halving import ENOUGH, begun, due, settle
-from elbowroom.planning.exact.sweep.levers import MOVES, own_levers
-from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, moves_between, stride_moves
+from elbowroom.planning.exact.sweep.motion_bounds import moves_between, stride_moves
+from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.axis_distances import clear_pairs
+from elbowroom.planning.model.levers import MOVES, BodyLevers
 from elbowroom.planning.model.self_pairs import SelfPairs
 from elbowroom.planning.root.path import RootPath, interpolate_root
 
@@ -45,7 +45,7 @@ class OwnParts(NamedTuple):
     second: Indices
     kinds: Indices
     limits: Floats32
-    levers: Floats  # (P, M) as `own_levers` has them
+    levers: Floats  # (P, M) as `BodyLevers.between` has them
 
 
 class Seen(NamedTuple):
@@ -56,9 +56,9 @@ class Seen(NamedTuple):
     groups: Indices  # (S,) the number in `SEARCH_ORDER` of the group of the pair that is nearest by what is proven
 
 
-def own_parts(model: BodyModel, pairs: SelfPairs, chain: KinematicChain) -> OwnParts:
+def own_parts(model: BodyModel, pairs: SelfPairs, levers_of_body: BodyLevers) -> OwnParts:
     """The parts of a body that must not run into each other."""
-    levers = own_levers(model, pairs, np.array([chain.lever, chain.lift, 0.0]))
+    levers = levers_of_body.between(pairs.first, pairs.second, model.roots.indices)
     return OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits, levers)
 
 

@@ -13,8 +13,6 @@ from elbowroom.body.posing import place_pelvis_into
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import admit, find
-from elbowroom.planning.exact.sweep.halving import ENOUGH, begun, due, settle
-from elbowroom.planning.exact.sweep.levers import MOVES
 from elbowroom.planning.exact.sweep.motion_bounds import (
     SWEEP,
     Ends,
@@ -24,7 +22,9 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
     moves_into,
 )
 from elbowroom.planning.exact.sweep.scratch import Scratch, held_against
+from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.frames import compose_into
+from elbowroom.planning.model.levers import MOVES
 from elbowroom.planning.model.limb import carry_frames, pose_into
 from elbowroom.planning.root.path import interpolate_between, rates_at
 from elbowroom.world.obstacles.blocks import COMFORT, least_of

@@ -41,7 +41,7 @@ class Proof(NamedTuple):
     each: int  # parts of a row: where a pair touches in one of them, the others are not looked into any more
     enough: float  # metres
     depth: int  # how often a part may be halved
-    least: Floats  # (B, R) metres: no gap is less, as far as pieces are settled; negative where little is known
+    least: Floats  # (B, R) metres: no gap is less; in rows that are lost one of them is too little, the others unknown
     gaps: Floats32  # (N, R) metres, at all looks
     part: Longs  # (M,) of each piece, and
     begin: Floats  # (M,) where in it the piece begins,

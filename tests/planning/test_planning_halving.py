@@ -1,0 +1,199 @@
+"""The one proof: against dense looks at all kinds of pairs, random intervals; and how far points move at most."""
+
+import coal
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, clamp, columns_of
+from elbowroom.body.kinematics import body_model, pelvis_frames, posture_capsules
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.control.body_check import BodyCheck, Frames
+from elbowroom.control.neighbour import Neighbour
+from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
+from elbowroom.planning.halving import ENOUGH, begun, due, settle
+from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.root.path import interpolate_root
+from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+DENSE = 2000  # looks in an interval
+HUMANOID = proportional_humanoid(1.72)
+MODEL = body_model(HUMANOID)
+LEVERS = body_levers(HUMANOID)
+RADII = HUMANOID.capsules.radii
+FRAME = 1 / 60
+
+
+def proven(ways: Floats, shares: Floats, each: int, depth: int) -> Floats:
+    """What is proven of gaps (N, R) of points that go to and fro on lines, at increasing `shares` (N,)."""
+    parts = each * 2
+
+    def gaps_at(times: Floats) -> NDArray[np.float32]:
+        return np.stack([np.interp(times, shares, way) for way in ways.T], axis=1).astype(np.float32)
+
+    looks = np.concatenate([np.linspace(0.0, 0.5, each + 1), np.linspace(0.5, 1.0, each + 1)])
+    lengths = np.empty((parts, ways.shape[1]))
+    for b in range(parts):
+        inside = np.linspace(b / parts, (b + 1) / parts, 50 * len(shares) + 1)
+        rates = np.abs(np.diff(gaps_at(inside).astype(np.float64), axis=0)).max(axis=0) * (len(inside) - 1)
+        lengths[b] = 1.01 * rates + 1e-6
+    proof = begun(gaps_at(looks), lengths, each, ENOUGH, depth)
+    found, where = np.empty(5, np.int64), np.empty(5)
+    while (count := due(proof, found, where)) > 0:
+        settle(proof, gaps_at((found[:count] + where[:count]) / parts), count)
+    return np.asarray(proof.least.reshape(2, -1).min(axis=1))
+
+
+@given(st.integers(0, 10**6), st.integers(1, 3), st.integers(1, 5))
+def test_no_gap_is_less_than_what_is_proven(seed: int, each: int, depth: int) -> None:
+    rng = np.random.default_rng(seed)
+    shares = np.sort(np.concatenate([[0.0, 1.0], rng.uniform(0.0, 1.0, 4)]))
+    ways = rng.uniform(-0.01, 0.1, (6, rng.integers(1, 4)))
+    least = np.stack([np.interp(np.linspace(0, 1, DENSE + 1), shares, way) for way in ways.T]).min(axis=0)
+    halves = least[: DENSE // 2 + 1].min(), least[DENSE // 2 :].min()
+    bound = proven(ways, shares, each, depth)
+    assert np.all((bound < ENOUGH) | (bound <= np.array(halves) + 1e-6))
+
+
+def test_what_keeps_apart_is_proven_at_some_depth_and_what_touches_never() -> None:
+    shares, ways = np.array([0.0, 0.2, 1.0]), np.array([[0.1, 0.002, 0.1]]).T
+    assert proven(ways, shares, 1, 1).min() < ENOUGH
+    assert proven(ways, shares, 1, 9).min() >= ENOUGH
+    assert proven(ways - 0.002, shares, 1, 12).min() < ENOUGH
+
+
+def random_roots(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    first = np.zeros(7)
+    first[3:7] = rng.uniform(-1.0, 2.2), rng.uniform(-0.6, 0.6), rng.uniform(-2.0, 2.0), rng.uniform(0.0, 1.0)
+    last = first.copy()
+    last[1] += 0.15 * first[3]
+    last[2] += 0.15 * first[5]
+    last[3:6] += rng.uniform(-0.4, 0.4, 3)
+    last[6] += rng.uniform(0.0, 0.25)
+    return first, last
+
+
+def random_upper(rng: np.random.Generator) -> Floats:
+    upper = np.empty(LOCAL)
+    for group in LOCAL_GROUPS:
+        upper[columns_of(group)] = clamp(group, rng.uniform(-0.5, 1.0, group.size))
+    return upper
+
+
+def body_ends(roots: Floats, uppers: Floats) -> Floats:
+    """The ends (C, 2, 3, N) of all capsules."""
+    ends: Floats = posture_capsules(MODEL, np.hstack([roots[:, :3], uppers]), roots).astype(np.float64)
+    return ends.reshape(len(ends), 2, 3, -1)
+
+
+def longest(ends: Floats) -> Floats:
+    """How far the end of each capsule (C,) that goes farther goes, along its way."""
+    ways: Floats = np.linalg.norm(np.diff(ends, axis=3), axis=2).sum(axis=2).max(axis=1)
+    return ways
+
+
+def test_legs_move_no_farther_than_their_levers_say() -> None:
+    rng, shares, legs = np.random.default_rng(0), np.linspace(0.0, 1.0, 301), MODEL.roots.indices
+    nearest = 0.0
+    for n in range(150):
+        a, b = random_roots(rng)
+        roots = np.array([interpolate_root(a, b, u, 0.15) for u in shares])
+        roots[:, :3] = 0.0
+        uppers, lowered = np.zeros((len(shares), LOCAL)), rng.uniform(0.0, 0.7, 2) * (n % 3 > 0)
+        uppers[:, 2] = lowered[0] + shares * (lowered[1] - lowered[0])
+        heights = pelvis_frames(MODEL, roots)[0].T
+        ways = longest(body_ends(roots, uppers)[legs] - heights)
+        stride = stride_moves(a, b, 0.15, 3).sum(axis=0)
+        bounds = LEVERS.from_pelvis[legs, -3:] @ stride + LEVERS.from_pelvis[legs, 1] * np.ptp(lowered)
+        assert np.all(ways <= bounds + 1e-4)
+        assert np.abs(np.diff(heights[1])).sum() <= LEVERS.bob[-3:] @ stride + 1e-6
+        nearest = max(nearest, float((ways[1:] / np.maximum(bounds[1:], 1e-3)).max()))
+    assert nearest > 0.3  # the bound says something
+
+
+def random_frames(rng: np.random.Generator) -> Frames:
+    first, last = random_roots(rng)
+    root, upper = first + FRAME / 0.15 * (last - first), random_upper(rng)
+    return Frames((first, root), (upper, upper + rng.uniform(-0.1, 0.1, LOCAL)), (0.0, FRAME))
+
+
+def between(frames: Frames, shares: Floats) -> tuple[Floats, Floats]:
+    (a, b), (m, n) = frames.roots, frames.uppers
+    return a + shares[:, None] * (b - a), m + shares[:, None] * (n - m)
+
+
+def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said() -> None:
+    rng, nearest = np.random.default_rng(1), 0.0
+    for _ in range(60):
+        frames = random_frames(rng)
+        way = longest(body_ends(*between(frames, np.linspace(0.0, 1.0, 200)))).max()
+        bound = LEVERS.travel(frames.roots, frames.uppers)
+        assert way <= bound + 1e-5
+        nearest = max(nearest, float(way / bound))
+    assert nearest > 0.3
+
+
+def capsule(axis: Floats, radius: float) -> tuple[coal.Capsule, coal.Transform3s]:
+    """A capsule of the other library about an axis (2, 3)."""
+    along = axis[1] - axis[0]
+    length = float(np.linalg.norm(along))
+    turn = coal.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), along / length).toRotationMatrix()
+    return coal.Capsule(float(radius), length), coal.Transform3s(turn, 0.5 * (axis[0] + axis[1]))
+
+
+def judged(mine: Floats, theirs: Floats) -> float:
+    """The least distance of two avatars' capsules (C, 2, 3, N), by coal."""
+    least, result = np.inf, coal.DistanceResult()
+    for n in range(mine.shape[3]):
+        others = [capsule(axis, radius) for axis, radius in zip(theirs[..., n], RADII, strict=True)]
+        for axis, radius in zip(mine[..., n], RADII, strict=True):
+            shape, place = capsule(axis, radius)
+            for other in others:
+                least = min(least, coal.distance(shape, place, *other, coal.DistanceRequest(), result))
+    return float(least)
+
+
+@pytest.mark.parametrize("walks", [False, True])
+def test_two_avatars_shown_as_free_of_each_other_are_so_between_the_frames(walks: bool) -> None:
+    rng, shares, found = np.random.default_rng(2), np.linspace(0.0, 1.0, 41), [0, 0]
+    check = BodyCheck(HUMANOID, Scene.load("empty"))
+    for _ in range(25):
+        frames, theirs = random_frames(rng), random_frames(rng)
+        aside = rng.uniform(0.25, 0.9)
+        for root in theirs.roots:
+            root[0] += aside
+        if not walks:
+            theirs = theirs._replace(roots=(theirs.roots[0],) * 2, uppers=(theirs.uppers[0],) * 2)
+        known = body_ends(*between(theirs, shares[:: len(shares) - 1]))
+        axes = known.reshape(len(RADII), 6, -1).transpose(2, 0, 1)
+        check.others = (Neighbour(Moving(), np.array([0.0, FRAME]), axes, RADII),)
+        straight = known[..., :1] + shares * (known[..., 1:] - known[..., :1])
+        least = judged(body_ends(*between(frames, shares)), straight)
+        free = check.free_between(frames, (0.0, 0.0))
+        assert not free or least >= -2e-5
+        assert free or least < 0.01
+        found[int(free)] += 1
+    assert min(found) >= 3
+
+
+def test_what_is_shown_beside_a_wall_is_free_between_the_frames() -> None:
+    rng, shares, found = np.random.default_rng(3), np.linspace(0.0, 1.0, DENSE // 10), [0, 0]
+    check = BodyCheck(HUMANOID, Scene.load("a"))
+    for _ in range(80):
+        frames = random_frames(rng)
+        place = rng.uniform([-1.0, 0.5], [1.0, 6.0])
+        for root in frames.roots:
+            root[:2] += place
+        roots, uppers = between(frames, shares)
+        gaps = [check.clearance(root, upper, 0.0) for root, upper in zip(roots[::20], uppers[::20], strict=True)]
+        free = check.free_between(frames, (gaps[0], check.clearance(roots[-1], uppers[-1], 0.0)))
+        if free and min(gaps) < 0.05:
+            gaps = [check.clearance(root, upper, 0.0) for root, upper in zip(roots, uppers, strict=True)]
+        assert not free or min(gaps) >= -2e-5
+        assert free or min(gaps) < 0.01
+        found[int(free)] += 1
+    assert min(found) >= 3
