@@ -1,4 +1,4 @@
-"""A body against itself: arms against trunk, head, legs and each other, by the other library.
+"""A body against itself: arms against trunk, head, legs and each other, trunk against legs, by the other library.
 
 Capsules wrap the mesh generously, and some builds hold their arms against their sides. So what counts is how much
 deeper two parts are in each other than ever in the natural walk of this avatar; that is measured here, once, on poses
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.dof import ARMS, DOF
+from elbowroom.body.dof import ARMS, DOF, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
@@ -86,7 +86,10 @@ def _pairs(humanoid: Humanoid) -> NDArray[np.int64]:
         for other in rest
         if not (bones[one].endswith("UpperArm") and other in rooted)
     ]
-    return np.array(pairs + [(one, other) for one in left for other in right], np.int64)
+    pairs += [(one, other) for one in left for other in right]
+    trunk = [i for i, group in enumerate(capsules.groups) if group is DofGroup.WAIST]
+    legs = [i for i, group in enumerate(capsules.groups) if group is DofGroup.ROOT and bones[i] != "hips"]
+    return np.array(pairs + [(one, other) for one in trunk for other in legs], np.int64)
 
 
 def _natural_poses(humanoid: Humanoid) -> Posed:
