@@ -11,7 +11,7 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, clamp, columns_of
 from elbowroom.body.kinematics import body_model, pelvis_frames, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.body_check import BodyCheck, Frames
-from elbowroom.control.neighbour import Neighbour
+from elbowroom.control.neighbour import Neighbour, Walker
 from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.levers import body_levers
@@ -26,6 +26,7 @@ MODEL = body_model(HUMANOID)
 LEVERS = body_levers(HUMANOID)
 RADII = HUMANOID.capsules.radii
 FRAME = 1 / 60
+WALKER = Walker(np.zeros(2), np.zeros(2))
 
 
 def proven(ways: Floats, shares: Floats, each: int, depth: int) -> Floats:
@@ -170,7 +171,7 @@ def test_two_avatars_shown_as_free_of_each_other_are_so_between_the_frames(walks
             theirs = theirs._replace(roots=(theirs.roots[0],) * 2, uppers=(theirs.uppers[0],) * 2)
         known = body_ends(*between(theirs, shares[:: len(shares) - 1]))
         axes = known.reshape(len(RADII), 6, -1).transpose(2, 0, 1)
-        check.others = (Neighbour(Moving(), np.array([0.0, FRAME]), axes, RADII),)
+        check.others = (Neighbour(WALKER, Moving(), np.array([0.0, FRAME]), axes, RADII),)
         straight = known[..., :1] + shares * (known[..., 1:] - known[..., :1])
         least = judged(body_ends(*between(frames, shares)), straight)
         free = check.free_between(frames, (0.0, 0.0))

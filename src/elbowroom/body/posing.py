@@ -32,9 +32,10 @@ def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
 
 @helper
 def _offset(
-    q: Floats, j: int, x: float, y: float, z: float, base: Floats, i: int, out: Floats, k: int, at: int
+    q: Floats, j: int, arm: tuple[float, float, float], base: Floats, i: int, out: Floats, k: int, at: int
 ) -> None:
-    """out[k, at:at+3] = base[i] + (x, y, z) rotated by q[j]."""
+    """out[k, at:at+3] = base[i] + the vector `arm` rotated by q[j]."""
+    x, y, z = arm
     qx, qy, qz, qw = q[j, 0], q[j, 1], q[j, 2], q[j, 3]
     tx, ty, tz = 2.0 * (qy * z - qz * y), 2.0 * (qz * x - qx * z), 2.0 * (qx * y - qy * x)
     out[k, at] = base[i, 0] + x + qw * tx + qy * tz - qz * ty
@@ -147,10 +148,8 @@ def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rot
     for i in range(len(order)):
         joint = order[i]
         parent = parents[joint]
-        _offset(
-            rotations, parent, offsets[joint, 0], offsets[joint, 1], offsets[joint, 2], places, parent, places, joint,
-            _FIRST,
-        )  # fmt: skip
+        arm = offsets[joint, 0], offsets[joint, 1], offsets[joint, 2]
+        _offset(rotations, parent, arm, places, parent, places, joint, _FIRST)
         _product(rotations, parent, local, joint, rotations, joint)
 
 
@@ -161,8 +160,8 @@ def _segments(
     """Capsule end points of posture `n` into out (C, 6, N); `row` (1, 6) is scratch."""
     for c in range(len(joints)):
         j = joints[c]
-        _offset(rotations, j, ends[c, 0], ends[c, 1], ends[c, 2], places, j, row, _FIRST, _FIRST)
-        _offset(rotations, j, ends[c, 3], ends[c, 4], ends[c, 5], places, j, row, _FIRST, _OTHER_END)
+        _offset(rotations, j, (ends[c, 0], ends[c, 1], ends[c, 2]), places, j, row, _FIRST, _FIRST)
+        _offset(rotations, j, (ends[c, 3], ends[c, 4], ends[c, 5]), places, j, row, _FIRST, _OTHER_END)
         for i in range(6):
             out[c, i, n] = row[0, i]
 

@@ -83,6 +83,34 @@ def _turned(m: Matrix, x: float, y: float, z: float) -> Vector:
     return m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z, m[6] * x + m[7] * y + m[8] * z
 
 
+@helper
+def _box_at(rows: Floats32, at: Any) -> tuple[Vector, Matrix, Vector]:
+    """Centre, axes and half lengths of the box whose row begins at a place."""
+    return (
+        (rows[at], rows[at + 1], rows[at + 2]),
+        (
+            rows[at + 3], rows[at + 4], rows[at + 5],
+            rows[at + 6], rows[at + 7], rows[at + 8],
+            rows[at + 9], rows[at + 10], rows[at + 11],
+        ),
+        (rows[at + 12], rows[at + 13], rows[at + 14]),
+    )  # fmt: skip
+
+
+@helper
+def _square(tiles: Floats32, at: Any, box: tuple[Vector, Matrix, Vector]) -> Any:
+    """Squared distance of the axis at a place of the tiles from a box."""
+    centre, matrix, half = box
+    ax, ay, az = tiles[at], tiles[at + _LANES], tiles[at + np.uint64(2) * _LANES]
+    bx, by, bz = (
+        tiles[at + np.uint64(3) * _LANES],
+        tiles[at + np.uint64(4) * _LANES],
+        tiles[at + np.uint64(5) * _LANES],
+    )
+    start = _turned(matrix, centre[0] - ax, centre[1] - ay, centre[2] - az)
+    return _squared_distance(start, _turned(matrix, bx - ax, by - ay, bz - az), half)
+
+
 @kernel
 def lower_from_boxes(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
     """Lower the squared distances of tiles to those from boxes, for the first `count` of `pairs` of tile and row.
@@ -91,46 +119,18 @@ def lower_from_boxes(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, 
     units of their own.
     """
     for p in range(count):
-        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * ROW
-        cx, cy, cz = rows[box], rows[box + 1], rows[box + 2]
-        matrix = (
-            rows[box + 3], rows[box + 4], rows[box + 5],
-            rows[box + 6], rows[box + 7], rows[box + 8],
-            rows[box + 9], rows[box + 10], rows[box + 11],
-        )  # fmt: skip
-        half = (rows[box + 12], rows[box + 13], rows[box + 14])
+        tile, least = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES
+        box = _box_at(rows, pairs[p, 1] * ROW)
         for i in range(_LANES):
-            at = tile + i
-            ax, ay, az = tiles[at], tiles[at + _LANES], tiles[at + np.uint64(2) * _LANES]
-            bx, by, bz = (
-                tiles[at + np.uint64(3) * _LANES],
-                tiles[at + np.uint64(4) * _LANES],
-                tiles[at + np.uint64(5) * _LANES],
-            )
-            start, step = _turned(matrix, cx - ax, cy - ay, cz - az), _turned(matrix, bx - ax, by - ay, bz - az)
-            squares[least + i] = min(squares[least + i], _squared_distance(start, step, half))
+            squares[least + i] = min(squares[least + i], _square(tiles, tile + i, box))
 
 
 @kernel
 def lower_from_rounded(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
     """The same from boxes with rounded edges: spheres and capsules."""
     for p in range(count):
-        tile, least, box = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES, pairs[p, 1] * ROW
-        cx, cy, cz = rows[box], rows[box + 1], rows[box + 2]
-        matrix = (
-            rows[box + 3], rows[box + 4], rows[box + 5],
-            rows[box + 6], rows[box + 7], rows[box + 8],
-            rows[box + 9], rows[box + 10], rows[box + 11],
-        )  # fmt: skip
-        half, rounding = (rows[box + 12], rows[box + 13], rows[box + 14]), rows[box + 15]
+        tile, least = np.uint64(pairs[p, 0]) * _TILE, np.uint64(pairs[p, 0]) * _LANES
+        box, rounding = _box_at(rows, pairs[p, 1] * ROW), rows[pairs[p, 1] * ROW + 15]
         for i in range(_LANES):
-            at = tile + i
-            ax, ay, az = tiles[at], tiles[at + _LANES], tiles[at + np.uint64(2) * _LANES]
-            bx, by, bz = (
-                tiles[at + np.uint64(3) * _LANES],
-                tiles[at + np.uint64(4) * _LANES],
-                tiles[at + np.uint64(5) * _LANES],
-            )
-            start, step = _turned(matrix, cx - ax, cy - ay, cz - az), _turned(matrix, bx - ax, by - ay, bz - az)
-            distance = max(math.sqrt(_squared_distance(start, step, half)) - rounding, _ZERO)
+            distance = max(math.sqrt(_square(tiles, tile + i, box)) - rounding, _ZERO)
             squares[least + i] = min(squares[least + i], distance * distance)

@@ -24,14 +24,15 @@ _TINY: Any = np.float32(1e-20)
 
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
+Vector = tuple[float, float, float]
 
 
 @helper
-def _slope(t: Any, nx: Any, ny: Any, nz: Any, dx: Any, dy: Any, dz: Any, radius: Any, half: Any) -> Any:
+def _slope(t: Any, n: Vector, d: Vector, radius: Any, half: Any) -> Any:
     """Half the slope of the squared distance at t, times the distance from Y: that spares a division."""
-    x, y, z = nx + t * dx, ny + t * dy, nz + t * dz
+    x, y, z = n[0] + t * d[0], n[1] + t * d[1], n[2] + t * d[2]
     across = math.sqrt(x * x + z * z) + _TINY
-    return (x * dx + z * dz) * max(across - radius, _ZERO) + dy * (y - max(min(y, half), -half)) * across
+    return (x * d[0] + z * d[2]) * max(across - radius, _ZERO) + d[1] * (y - max(min(y, half), -half)) * across
 
 
 @kernel
@@ -53,7 +54,7 @@ def lower_from_cylinders(tiles: Floats32, rows: Floats32, pairs: Longs, count: i
                 )
                 low, high = state[i + np.uint64(6) * _LANES], state[i + np.uint64(7) * _LANES]
                 middle = _HALF * (low + high)
-                rising = _slope(middle, nx, ny, nz, dx, dy, dz, radius, half) > _ZERO
+                rising = _slope(middle, (nx, ny, nz), (dx, dy, dz), radius, half) > _ZERO
                 state[i + np.uint64(6) * _LANES] = low if rising else middle
                 state[i + np.uint64(7) * _LANES] = middle if rising else high
         for i in range(_LANES):
@@ -64,8 +65,8 @@ def lower_from_cylinders(tiles: Floats32, rows: Floats32, pairs: Longs, count: i
                 state[i + np.uint64(5) * _LANES],
             )
             low, high = state[i + np.uint64(6) * _LANES], state[i + np.uint64(7) * _LANES]
-            begin = _slope(low, nx, ny, nz, dx, dy, dz, radius, half)
-            end = _slope(high, nx, ny, nz, dx, dy, dz, radius, half)
+            begin = _slope(low, (nx, ny, nz), (dx, dy, dz), radius, half)
+            end = _slope(high, (nx, ny, nz), (dx, dy, dz), radius, half)
             share = max(min(-begin / max(end - begin, _TINY), _ONE), _ZERO)
             t = low + share * (high - low)
             x, y, z = nx + t * dx, ny + t * dy, nz + t * dz

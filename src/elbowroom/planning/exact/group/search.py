@@ -155,9 +155,9 @@ def _close_promising(
             if count == MOST_EDGES:
                 edges.slack[at] *= 0.5  # there are more of them: the same once again
             if count:
-                places, turns, near = carriers.places[k], carriers.turns[k], at_span(task.obstacles, k)
+                carrier, near = (carriers.places[k], carriers.turns[k]), at_span(task.obstacles, k)
                 checks += close_edges(
-                    scratch, cache.group.postures, lattice, k, pairs, count, places, turns, near, margins[k]
+                    scratch, cache.group.postures, lattice, k, pairs[:count], carrier, near, margins[k]
                 )
     return checks
 

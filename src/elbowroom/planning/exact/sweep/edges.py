@@ -100,14 +100,14 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
 
 @helper
 def _posed_between(
-    scratch: Scratch, postures: Postures, lattice: Lattice, depth: int, steps: Longs, count: int, first: int, part: int
+    scratch: Scratch, postures: Postures, lattice: Lattice, depth: int, steps: Longs, first: int, part: int
 ) -> None:
     """Sixteen steps' postures on their way, from the step `first` on, at one of the looks between, into the room.
 
-    The lanes beyond the `count` steps repeat the last.
+    The lanes beyond the steps (K, 2) repeat the last.
     """
     size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_EDGE[part], scratch.checks.lanes
-    pairs, filled = postures.pairs, min(count - first, BLOCK)
+    pairs, filled = postures.pairs, min(steps.shape[0] - first, BLOCK)
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
         pair = pairs[a, b] if a < size and b < size else -1
@@ -137,27 +137,25 @@ def close_edges(
     lattice: Lattice,
     depth: int,
     steps: Longs,
-    many: int,
-    places: Floats,
-    turns: Floats,
+    carrier: tuple[Floats, Floats],
     obstacles: Nearby,
     motion_margin: float,
 ) -> int:
-    """Close those of the first `many` steps (K, 2) that touch on the way; returns the capsules checked.
+    """Close those of the steps (K, 2) that touch on the way; returns the capsules checked.
 
-    `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are the frames that carry the limb during the interval.
+    The `carrier` are the frames that carry the limb during the interval: places (SWEEP+1, 3), turns (SWEEP+1, 4).
     """
-    out, closed, checks = scratch.found, lattice.closed[lattice.masks[depth]], 0
+    out, closed, checks, many = scratch.found, lattice.closed[lattice.masks[depth]], 0, steps.shape[0]
     for part in range(BETWEEN):
         sample = (part + 1) * SWEEP // (BETWEEN + 1)
-        place, turn = places[sample], turns[sample]
+        place, turn = carrier[0][sample], carrier[1][sample]
         count = around(obstacles, place, postures.reach, scratch.near)
         if count == 0:
             continue
         for b in range(count):
             move_into(scratch.near, b, place, turn, scratch.framed, b)
         for first in range(0, many, BLOCK):
-            _posed_between(scratch, postures, lattice, depth, steps, many, first, part)
+            _posed_between(scratch, postures, lattice, depth, steps, first, part)
             out[:] = _INFINITE
             checks += capsule_clearances_in(scratch.checks, scratch.framed, count, out)
             for k in range(first, min(first + BLOCK, many)):
