@@ -180,35 +180,32 @@ def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: 
 
 
 @exact_kernel
-def configurations_into(ends: Ends, interval: float, shares: Floats, count: int, out: Floats) -> None:
-    """`configurations_at` for the first `count` parts, written to `out` (N, d)."""
+def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
+    """Configurations (N, d) of a limb at parts (N,) of a key interval.
+
+    `ends` are posture, velocity, posture, velocity at the interval's ends.
+    """
     q, m, p, n = ends
-    for i in range(count):
+    out = np.empty((shares.shape[0], q.shape[0]))
+    for i in range(shares.shape[0]):
         u = shares[i]
         rest = 1.0 - u
         for j in range(q.shape[0]):
             out[i, j] = rest * rest * ((1.0 + 2.0 * u) * q[j] + u * m[j] * interval) + u * u * (
                 (3.0 - 2.0 * u) * p[j] - rest * n[j] * interval
             )
-
-
-@exact_kernel
-def configurations_at(ends: Ends, interval: float, shares: Floats) -> Floats:
-    """Configurations (N, d) of a limb at parts (N,) of a key interval.
-
-    `ends` are posture, velocity, posture, velocity at the interval's ends.
-    """
-    out = np.empty((shares.shape[0], ends[0].shape[0]))
-    configurations_into(ends, interval, shares, shares.shape[0], out)
     return out
 
 
 @exact_kernel
-def moves_into(ends: Ends, interval: float, count: int, rates: Floats, moved: Floats) -> None:
-    """`moves_between`, written to `moved` (count, 3); `rates` (count+2, 4) is scratch."""
+def moves_between(ends: Ends, interval: float, count: int) -> Floats:
+    """What a limb's components move at most in each of `count` equal parts of a key interval, (count, 3).
+
+    The first two count together; then the third, the fourth.
+    """
     q, m, p, n = ends
-    size, part, jerks = q.shape[0], interval / count, rates[count + 1]
-    rates[:] = 0.0
+    size, part, moved = q.shape[0], interval / count, np.empty((count, MOVES))
+    rates, jerks = np.zeros((count + 1, 4)), np.zeros(4)
     for j in range(size):
         jerks[j] = _jerk(q[j], m[j], p[j], n[j], interval)
         for i in range(count + 1):
@@ -225,16 +222,6 @@ def moves_into(ends: Ends, interval: float, count: int, rates: Floats, moved: Fl
         before = after
         for j in range(2, 4):
             moved[i, j - 1] = part * (max(abs(rates[i, j]), abs(rates[i + 1, j])) + abs(jerks[j]) * bend)
-
-
-@exact_kernel
-def moves_between(ends: Ends, interval: float, count: int) -> Floats:
-    """What a limb's components move at most in each of `count` equal parts of a key interval, (count, 3).
-
-    The first two count together; then the third, the fourth.
-    """
-    moved = np.empty((count, 3))
-    moves_into(ends, interval, count, np.empty((count + 2, 4)), moved)
     return moved
 
 

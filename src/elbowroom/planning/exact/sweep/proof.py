@@ -18,8 +18,8 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
     Ends,
     KinematicChain,
     LimbSweeps,
-    configurations_into,
-    moves_into,
+    configurations_at,
+    moves_between,
 )
 from elbowroom.planning.exact.sweep.scratch import Scratch, held_against
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
@@ -63,8 +63,8 @@ class MovedLimb(NamedTuple):
 def _samples(
     scratch: Scratch,
     postures: Postures,
+    configurations: Floats,
     posed: bool,
-    count: int,
     places: Floats,
     turns: Floats,
     obstacles: Nearby,
@@ -72,18 +72,18 @@ def _samples(
 ) -> int:
     """Clearances (C, 16) of a motion's capsules, up to `COMFORT` or more; returns the capsules that were checked.
 
-    The first `count` configurations of the room are looked at, in the frames (N, 3), (N, 4); if they are `posed`, their
-    capsules are in the room too.
+    Configurations (N, d) are looked at, in the frames (N, 3), (N, 4); if they are `posed`, their capsules are in the
+    room.
     """
     for c in range(out.shape[0]):
         row = out[c]
         for i in range(np.uint64(BLOCK)):
             row[i] = COMFORT
-    near = around(obstacles, places[0], postures.reach + 0.5, scratch.near)
+    near, count = around(obstacles, places[0], postures.reach + 0.5, scratch.near), configurations.shape[0]
     if near == 0:
         return 0
     if not posed:
-        pose_into(postures.limb, scratch.limb, scratch.configurations, count, _NONE, scratch.segments)
+        pose_into(postures.limb, scratch.limb, configurations, count, _NONE, scratch.segments)
     return int(held_against(scratch, postures.limb.radii, near, count, places[0], places, turns, out))
 
 
@@ -106,8 +106,7 @@ def _frames_between(
         part = shares[n] * SWEEP - sample
         places[n, 1] = heights[sample, 1] + part * (heights[sample + 1, 1] - heights[sample, 1])
     if not on_root:
-        configurations_into(waist, interval, shares, count, scratch.waists)
-        carry_frames(chain.waist, scratch.stem, scratch.waists, count)
+        carry_frames(chain.waist, scratch.stem, configurations_at(waist, interval, shares[:count]), count)
         compose_into(places, scratch.turns, scratch.stem.places, scratch.stem.turns, count, places, scratch.turns)
 
 
@@ -120,7 +119,9 @@ def _gaps_of(clearances: Floats32, out: Floats32) -> None:
 
 
 @helper
-def _proven(scratch: Scratch, limb: MovedLimb, carrier: Carrier, ends: Ends, obstacles: Nearby) -> tuple[float, int]:
+def _proven(
+    scratch: Scratch, limb: MovedLimb, carrier: Carrier, ends: Ends, moved: Floats, obstacles: Nearby
+) -> tuple[float, int]:
     """The proven clearance of a motion whose looks found what is in the room, and the capsules checked."""
     postures, levers, chain = limb
     interval, shares, count, checks = carrier.states[0], scratch.shares, levers.shape[0], 0
@@ -132,7 +133,7 @@ def _proven(scratch: Scratch, limb: MovedLimb, carrier: Carrier, ends: Ends, obs
         for c in range(count):
             lengths[i, c] = carrier.sway[i]
             for k in range(MOVES):
-                lengths[i, c] += levers[c, k] * scratch.moves[i, k]
+                lengths[i, c] += levers[c, k] * moved[i, k]
     proof = begun(gaps, lengths, SWEEP, ENOUGH, _HALVINGS)
     parts, found = np.empty(BLOCK, np.int64), np.empty((BLOCK, count), np.float32)
     wanted = due(proof, parts, shares)
@@ -140,8 +141,8 @@ def _proven(scratch: Scratch, limb: MovedLimb, carrier: Carrier, ends: Ends, obs
         for n in range(wanted):
             shares[n] = (parts[n] + shares[n]) / SWEEP
         _frames_between(scratch, chain, postures.limb.chain.carries, carrier, waist, wanted)
-        configurations_into(ends, interval, shares, wanted, scratch.configurations)
-        checks += _samples(scratch, postures, False, wanted, scratch.places, scratch.turns, obstacles, scratch.found)
+        shown = configurations_at(ends, interval, shares[:wanted])
+        checks += _samples(scratch, postures, shown, False, scratch.places, scratch.turns, obstacles, scratch.found)
         _gaps_of(scratch.found, found)
         settle(proof, found, wanted)
         wanted = due(proof, parts, shares)
@@ -166,9 +167,9 @@ def _set_key(number: int, ends: Ends, key: Floats) -> None:
 
 
 @helper
-def _carry(scratch: Scratch, limb: MovedLimb, carrier: Carrier, ways: LimbSweeps, at: int) -> None:
+def _carry(scratch: Scratch, limb: MovedLimb, carrier: Carrier, moved: Floats, ways: LimbSweeps, at: int) -> None:
     """The chest's frames in the world and its sway, for the posed waist in the room, into the slot `at` of its ways."""
-    inner, sway, moved = scratch.limb, ways.sway[at], scratch.moves
+    inner, sway = scratch.limb, ways.sway[at]
     compose_into(carrier.places, carrier.turns, inner.places, inner.turns, SWEEP + 1, ways.places[at], ways.turns[at])
     for i in range(SWEEP):
         sway[i] = carrier.sway[i] + limb.chain.lever * moved[i, 0] + limb.chain.lift * moved[i, 1]
@@ -198,14 +199,13 @@ def limb_sweep(
     postures, on_root, interval, count = limb.postures, limb.postures.limb.chain.carries, carrier.states[0], SWEEP + 1
     for i in range(count):
         scratch.shares[i] = i / SWEEP
-    configurations_into(ends, interval, scratch.shares, count, scratch.configurations)
-    moves_into(ends, interval, SWEEP, scratch.rates, scratch.moves)
+    shown, moved = configurations_at(ends, interval, scratch.shares[:count]), moves_between(ends, interval, SWEEP)
     if on_root:
-        pose_into(postures.limb, scratch.limb, scratch.configurations, count, _NONE, scratch.segments)
-        _carry(scratch, limb, carrier, ways, at)
-    checks = _samples(scratch, postures, on_root, count, carrier.places, carrier.turns, obstacles, scratch.coarse)
+        pose_into(postures.limb, scratch.limb, shown, count, _NONE, scratch.segments)
+        _carry(scratch, limb, carrier, moved, ways, at)
+    checks = _samples(scratch, postures, shown, on_root, carrier.places, carrier.turns, obstacles, scratch.coarse)
     ways.least[at], ways.proven[at] = least_of(scratch.coarse, scratch.checks.apart), _UNKNOWN
     if ways.least[at] < wanted:
         return int(at), checks
-    ways.proven[at], more = _proven(scratch, limb, carrier, ends, obstacles)
+    ways.proven[at], more = _proven(scratch, limb, carrier, ends, moved, obstacles)
     return int(at), checks + more

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
-from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
 from elbowroom.world.obstacles.blocks import (
     ClearanceScratch,
@@ -38,15 +37,12 @@ class Scratch(NamedTuple):
     coarse: Floats32  # (C, 16) clearances at the looks
     found: Floats32  # (C, 16) clearances between them
     configurations: Floats  # (16, d)
-    waists: Floats  # (16, d of the waist)
     states: Floats  # (16, 7) of the root
     level: Floats  # (16, 2) zeros: hips that are not lowered
     places: Floats  # (16, 3) of frames
     turns: Floats  # (16, 4)
     at: Floats  # (16, 3) places seen from the first
     shares: Floats  # (16,) of the interval
-    moves: Floats  # (SWEEP, 3) of the joints, between looks
-    rates: Floats  # (SWEEP+2, 4) of the joints at the looks; the last row is for their jerks
     key: Floats  # (1 + 4 d,) of a limb's way
     axis: Floats  # (6,) of a capsule
 
@@ -72,15 +68,12 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
         np.empty((count, BLOCK), np.float32),
         np.empty((count, BLOCK), np.float32),
         np.empty((BLOCK, size)),
-        np.empty((BLOCK, 3)),
         np.empty((BLOCK, 7)),
         np.zeros((BLOCK, 2)),
         np.empty((BLOCK, 3)),
         np.empty((BLOCK, 4)),
         np.empty((BLOCK, 3)),
         np.empty(BLOCK),
-        np.empty((SWEEP, 3)),
-        np.empty((SWEEP + 2, 4)),
         np.empty(1 + 4 * size),
         np.empty(6),
     )
