@@ -30,7 +30,7 @@ class Walker(NamedTuple):
 class Neighbour(NamedTuple):
     """Another avatar, as it plans to move."""
 
-    walker: Walker
+    walker: Walker  # where it is, and where it wants to go
     boxes: Moving  # that hold its parts
     times: Floats  # (m,) seconds, increasing: the moments whose bodies are known
     axes: Floats  # (m, C, 6) its capsules' axes then, in the world
