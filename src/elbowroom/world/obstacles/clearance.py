@@ -48,6 +48,14 @@ def clearance_of(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> float:
     return float(_posture_clearance(lanes, np.ascontiguousarray(radii, np.float32), near))
 
 
+def clearance_from_each(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
+    """The least clearance of one posture, `segments` (C, 6), from every obstacle, metres, shape (B,)."""
+    lanes = np.ascontiguousarray(np.asarray(segments, np.float32).T)
+    out = np.empty(len(near.rows), np.float32)
+    _clearance_from_each(lanes, np.ascontiguousarray(radii, np.float32), near, out)
+    return out
+
+
 def pairwise_clearance(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
     """The clearance of every capsule from every obstacle in every configuration, metres, shape (C, B, N)."""
     capsules, sizes = _prepared(segments, radii)
@@ -145,3 +153,9 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
     for i in range(count):
         least = min(least, math.sqrt(squares[i]) * _METRES - radii[i])
     return least
+
+
+@kernel
+def _clearance_from_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
+    for b in range(near.rows.shape[0]):
+        out[b] = _posture_clearance(capsules, radii, Nearby(near.rows[b : b + 1], near.packed))

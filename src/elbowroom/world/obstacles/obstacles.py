@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.along import Along, Place, along
 from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
-from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
+from elbowroom.world.obstacles.clearance import clearance, clearance_from_each, clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.free_map import FreeMap
 from elbowroom.world.obstacles.layout import Nearby
@@ -224,7 +224,8 @@ def _least(segments: Floats32, radii: ArrayLike, near: Nearby) -> float:
 
 def _nearest(axes: Floats, radii: ArrayLike, near: Nearby) -> Nearest:
     """The closest pair of capsules and obstacles, of each at least one."""
-    gaps = pairwise_clearance(axes[:, :, None], radii, near)[:, :, 0]
-    capsule, obstacle = (int(i) for i in np.unravel_index(int(np.argmin(gaps)), gaps.shape))
+    obstacle = int(np.argmin(clearance_from_each(axes, radii, near)))
+    gaps = pairwise_clearance(axes[:, :, None], radii, one_of(near, obstacle))[:, 0, 0]
+    capsule = int(np.argmin(gaps))
     on_axis, on_obstacle = closest_points(axes[capsule], one_of(near, obstacle))
-    return Nearest(capsule, obstacle, float(gaps[capsule, obstacle]), on_axis[0], on_obstacle[0])
+    return Nearest(capsule, obstacle, float(gaps[capsule]), on_axis[0], on_obstacle[0])
