@@ -3,11 +3,13 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.recording import Recorder
+from elbowroom.formats.bvh import parse_bvh
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from live_page import LivePage
@@ -76,6 +78,21 @@ def test_a_replay_is_filmed_to_its_end(open_page: Open) -> None:
     assert download.value.suggested_filename.rpartition(".")[2] in ("mp4", "webm")
     assert download.value.path().stat().st_size > 1000
     live.wait("s.replay.filming === false")
+
+
+def test_a_walk_is_saved_for_other_programs(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(1000, 640))
+    _walk_to(live, 1.0)
+    live.page.keyboard.press("k")
+    frames = live.wait("s.replay")["replay"]["frames"]
+    with live.page.expect_download() as download:
+        live.page.locator("#replay .save select").select_option("bvh")
+    assert download.value.suggested_filename == "empty.bvh"
+    take = parse_bvh(download.value.path().read_bytes(), "empty.bvh").take()
+    assert len(take) > 0.5 * frames
+    hips = take.translations[:, 0] * 0.01
+    assert hips[-1, 2] - hips[0, 2] > 0.5
+    assert np.ptp(hips[:, 1]) < 0.1
 
 
 def test_a_recording_that_is_dropped_is_replayed(open_page: Open, recorded_walk: Path) -> None:

@@ -4,6 +4,7 @@ import { curvesOf, degreesBetween } from "../src/replay/curves";
 import { WalkKeeper } from "../src/replay/keeper";
 import { marksOf } from "../src/replay/marks";
 import { Player } from "../src/replay/player";
+import { packed } from "../src/replay/save";
 import { durationOf, frameAt, hasAssist, poseAt, samePlace, type Take } from "../src/replay/take";
 
 const SCENE = { name: "a", title: "Scene A", obstacles: [] } as unknown as SceneMessage;
@@ -130,5 +131,17 @@ describe("the player", () => {
     expect([player.playing, player.time]).toEqual([false, expect.closeTo(0.45)]);
     player.step(-100);
     expect(player.time).toBe(0);
+  });
+});
+
+describe("saving", () => {
+  it("packs every frame as the server reads it", () => {
+    const take = walk(2, () => ({ epoch: 3, y: 0.5, hipsX: 1, hipsY: 2, hipsZ: 3 }));
+    const numbers = packed(take);
+    const size = 9 + 4 * 2;
+    expect(numbers.length).toBe(size * take.frames.length);
+    const second = take.frames[1] as PoseFrame;
+    const head = [second.time, 3, second.x, 0.5, second.z, second.heading, 1, 2, 3].map(Math.fround);
+    expect([...numbers.subarray(size, 2 * size)]).toEqual([...head, 0, 0, 0, 1, 0, 0, 0, 1]);
   });
 });

@@ -58,3 +58,17 @@ class Rig:
     def to_file(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """The inverse of `to_model`."""
         return quaternion.rotate(quaternion.about_axis(1, self.facing), points / self.scale) + self.offset
+
+    def normalised(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Normalised local rotations (..., J, 4) for local rotations of the nodes: the inverse of `node_rotations`."""
+        inverse = quaternion.multiply(self.world_rotations, quaternion.conjugate(self.local_rotations))
+        turned = quaternion.multiply(
+            quaternion.multiply(inverse, rotations), quaternion.conjugate(self.world_rotations)
+        )
+        back, forth = quaternion.about_axis(1, -self.facing), quaternion.about_axis(1, self.facing)
+        return quaternion.multiply(quaternion.multiply(back, turned), forth)
+
+    def hips_in_root(self, translation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The hips joint (..., 3) in the root frame for its node's translation: the inverse of `hips_position`."""
+        turned = quaternion.rotate(self.hips_parent_rotation, translation)
+        return self.to_model(self.hips_parent_position + self.hips_parent_scale * turned)

@@ -1,5 +1,6 @@
 """`elbowroom export`: what a recording shows, for other programs."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,6 +11,7 @@ from elbowroom.cli.output import print_json, print_row, progress_bar
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.control.recording import Recording
     from elbowroom.export.animation import Animation
 
 EXAMPLES = (
@@ -27,6 +29,7 @@ def export(
     unit: Annotated[str | None, typer.Option(help="m, dm, cm, mm, inch, foot, or metres as a number.")] = None,
     up: Annotated[str | None, typer.Option(help="The axis that points up: y or z.")] = None,
     avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    place: Annotated[bool, typer.Option("--place", help="GLB: put the scene beside the avatar.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it exists.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
@@ -44,6 +47,8 @@ def export(
     chosen = format_of(out)
     layout = chosen.layout(Wishes(root, rest, unit, up))
     check_rate(fps)
+    if place and chosen.title != "GLB":
+        raise InputError(f"{out}: --place is possible in .glb only")
     if out.exists() and not overwrite:
         raise InputError(f"{out}: exists; choose another name or say --overwrite")
     recorded = Recording(recording)
@@ -52,9 +57,18 @@ def export(
         humanoid = recorded.header.avatar.load(avatar)
         animation = Animation.of(recorded, humanoid, fps)
         written = chosen.write(animation, humanoid, layout)
+        if place:
+            written = replace(written, data=_with_place(written.data, recorded, animation))
         _keep(out, written.data)
     notes = [*written.notes, *([f"not whole: {recorded.note}"] if recorded.note else [])]
     _report(out, chosen.title, len(written.data), animation, notes, json)
+
+
+def _with_place(glb: bytes, recorded: "Recording", animation: "Animation") -> bytes:
+    from elbowroom.export.place import with_place
+    from elbowroom.world.scene import Scene
+
+    return with_place(glb, Scene.from_dict(recorded.header.scene, str(recorded.path)), animation)
 
 
 def _keep(path: Path, data: bytes) -> None:

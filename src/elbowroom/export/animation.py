@@ -10,7 +10,7 @@ from elbowroom.body.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.recording import Recording
 from elbowroom.errors import InputError
-from elbowroom.export.shown import ShownFrames
+from elbowroom.export.shown import ShownFrames, even_moments
 from elbowroom.formats.takes import MAX_FRAMES, MAX_POSES
 from elbowroom.geometry import quaternion
 
@@ -30,6 +30,7 @@ class Animation:
     hips: Floats  # (F, 3) the hips joint in the root's frame, metres
     places: Floats  # (F, 3) the root's origin in the world: on the ground under the body, metres
     headings: Floats  # (F,) of the root, radians about +Y, not wrapped
+    scene_times: Floats | None = None  # (F,) the scene's own time, by which things move; None: from 0 on
 
     def __len__(self) -> int:
         return len(self.rotations)
@@ -41,27 +42,31 @@ class Animation:
         Between two frames as on the page: joints turn by the shortest arc, root and hips go in straight lines.
         Raises `InputError` for a recording that shows nothing or too much, and a rate out of range.
         """
-        check_rate(fps)
-        shown, joints = ShownFrames.of(recording), len(humanoid.skeleton.names)
-        most = min(MAX_FRAMES, MAX_POSES // joints)
-        if shown.duration * fps >= most:
-            seconds = f"{shown.duration:.0f} s at {fps:g} frames a second"
-            raise InputError(
-                f"{recording.path}: {seconds} are more than the {most} frames that fit: ask for a lower --fps"
-            )
-        before, after, share = shown.at_rate(fps)
+        shown = ShownFrames.of(recording)
+        check_length(str(recording.path), shown.duration, humanoid, fps)
         rotations, hips = _posed(shown, humanoid)
-        roots, part = shown.roots[:, :3], share[:, None]
-        states = roots[before] + part * (roots[after] - roots[before])
-        return cls(
-            recording.path.stem,
-            fps,
-            humanoid.skeleton,
-            quaternion.slerp(rotations[before], rotations[after], part),
-            hips[before] + part * (hips[after] - hips[before]),
-            np.stack([states[:, 0], np.zeros(len(states)), states[:, 1]], axis=1),
-            states[:, 2],
-        )
+        places = np.stack([shown.roots[:, 0], np.zeros(len(shown.roots)), shown.roots[:, 1]], axis=1)
+        poses = Poses(shown.times, shown.jumps, rotations, hips, places, shown.roots[:, 2], shown.clock)
+        return cls.of_poses(recording.path.stem, humanoid.skeleton, poses, fps)
+
+    @classmethod
+    def of_poses(cls, name: str, skeleton: Skeleton, poses: "Poses", fps: float) -> "Animation":
+        """The same of poses at any times."""
+        before, after, share = even_moments(poses.times, poses.jumps, fps)
+        part = share[:, None]
+
+        def between(rows: Floats) -> Floats:
+            return rows[before] + (part if rows.ndim > 1 else share) * (rows[after] - rows[before])
+
+        turned = quaternion.slerp(poses.rotations[before], poses.rotations[after], part)
+        clock = None if poses.clock is None else between(poses.clock)
+        hips, places, headings = between(poses.hips), between(poses.places), between(poses.headings)
+        return cls(name, fps, skeleton, turned, hips, places, headings, clock)
+
+    @property
+    def clock(self) -> Floats:
+        """The scene's own time (F,) at every frame, seconds."""
+        return np.arange(len(self)) / self.fps if self.scene_times is None else self.scene_times
 
     def turns(self) -> Floats:
         """Rotations (F, 4) of the root in the world."""
@@ -82,6 +87,28 @@ class Animation:
                 places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
                 turns[:, joint] = quaternion.multiply(turns[:, parent], self.rotations[:, joint])
         return places
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """What was shown at some times; see `Animation` for the rest."""
+
+    times: Floats  # (N,) seconds, not decreasing
+    jumps: NDArray[np.bool_]  # (N,) the pose does not follow from the one before it
+    rotations: Floats  # (N, J, 4)
+    hips: Floats  # (N, 3)
+    places: Floats  # (N, 3)
+    headings: Floats  # (N,)
+    clock: Floats | None = None  # (N,) the scene's own time
+
+
+def check_length(place: str, seconds: float, humanoid: Humanoid, fps: float) -> None:
+    """Raises `InputError` for a rate out of range, and for more frames than fit."""
+    check_rate(fps)
+    most = min(MAX_FRAMES, MAX_POSES // len(humanoid.skeleton.names))
+    if seconds * fps >= most:
+        long = f"{seconds:.0f} s at {fps:g} frames a second"
+        raise InputError(f"{place}: {long} are more than the {most} frames that fit: lower --fps")
 
 
 def check_rate(fps: float) -> None:

@@ -47,16 +47,28 @@ class ShownFrames:
         """Seconds from the first frame to the last."""
         return float(self.times[-1] - self.times[0])
 
-    def at_rate(self, fps: float) -> tuple[Ints, Ints, Floats]:
-        """At `fps` moments a second: the frame before (F,), the frame after (F,), the share (F,) of the way.
+    @property
+    def clock(self) -> Floats:
+        """The scene's own time (N,): it begins anew with a restart."""
+        before = np.concatenate([[0.0], self.times[:-1]])
+        clock: Floats = self.times - np.maximum.accumulate(np.where(self.jumps, before, 0.0))
+        return clock
 
-        Over a jump nothing is mixed: the frame before it stays until the next one is shown.
-        """
-        count = int(self.duration * fps + _ON_FRAME) + 1
-        moments = self.times[0] + np.arange(count) / fps
-        before = np.searchsorted(self.times, moments + _ON_FRAME / fps, side="right") - 1
-        after = np.minimum(before + 1, len(self.times) - 1)
-        width = self.times[after] - self.times[before]
-        share = np.clip((moments - self.times[before]) / np.maximum(width, 1e-9), 0.0, 1.0)
-        share[(width <= 0.0) | self.jumps[after] | (share < _ON_FRAME)] = 0.0
-        return before, after, share
+    def at_rate(self, fps: float) -> tuple[Ints, Ints, Floats]:
+        """`even_moments` of these frames."""
+        return even_moments(self.times, self.jumps, fps)
+
+
+def even_moments(times: Floats, jumps: NDArray[np.bool_], fps: float) -> tuple[Ints, Ints, Floats]:
+    """At `fps` moments a second: the frame before (F,), the frame after (F,), the share (F,) of the way.
+
+    Frames are at `times` (N,), not decreasing. Over a jump nothing is mixed: the frame before stays until the next.
+    """
+    count = int((times[-1] - times[0]) * fps + _ON_FRAME) + 1
+    moments = times[0] + np.arange(count) / fps
+    before = np.searchsorted(times, moments + _ON_FRAME / fps, side="right") - 1
+    after = np.minimum(before + 1, len(times) - 1)
+    width = times[after] - times[before]
+    share = np.clip((moments - times[before]) / np.maximum(width, 1e-9), 0.0, 1.0)
+    share[(width <= 0.0) | jumps[after] | (share < _ON_FRAME)] = 0.0
+    return before, after, share

@@ -1,7 +1,5 @@
 """Adds an animation to a GLB: key frames for some of its nodes, at even steps of time (glTF 2.0, 3.11)."""
 
-import base64
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
-from elbowroom.formats.packing import write_glb
+from elbowroom.formats.open_glb import OpenGlb
 
 Floats = NDArray[np.float64]
 
@@ -41,37 +39,48 @@ class Stand:
 
 def on_stands(glb: bytes, stands: Sequence[Stand]) -> tuple[bytes, list[int]]:
     """The GLB with nodes above the roots of its scene, the first above all; and their numbers."""
-    content, binary = _parts(glb)
-    nodes = content["nodes"]
-    scene = content.setdefault("scenes", [{"nodes": _roots(nodes)}])[content.setdefault("scene", 0)]
-    children, numbers = scene.get("nodes", []), []
+    opened = OpenGlb(glb)
+    roots, nodes, numbers = opened.roots(), opened.content["nodes"], []
     for stand in reversed(stands):
-        node = {"name": stand.name, "children": children, "translation": stand.translation.tolist()}
+        node = {"name": stand.name, "children": list(roots), "translation": stand.translation.tolist()}
         nodes.append(node | {"rotation": stand.rotation.tolist(), "scale": [stand.scale] * 3})
-        children = [len(nodes) - 1]
+        roots[:] = [len(nodes) - 1]
         numbers.append(len(nodes) - 1)
-    scene["nodes"] = children
-    return write_glb(content, bytes(binary)), numbers[::-1]
+    return opened.closed(), numbers[::-1]
 
 
 def with_animation(glb: bytes, name: str, frame_time: float, motions: Sequence[NodeMotion]) -> bytes:
-    """The GLB with one more animation, before those that it has; nodes that move stand where the animation begins."""
-    content, binary = _parts(glb)
-    writer = _Tracks(content, binary)
-    tree = read_nodes(parse_gltf(glb, "glb"))
+    """The GLB with one more animation, before those that it has."""
+    opened = OpenGlb(glb)
+    tracks = _tracks_of(opened, glb, frame_time, motions)
+    animation = {"name": name, "samplers": tracks.samplers, "channels": tracks.channels}
+    opened.content["animations"] = [animation, *opened.content.get("animations", [])]
+    return opened.closed()
+
+
+def joined_animation(glb: bytes, frame_time: float, motions: Sequence[NodeMotion]) -> bytes:
+    """The GLB whose first animation moves these nodes too; they are none of those that it moves."""
+    opened = OpenGlb(glb)
+    tracks, first = _tracks_of(opened, glb, frame_time, motions), opened.content["animations"][0]
+    shift = len(first["samplers"])
+    first["channels"] += [channel | {"sampler": channel["sampler"] + shift} for channel in tracks.channels]
+    first["samplers"] += tracks.samplers
+    return opened.closed()
+
+
+def _tracks_of(opened: OpenGlb, glb: bytes, frame_time: float, motions: Sequence[NodeMotion]) -> "_Tracks":
+    """The tracks of some nodes, their numbers appended to the GLB, and the nodes made ready to move."""
+    tracks, tree = _Tracks(opened), read_nodes(parse_gltf(glb, "glb"))
     for motion in motions:
-        node = content["nodes"][motion.node]
+        node = opened.content["nodes"][motion.node]
         if node.pop("matrix", None) is not None:  # nodes that move have no matrix
             node |= {"scale": tree.scales[motion.node].tolist(), "rotation": tree.rotations[motion.node].tolist()}
             node["translation"] = tree.translations[motion.node].tolist()
         if motion.rotations is not None:
-            writer.add(motion.node, "rotation", continuous(motion.rotations), frame_time)
+            tracks.add(motion.node, "rotation", continuous(motion.rotations), frame_time)
         if motion.translations is not None:
-            writer.add(motion.node, "translation", motion.translations, frame_time)
-    animation = {"name": name, "samplers": writer.samplers, "channels": writer.channels}
-    content["animations"] = [animation, *content.get("animations", [])]
-    writer.close()
-    return write_glb(content, bytes(binary))
+            tracks.add(motion.node, "translation", motion.translations, frame_time)
+    return tracks
 
 
 def continuous(rotations: Floats) -> Floats:
@@ -83,18 +92,12 @@ def continuous(rotations: Floats) -> Floats:
 
 
 class _Tracks:
-    """Collects samplers and channels; their numbers go to the end of the GLB's own buffer, or to one more."""
+    """Collects samplers and channels; their numbers are appended to the GLB."""
 
-    def __init__(self, content: dict[str, Any], binary: bytearray) -> None:
+    def __init__(self, opened: OpenGlb) -> None:
         self.samplers: list[dict[str, Any]] = []
         self.channels: list[dict[str, Any]] = []
-        self._content, self._times = content, dict[int, int]()
-        buffers = content.setdefault("buffers", [])
-        self._apart = bool(buffers) and "uri" in buffers[0]  # only the first buffer can be the GLB's own
-        self._buffer = len(buffers) if self._apart or not buffers else 0
-        self._data = bytearray() if self._apart else binary
-        if self._buffer == len(buffers):
-            buffers.append({})
+        self._opened, self._times = opened, dict[int, int]()
 
     def add(self, node: int, path: str, values: Floats, frame_time: float) -> None:
         """A track of a node."""
@@ -105,34 +108,13 @@ class _Tracks:
         self.channels.append({"sampler": len(self.samplers), "target": {"node": node, "path": path}})
         self.samplers.append(sampler)
 
-    def close(self) -> None:
-        """Tell how long the buffer has become."""
-        buffer = self._content["buffers"][self._buffer]
-        buffer["byteLength"] = len(self._data)
-        if self._apart:
-            buffer["uri"] = "data:application/octet-stream;base64," + base64.b64encode(self._data).decode()
-
     def _accessor(self, values: NDArray[np.floating], bounds: bool = False) -> int:
-        data = np.ascontiguousarray(values, "<f4")
-        self._data.extend(b"\x00" * (-len(self._data) % 4))
-        views, accessors = (self._content.setdefault(key, []) for key in ("bufferViews", "accessors"))
-        views.append({"buffer": self._buffer, "byteOffset": len(self._data), "byteLength": data.nbytes})
-        self._data.extend(data.tobytes())
+        data, opened = np.ascontiguousarray(values, "<f4"), self._opened
+        views, accessors = (opened.content.setdefault(key, []) for key in ("bufferViews", "accessors"))
+        start = opened.append(data.tobytes())
+        views.append({"buffer": opened.buffer, "byteOffset": start, "byteLength": data.nbytes})
         accessor: dict[str, Any] = {"bufferView": len(views) - 1, "componentType": _FLOAT, "count": len(data)}
         if bounds:
             accessor |= {"min": data.min(axis=0).tolist(), "max": data.max(axis=0).tolist()}
         accessors.append(accessor | {"type": _KINDS[data.shape[1]]})
         return len(accessors) - 1
-
-
-def _parts(glb: bytes) -> tuple[dict[str, Any], bytearray]:
-    """The JSON and the binary chunk of a GLB, free to be changed."""
-    gltf = parse_gltf(glb, "glb")
-    own = gltf.root.at("buffers").items()
-    inside = bool(own) and not own[0].at("uri").present and gltf.buffers[0] is not None
-    return copy.deepcopy(gltf.root.value), bytearray(gltf.buffers[0] or b"" if inside else b"")
-
-
-def _roots(nodes: list[dict[str, Any]]) -> list[int]:
-    below = {child for node in nodes for child in node.get("children", [])}
-    return [node for node in range(len(nodes)) if node not in below]

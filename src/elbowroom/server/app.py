@@ -63,6 +63,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
         Route("/api/avatars", desk.take, methods=["POST"]),
         Route("/api/runs", desk.show, methods=["POST"]),
         Route("/api/run", handlers.run),
+        Route("/api/motions", desk.save, methods=["POST"]),
         Route("/avatars/{avatar}.glb", handlers.avatar),
         WebSocketRoute("/ws", handlers.session),
         Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),

@@ -9,6 +9,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
@@ -20,6 +21,7 @@ from elbowroom.server.codec import plain
 from elbowroom.server.library import Library
 from elbowroom.server.page_key import Sender, page_key
 from elbowroom.server.runs import run_response, shown_run
+from elbowroom.server.saved_motion import save_motion
 from elbowroom.server.schema.bounds import MAX_UPLOAD
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
 from elbowroom.server.while_there import while_there
@@ -87,6 +89,26 @@ class UploadDesk:
                     return run_response(await while_there(request, shown_run(self._library, file, name)))
 
         return await self._admitted(request, shown)
+
+    async def save(self, request: Request) -> Response:
+        """POST: the frames of a walk (`saved_motion`), `?avatar=` its id, `?format=` the ending of the file wanted.
+
+        Answers with the file; the header `x-elbowroom-note` says what is to be known about it.
+        """
+
+        async def saved(sender: Sender) -> Response:  # noqa: ARG001
+            avatar = await asyncio.to_thread(self._library.avatars.get, request.query_params.get("avatar", ""))
+            with self._files() as (file, _):
+                await _receive(request, file, self._pace)
+                async with self._reading:
+                    ending = request.query_params.get("format", "")
+                    name, written = await asyncio.to_thread(save_motion, file.read_bytes(), avatar, ending)
+            headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name)}"}
+            if written.notes:
+                headers["x-elbowroom-note"] = quote("; ".join(written.notes))
+            return Response(written.data, media_type="application/octet-stream", headers=headers)
+
+        return await self._admitted(request, saved)
 
     async def _admitted(self, request: Request, work: Callable[[Sender], Awaitable[Response]]) -> Response:
         """What the work answers, or why it is not done: each machine may have a few files read at once."""

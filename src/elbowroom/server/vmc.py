@@ -119,8 +119,7 @@ def _carried(humanoid: Humanoid, place: Floats, heading: float, hips: tuple[Floa
         turn = quaternion.about_axis(1, heading)
         return place + quaternion.rotate(turn, at), quaternion.multiply(turn, turned)
     turn = quaternion.about_axis(1, heading)
-    in_file = rig.hips_parent_position + rig.hips_parent_scale * quaternion.rotate(rig.hips_parent_rotation, at)
-    in_world = place + quaternion.rotate(turn, rig.to_model(in_file))
+    in_world = place + quaternion.rotate(turn, rig.hips_in_root(at))
     above = rig.hips_parent_rotation  # turned by the heading in its own axes
     return rig.hips_position(in_world), quaternion.multiply(
         quaternion.multiply(quaternion.conjugate(above), quaternion.multiply(turn, above)), turned

@@ -26,6 +26,11 @@ export function shownRunUrl(): string {
   return "api/run";
 }
 
+/** The address that writes frames of this avatar as a file with this ending. */
+export function motionUrl(avatar: string, format: string): string {
+  return `api/motions?${new URLSearchParams({ avatar, format, key: pageKey() })}`;
+}
+
 let key = "";
 
 /** The secret by which the server knows which files are this tab's; it outlives a reload, not the tab. */

@@ -6,6 +6,7 @@ import { drawChart, JOINT_COLORS, MARK_COLORS, type ChartData } from "./chart";
 import { JOINT_NAMES } from "./curves";
 import { MARK_KINDS, type MarkKind } from "./marks";
 import { SPEEDS, type Player } from "./player";
+import { SAVED_AS, type SavedAs } from "./save";
 import "./replay.css";
 
 /** How a second run is shown. */
@@ -21,6 +22,7 @@ export interface PanelListener {
   choose(id: number): void;
   compare(id: number | null, manner: Manner): void;
   filmOrEnd(): void;
+  save(ending: SavedAs): void;
   close(): void;
 }
 
@@ -48,6 +50,7 @@ export class ReplayPanel {
   private readonly run = make("select", {});
   private readonly against = make("select", {});
   private readonly manner = make("select", { "aria-label": text("replay.against") });
+  private readonly saving = make("select", {});
   private readonly speed = make("select", { "aria-label": text("replay.speed") });
   private readonly play = button("play", text("replay.play"), "replay-play");
   private readonly loop = make("button", { type: "button", class: "icon wide", "aria-pressed": "false", title: text("replay.loop") }, "↻");
@@ -107,12 +110,13 @@ export class ReplayPanel {
 
   private choices(): HTMLElement {
     for (const manner of ["ghost", "beside"] as const) this.manner.add(new Option(text(`replay.${manner}`), manner));
+    this.saving.replaceChildren(new Option(text("replay.saveAs"), ""), ...SAVED_AS.map((ending) => new Option(`.${ending}`, ending)));
     const close = make("button", { type: "button", class: "icon close", "aria-label": text("replay.close"), title: `${text("replay.close")} (Esc)` }, "✕");
     close.addEventListener("click", () => this.listener.close());
     return make("div", { class: "choices" },
       make("label", { class: "run" }, make("span", {}, text("replay.run")), this.run),
       make("label", { class: "against" }, make("span", {}, text("replay.against")), this.against), this.manner,
-      make("span", { class: "space" }), this.filming, close);
+      make("label", { class: "save" }, make("span", {}, text("replay.save")), this.saving), make("span", { class: "space" }), this.filming, close);
   }
 
   private timeline(): HTMLElement {
@@ -158,6 +162,11 @@ export class ReplayPanel {
     this.against.addEventListener("change", compare);
     this.manner.addEventListener("change", compare);
     this.filming.addEventListener("click", () => listener.filmOrEnd());
+    this.saving.addEventListener("change", () => {
+      const ending = SAVED_AS.find((one) => one === this.saving.value);
+      this.saving.value = "";
+      if (ending) listener.save(ending);
+    });
   }
 }
 

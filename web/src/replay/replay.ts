@@ -9,6 +9,7 @@ import { Film } from "./film";
 import { marksOf } from "./marks";
 import { ReplayPanel, type Choice, type Manner, type PanelListener } from "./panel";
 import { Player } from "./player";
+import { save, type SavedAs } from "./save";
 import { durationOf, hasAssist, poseAt, samePlace, type Take } from "./take";
 
 /** The most moments at which curves are drawn. */
@@ -137,6 +138,15 @@ export class Replay implements PanelListener {
       this.film.begin(host.picture.stage.canvas, "elbowroom");
       this.panel.showFilming(true);
     }
+  }
+
+  save(ending: SavedAs): void {
+    if (!this.take) return;
+    const { host } = this;
+    save(this.take, ending).then(
+      (note) => note && host.say("info", note),
+      (error: unknown) => host.say("error", text("replay.notSaved", error instanceof Error ? error.message : String(error))),
+    );
   }
 
   close(): void {

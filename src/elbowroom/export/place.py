@@ -1,0 +1,124 @@
+"""A scene as triangles: what stands and moves in it, the ground, and the line to cross."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.export.animation import Animation
+from elbowroom.formats.glb_draft import GlbDraft
+from elbowroom.formats.gltf_animating import NodeMotion, joined_animation
+from elbowroom.formats.gltf_merging import with_nodes_of
+from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.hulls import surface_of
+from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+_AROUND, _RINGS = 32, 8  # corners of a circle, rings of half a ball
+_GROUND, _STANDING, _MOVING, _FINISH = (0.55, 0.55, 0.52), (0.75, 0.55, 0.35), (0.35, 0.55, 0.75), (0.2, 0.65, 0.3)
+_BOX = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+_THIN = 0.002  # metres that the finish lies above the ground
+
+
+def place_glb(scene: Scene) -> bytes:
+    """The scene as a GLB: the ground, the finish, and a node for each obstacle where it is at the beginning."""
+    draft = GlbDraft()
+    looks = {color: _look(draft, color) for color in (_GROUND, _STANDING, _MOVING, _FINISH)}
+    x, z = scene.ground_center
+    flat = _rectangle(*scene.ground_size)
+    draft.add_node("ground", None, (x, 0.0, z), mesh=_mesh(draft, flat, looks[_GROUND]))
+    gate = scene.finish
+    line = _mesh(draft, _rectangle(gate.width, 0.1), looks[_FINISH])
+    place = (gate.position[0], _THIN, gate.position[1])
+    draft.add_node("finish", None, place, quaternion.about_axis(1, gate.heading), mesh=line)
+    for name, shape, center, turn in scene.obstacles:
+        draft.add_node(name, None, center, turn, mesh=_mesh(draft, triangles_of(shape), looks[_STANDING]))
+    for track in scene.obstacles.moving.tracks:
+        centers, yaws = track.poses([0.0])
+        turn = quaternion.about_axis(1, float(yaws[0]))
+        draft.add_node(track.name, None, centers[0], turn, mesh=_mesh(draft, triangles_of(track.shape), looks[_MOVING]))
+    return draft.finish()
+
+
+def with_place(glb: bytes, scene: Scene, animation: Animation) -> bytes:
+    """An animated GLB with the scene beside what it holds; what moves there by itself joins its first animation."""
+    merged, numbers = with_nodes_of(glb, place_glb(scene))
+    tracks, motions = scene.obstacles.moving.tracks, []
+    for track, node in zip(tracks, numbers[len(numbers) - len(tracks) :], strict=True):
+        centers, yaws = track.poses(animation.clock)
+        motions.append(NodeMotion(node, quaternion.about_axis(1, yaws), centers))
+    return joined_animation(merged, 1.0 / animation.fps, motions) if motions else merged
+
+
+def triangles_of(shape: Shape) -> Floats:
+    """Corners (T, 3, 3) of a shape's surface about its own origin, counter-clockwise seen from outside, metres."""
+    match shape:
+        case Box(size):
+            signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+            faces = np.array(_BOX)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+            corners: Floats = (signs * size)[faces]
+            return corners
+        case Sphere(radius):
+            return _turned(_half_ball(radius, 0.0))
+        case Capsule(radius, length):
+            return _turned(_half_ball(radius, 0.5 * length))
+        case Cylinder(radius, height):
+            half = 0.5 * height
+            return _turned([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
+        case Hull():
+            points, triangles = surface_of(shape)
+            corners = points[triangles]
+            return corners
+        case Mesh():
+            return shape.corners
+
+
+def _half_ball(radius: float, rise: float) -> list[tuple[float, float]]:
+    """Outline (radius, height), from the lowest point up, of a ball whose halves are moved apart by `rise` each."""
+    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * _RINGS + 2)
+    return [(radius * np.cos(a), radius * np.sin(a) + (rise if a > 0.0 else -rise)) for a in angles.tolist()]
+
+
+def _turned(outline: Sequence[tuple[float, float]]) -> Floats:
+    """The surface that an outline sweeps about Y."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
+    rings = np.array([[[r * np.sin(a), y, r * np.cos(a)] for a in angles] for r, y in outline])
+    beside = np.roll(rings, -1, axis=1)
+    lower = np.stack([rings[:-1], beside[:-1], beside[1:]], axis=2)
+    upper = np.stack([rings[:-1], beside[1:], rings[1:]], axis=2)
+    triangles = np.concatenate([lower.reshape(-1, 3, 3), upper.reshape(-1, 3, 3)])
+    return triangles[_areas(triangles) > 1e-12]
+
+
+def _areas(triangles: Floats) -> Floats:
+    across: Floats = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas: Floats = np.linalg.norm(across, axis=1)
+    return areas
+
+
+def _rectangle(width: float, depth: float) -> Floats:
+    """Two triangles on the ground, seen from above."""
+    x, z = 0.5 * width, 0.5 * depth
+    a, b, c, d = (-x, 0.0, -z), (-x, 0.0, z), (x, 0.0, z), (x, 0.0, -z)
+    return np.array([[a, b, c], [a, c, d]])
+
+
+def _look(draft: GlbDraft, color: tuple[float, float, float]) -> int:
+    surface = {"baseColorFactor": [*color, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9}
+    return draft.add("materials", {"pbrMetallicRoughness": surface, "doubleSided": True})
+
+
+def _mesh(draft: GlbDraft, triangles: Floats, material: int) -> int:
+    """A mesh of flat triangles; those without an area are left out."""
+    kept = triangles[_areas(triangles) > 1e-12]
+    kept = kept if len(kept) else triangles[:1]
+    across = np.cross(kept[:, 1] - kept[:, 0], kept[:, 2] - kept[:, 0])
+    lengths = np.linalg.norm(across, axis=1, keepdims=True)
+    normals = np.where(lengths > 0.0, across / np.maximum(lengths, 1e-300), [0.0, 1.0, 0.0])
+    attributes = {
+        "POSITION": draft.add_vertices(kept.reshape(-1, 3), bounds=True),
+        "NORMAL": draft.add_vertices(np.repeat(normals, 3, axis=0)),
+    }
+    return draft.add("meshes", {"primitives": [{"attributes": attributes, "material": material}]})
