@@ -67,7 +67,8 @@ def test_walking_forward_and_letting_go(client: Client) -> None:
 
 
 def test_time_runs_forward_and_poses_follow_it(client: Client) -> None:
-    client.press(forward=1.0)
+    seq = client.press(forward=1.0)
+    client.frame(lambda f: f.acknowledged == seq)  # before it the avatar stood, and few frames came
     frames = [client.frame() for _ in range(60)]
     for before, after in pairwise(frames):
         assert after.time > before.time

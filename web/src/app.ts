@@ -29,6 +29,7 @@ import { Hud } from "./ui/hud";
 import { Menu, type MenuListener } from "./ui/menu";
 import { Notices } from "./ui/notices";
 import { shareAddress } from "./ui/share";
+import { Steps } from "./steps/steps";
 import { StatusLine } from "./ui/status_line";
 import { Veil } from "./ui/veil";
 
@@ -45,6 +46,7 @@ export class App implements SessionListener, MenuListener {
   readonly controls: Controls;
   readonly stats = new FrameStats();
   readonly replay: ReplayDoor;
+  readonly steps: Steps;
   pose: ShownPose | null = null;
   sceneMessage: SceneMessage | null = null;
   private avatarMessage: AvatarMessage | null = null;
@@ -77,6 +79,7 @@ export class App implements SessionListener, MenuListener {
     this.preferences = readPreferences(query);
     const label = byId("nearest-label", HTMLElement);
     this.picture = new Picture(this.view, label, this.preferences.quality, () => this.calm.matches);
+    this.steps = new Steps(this.picture);
     this.replay = new ReplayDoor({
       picture: this.picture, say: (level, said) => this.notices.show(level, said), closed: () => this.goOnLive(),
       dock: (pixels) => document.documentElement.style.setProperty("--dock", `${pixels}px`),
@@ -443,6 +446,7 @@ export class App implements SessionListener, MenuListener {
     const replayed = this.replay.advance(dt);
     this.pose = replayed ?? this.session.poseAt(now) ?? this.pose;
     const { settings, status } = this.session;
+    if (this.pose) this.steps.update(this.pose, { heard: this.preferences.sound, shown: this.preferences.overlays.has("footprints") });
     if (replayed) {
       this.drawReplayed(replayed, dt);
       return;

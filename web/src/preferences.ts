@@ -17,6 +17,8 @@ export interface Preferences {
   hud: boolean;
   /** Whether the side view is shown in a corner. */
   inset: boolean;
+  /** Whether steps are heard. */
+  sound: boolean;
 }
 
 /** Wishes from the address line, for the start and for the way back to it; null where the line says nothing. */
@@ -49,6 +51,7 @@ export function readPreferences(query: URLSearchParams): Preferences {
     overlays: typeof overlays === "string" ? parseOverlays(overlays) : new Set(),
     hud: stored["hud"] !== false,
     inset: stored["inset"] === true,
+    sound: stored["sound"] === true,
   };
 }
 

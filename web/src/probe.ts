@@ -45,6 +45,8 @@ export interface AppState {
   readonly delayMs: number;
   readonly roundTripMs: number;
   readonly replay: unknown;
+  readonly steps: number;
+  readonly footprints: number;
 }
 
 declare global {
@@ -102,5 +104,7 @@ function snapshot(app: App): AppState {
     delayMs: 1000 * session.delay,
     roundTripMs: session.roundTripMs,
     replay: app.replay.state,
+    steps: app.steps.count,
+    footprints: app.steps.printed,
   };
 }

@@ -25,6 +25,7 @@ from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Ove
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.schema.progress import Loading, Notice, Pong
 from elbowroom.server.stage import Stage
+from elbowroom.server.standstill import Standstill
 from elbowroom.server.wanted import Wanted
 
 LOG = logging.getLogger("elbowroom.server")
@@ -52,6 +53,7 @@ class Session:
         self._socket = socket
         self._library = library
         self._outbox = Outbox()
+        self._standstill = Standstill()
         self._bucket = TokenBucket(_MESSAGE_RATE, _MESSAGE_RATE)
         self._wrong = 0
         self._began = time.monotonic()
@@ -164,8 +166,11 @@ class Session:
                 self._report()
 
     def _show(self) -> None:
-        self._tell(self._stage.advance(self._now()))
-        self._send_frame()
+        now = self._now()
+        self._tell(self._stage.advance(now))
+        packed = self._stage.frame(now)
+        if self._standstill.worth_sending(packed, now, restless=self._stage.restless):
+            self._outbox.put_frame(packed)
         if self._library.vmc is not None:
             self._library.vmc.show(self, self._stage.walk.avatar.humanoid, self._stage.moment())
 

@@ -143,6 +143,11 @@ class Stage:
         x, z, heading = frame.root[:3].tolist()
         return Moment(frame.time, (x, 0.0, z), heading, self.walk.node_pose())
 
+    @property
+    def restless(self) -> bool:
+        """Whether something may move though the avatar stands: it is told to go, or obstacles move by themselves."""
+        return not self.paused and (not self.command.idle or bool(len(self.walk.scene.obstacles.moving)))
+
     def status(self, now: float) -> Status:
         """The state in numbers."""
         walk, frame = self.walk, self.walk.frame

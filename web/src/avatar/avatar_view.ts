@@ -1,6 +1,6 @@
 /** The avatar as it stands in the world: takes poses, fades when the camera is close, blinks now and then. */
 
-import { Group, type Object3D } from "three";
+import { Group, Vector3, type Object3D } from "three";
 import type { AvatarMessage } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
 import type { AvatarFile } from "./avatar_file";
@@ -13,6 +13,7 @@ export class AvatarView {
   private file: AvatarFile | null = null;
   private joints: (Object3D | undefined)[] = [];
   private hips: Object3D | undefined;
+  private feet: Object3D[] = [];
   private surfaces: Surfaces | null = null;
   private rich = true;
   private epoch = -1;
@@ -30,6 +31,7 @@ export class AvatarView {
     this.revision = message.revision;
     this.joints = message.bones.map((bone) => file?.nodes.get(bone.node));
     this.hips = this.joints[message.bones.findIndex((bone) => bone.name === "hips")];
+    this.feet = this.joints.filter((_, i) => ["leftFoot", "rightFoot"].includes(message.bones[i]?.name ?? "")).filter((foot) => foot !== undefined);
     this.surfaces = file ? new Surfaces(file.scene, this.rich) : null;
     this.blinking = file?.vrm?.expressionManager ? new Blinking(file.vrm.expressionManager) : null;
     if (!file) return;
@@ -46,7 +48,7 @@ export class AvatarView {
     if (this.file) this.dispose?.(this.file);
     this.file = null;
     this.group.clear();
-    this.joints = [];
+    this.joints = this.feet = [];
     this.surfaces = null;
     this.blinking = null;
     this.revision = -1;
@@ -68,6 +70,13 @@ export class AvatarView {
       this.group.updateMatrixWorld(true);
       this.file?.vrm?.springBoneManager?.reset();
     }
+  }
+
+  /** Where the ankle is that is furthest ahead, metres in the world; null without feet. */
+  foremostFoot({ heading }: Pick<ShownPose, "heading">): readonly [number, number, number] | null {
+    const ahead = (at: Vector3) => at.x * Math.sin(heading) + at.z * Math.cos(heading);
+    const places = this.feet.map((foot) => foot.getWorldPosition(new Vector3())).sort((a, b) => ahead(b) - ahead(a));
+    return places[0]?.toArray() ?? null;
   }
 
   /** Moves hair and cloth, eyelids and materials by `dt` seconds. */

@@ -1,6 +1,6 @@
 /** The overlays that can be switched on. */
 
-export const OVERLAYS = ["capsules", "path", "ghosts", "goal", "nearest", "plan"] as const;
+export const OVERLAYS = ["capsules", "path", "ghosts", "goal", "nearest", "plan", "footprints"] as const;
 
 export type OverlayName = (typeof OVERLAYS)[number];
 
@@ -11,6 +11,7 @@ export const OVERLAY_TITLES: Readonly<Record<OverlayName, string>> = {
   goal: "Wanted and chosen posture",
   nearest: "Nearest distance",
   plan: "Plan status",
+  footprints: "Footprints",
 };
 
 /** Reads `capsules,path` or `all`; unknown names are ignored. */

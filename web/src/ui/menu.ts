@@ -37,6 +37,7 @@ export class Menu {
   private readonly file = byId("file", HTMLInputElement);
   private readonly hud = byId("hud-shown", HTMLInputElement);
   private readonly inset = byId("inset-shown", HTMLInputElement);
+  private readonly sound = byId("sound-on", HTMLInputElement);
   private readonly narrow = window.matchMedia(NARROW);
   private readonly checks = new Map<OverlayName, HTMLInputElement>();
 
@@ -199,6 +200,8 @@ export class Menu {
     }
     this.hud.addEventListener("change", () => this.listener.prefer({ hud: this.hud.checked }));
     this.inset.addEventListener("change", () => this.listener.prefer({ inset: this.inset.checked }));
+    this.sound.checked = preferences.sound;
+    this.sound.addEventListener("change", () => this.listener.prefer({ sound: this.sound.checked }));
     this.showPanels(preferences);
     this.showOverlays(preferences.overlays);
   }
