@@ -1,4 +1,4 @@
-import { defineConfig } from "vite";
+import { defineConfig } from "vitest/config";
 
 /** Where `npm run dev` finds the Python server. */
 const SERVER = "http://127.0.0.1:8765";
@@ -22,6 +22,7 @@ export default defineConfig({
       },
     },
   },
+  test: { testTimeout: 60_000 }, // machines are busy; no test is about time
   server: {
     proxy: {
       "/api": SERVER,
