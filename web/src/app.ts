@@ -19,6 +19,7 @@ import { Picture } from "./picture";
 import { ReplayDoor } from "./replay/door";
 import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
 import { BestTimes, nextScene } from "./results";
+import { text } from "./texts/texts";
 import { showAvatarAbout } from "./ui/avatar_about";
 import { byId } from "./ui/dom";
 import { listenForFiles } from "./ui/file_drop";
@@ -146,7 +147,7 @@ export class App implements SessionListener, MenuListener {
     this.picture
       .showAvatar(message)
       .then(() => (this.avatarTitle = message.title))
-      .catch((error: unknown) => this.notices.show("error", `${message.title} cannot be shown: ${words(error)}`))
+      .catch((error: unknown) => this.notices.show("error", text("app.noAvatar", message.title, words(error))))
       .finally(() => this.veil.download(false));
   }
 
@@ -161,7 +162,7 @@ export class App implements SessionListener, MenuListener {
   avatarLost(id: string): boolean {
     if (this.lastFile) this.file(this.lastFile);
     else if (isPrivate(id)) return false;
-    else this.notices.show("warning", `The server has no avatar "${id}"; the stock one stands in.`);
+    else this.notices.show("warning", text("app.standIn", id));
     return true;
   }
 
@@ -261,8 +262,8 @@ export class App implements SessionListener, MenuListener {
     if (avatar) {
       this.menu.addAvatar(avatar.id, avatar.title);
       this.configure({ avatar: avatar.id });
-      const [count, them] = clips.length === 1 ? ["one motion clip", "it"] : [`${clips.length} motion clips`, "them"];
-      if (clips.length > 0) this.notices.show("info", `${avatar.title} brings ${count}: choose ${them} in the menu.`);
+      const brought = text(clips.length === 1 ? "app.oneClip" : "app.clips", avatar.title, clips.length);
+      if (clips.length > 0) this.notices.show("info", brought);
     } else if (clips[0]) {
       this.lastFile = null;
       this.configure({ clip: clips[0].id });

@@ -2,6 +2,11 @@
 
 import { App } from "./app";
 import { exposeState } from "./probe";
+import { speak } from "./texts/texts";
+import { wordDocument } from "./texts/worded";
+
+speak([new URLSearchParams(location.search).get("lang"), ...navigator.languages]);
+wordDocument(document.documentElement);
 
 try {
   exposeState(new App());

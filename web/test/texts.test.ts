@@ -1,6 +1,11 @@
 import { describe, expect, it } from "vitest";
+import html from "../index.html?raw";
+import { VIEWS } from "../src/camera/views";
+import { OVERLAY_TITLES } from "../src/overlays/overlay_names";
 import { chosenLanguage, languageOf, LANGUAGES } from "../src/texts/language";
+import { PHRASES } from "../src/texts/phrases";
 import { TABLE } from "../src/texts/table";
+import { helpSections } from "../src/ui/help_sections";
 import { filled } from "../src/texts/texts";
 
 const places = (pattern: string) => [...pattern.matchAll(/\{\d\}/g)].map(String).sort();
@@ -17,6 +22,41 @@ describe("the table of texts", () => {
 
   it("puts values in their places", () => {
     expect(filled("{1} of {0}", ["ten", 3])).toBe("3 of ten");
+  });
+});
+
+/** What a page of HTML says: the texts between its tags, and those of its attributes that are read out or shown. */
+function textsOf(page: string): string[] {
+  const body = page.replace(/<head>[\s\S]*<\/head>/, "").replace(/<script[\s\S]*?<\/script>/g, "");
+  const attributes = [...body.matchAll(/\s(?:title|aria-label|placeholder)="([^"]+)"/g)].map((found) => found[1] ?? "");
+  const between = body.replace(/<[^>]+>/g, "\n").split("\n");
+  return [...attributes, ...between].map((one) => one.trim()).filter((one) => /[A-Za-z]{2}/.test(one));
+}
+
+describe("the phrases", () => {
+  const NAMES = new Set(["Elbowroom", "K"]);
+
+  it("word all of index.html", () => {
+    const said = textsOf(html).filter((english) => !NAMES.has(english));
+    expect(said.length).toBeGreaterThan(50);
+    expect(said.filter((english) => !(english in PHRASES))).toEqual([]);
+  });
+
+  it("word the help, the cameras and the overlays", () => {
+    const help = helpSections({ touch: false, gamepad: false }).flatMap(({ title, rows }) => [title, ...rows.map(([, meaning]) => meaning)]);
+    const said = [...help, ...Object.values(VIEWS).map(({ title }) => title), ...Object.values(OVERLAY_TITLES)];
+    expect(said.filter((english) => !(english in PHRASES))).toEqual([]);
+  });
+
+  it("word every phrase of the code", () => {
+    const sources = import.meta.glob<string>("../src/**/*.ts", { query: "?raw", import: "default", eager: true });
+    const said = Object.values(sources).flatMap((source) => [...source.matchAll(/worded\("([^"]+)"\)/g)].map((found) => found[1] ?? ""));
+    expect(said.length).toBeGreaterThan(20);
+    expect(said.filter((english) => !(english in PHRASES))).toEqual([]);
+  });
+
+  it("are no longer English", () => {
+    for (const [english, words] of Object.entries(PHRASES)) expect(words, english).toMatch(/[\u4e00-\u9fff]/);
   });
 });
 

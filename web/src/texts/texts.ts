@@ -13,6 +13,11 @@ export function speak(wishes: readonly (string | null)[]): Language {
   return language;
 }
 
+/** The language that the page speaks. */
+export function spoken(): Language {
+  return language;
+}
+
 /** The text of this name; `{0}`, `{1}` stand for the values. */
 export function text(name: TextName, ...values: readonly (string | number)[]): string {
   return filled(TABLE[name][language], values);

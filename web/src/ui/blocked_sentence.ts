@@ -1,20 +1,27 @@
 /** Why there is no way on, in one sentence. */
 
 import type { Blocked } from "../generated/messages";
+import { text } from "../texts/texts";
 
 const MOST_NAMES = 3;
 
 /** "No way on: beam 2 and crate 3 leave no posture at 0.8 m ahead". */
 export function blockedSentence({ reason, obstacles, ahead }: Blocked): string {
-  const where = ahead < 0.05 ? "here" : `${ahead.toFixed(1)} m ahead`;
-  if (obstacles.length === 0 || reason === "motion") return `No way on: every motion that was tried touches ${where}`;
-  const verb = obstacles.length === 1 ? "leaves" : "leave";
-  const what = reason === "noPosture" ? "no posture" : "no posture in reach";
-  return `No way on: ${listed(obstacles)} ${verb} ${what} ${where === "here" ? "here" : `at ${where}`}`;
+  const near = ahead < 0.05;
+  const metres = ahead.toFixed(1);
+  const where = near ? text("blocked.here") : text("blocked.ahead", metres);
+  if (obstacles.length === 0 || reason === "motion") return text("blocked.motion", where);
+  const one = obstacles.length === 1;
+  const what = reason === "noPosture" ? text("blocked.noPosture") : text("blocked.outOfReach");
+  return text(one ? "blocked.one" : "blocked.many", listed(obstacles), what, near ? where : text("blocked.at", metres));
 }
 
 function listed(names: readonly string[]): string {
-  if (names.length > MOST_NAMES) return `${names.slice(0, MOST_NAMES - 1).join(", ")} and ${names.length - MOST_NAMES + 1} more`;
+  if (names.length > MOST_NAMES) return text("list.more", joined(names.slice(0, MOST_NAMES - 1)), names.length - MOST_NAMES + 1);
   if (names.length === 1) return names[0] ?? "";
-  return `${names.slice(0, -1).join(", ")} and ${names.at(-1) ?? ""}`;
+  return text("list.and", joined(names.slice(0, -1)), names.at(-1) ?? "");
+}
+
+function joined(names: readonly string[]): string {
+  return names.join(text("list.comma"));
 }

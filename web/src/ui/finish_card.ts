@@ -1,6 +1,8 @@
 /** The card after the finish: what the crossing came to, and what to do next. */
 
 import type { Crossed } from "../generated/messages";
+import { worded } from "../texts/worded";
+import { text } from "../texts/texts";
 import { byId, make } from "./dom";
 
 /** A crossing as the card tells it. */
@@ -34,9 +36,9 @@ export class FinishCard {
 
   show(finish: Finish): void {
     const record = finish.assist && (finish.best === null || finish.crossed.seconds < finish.best);
-    this.title.textContent = `Through in ${finish.crossed.seconds.toFixed(1)} s${record && finish.best !== null ? ": your best" : ""}`;
+    this.title.textContent = text(record && finish.best !== null ? "finish.best" : "finish.through", finish.crossed.seconds.toFixed(1));
     this.facts.replaceChildren(...factsOf(finish).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
-    this.compare.textContent = finish.assist ? "Without assist" : "With assist";
+    this.compare.textContent = worded(finish.assist ? "Without assist" : "With assist");
     this.card.hidden = false;
   }
 
@@ -47,8 +49,8 @@ export class FinishCard {
 
 /** The rows of the card. */
 export function factsOf({ crossed, clearance, assist, best }: Finish): [string, string][] {
-  const stuck = crossed.stuckTimes === 0 ? "never" : crossed.stuckTimes === 1 ? "once" : `${crossed.stuckTimes} times`;
-  const least = clearance < 0 ? "passed through things" : Number.isFinite(clearance) ? `${(100 * clearance).toFixed(1)} cm` : "nothing near";
-  const time = !assist ? "does not count without assist" : best === null ? "this is the first" : `${Math.min(best, crossed.seconds).toFixed(1)} s`;
-  return [["Stuck", stuck], ["Least clearance", least], ["Best here", time]];
+  const stuck = crossed.stuckTimes === 0 ? worded("never") : crossed.stuckTimes === 1 ? worded("once") : text("times", crossed.stuckTimes);
+  const least = clearance < 0 ? worded("passed through things") : Number.isFinite(clearance) ? `${(100 * clearance).toFixed(1)} cm` : worded("nothing near");
+  const time = !assist ? worded("does not count without assist") : best === null ? worded("this is the first") : `${Math.min(best, crossed.seconds).toFixed(1)} s`;
+  return [[worded("Stuck"), stuck], [worded("Least clearance"), least], [worded("Best here"), time]];
 }

@@ -1,10 +1,11 @@
 /** The help dialog. */
 
 import { connectedPad } from "../input/gamepad";
+import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
 import { helpSections, type Section } from "./help_sections";
 
-const INTRO =
+export const INTRO =
   "You steer; the avatar finds its own way to fit. It bends, twists and moves its arms so that no part of it " +
   "touches anything. Walk it through the gate. Switch Assist off to see the same walk without planning.";
 
@@ -14,13 +15,13 @@ export class Help {
   private readonly touch = window.matchMedia("(pointer: coarse)");
 
   constructor() {
-    const close = make("button", { class: "icon", type: "button", "aria-label": "Close help" }, "✕");
+    const close = make("button", { class: "icon", type: "button", "aria-label": worded("Close help") }, "✕");
     close.addEventListener("click", () => this.close());
     this.dialog.addEventListener("click", (event) => {
       if (event.target === this.dialog) this.close();
     });
-    const header = make("header", {}, make("h2", { id: "help-title" }, "How to steer"), close);
-    this.dialog.append(make("div", { class: "help-body" }, header, make("p", {}, INTRO), this.columns));
+    const header = make("header", {}, make("h2", { id: "help-title" }, worded("How to steer")), close);
+    this.dialog.append(make("div", { class: "help-body" }, header, make("p", {}, worded(INTRO)), this.columns));
   }
 
   get isOpen(): boolean {
@@ -48,7 +49,7 @@ function drawn({ title, rows }: Section): HTMLElement {
   const list = make("dl", { class: "keys" });
   for (const [keys, meaning] of rows) {
     const caps = keys.flatMap((key, i) => (i === 0 ? [make("kbd", {}, key)] : [" ", make("kbd", {}, key)]));
-    list.append(make("dt", {}, ...caps), make("dd", {}, meaning));
+    list.append(make("dt", {}, ...caps), make("dd", {}, worded(meaning)));
   }
-  return make("section", {}, make("h3", {}, title), list);
+  return make("section", {}, make("h3", {}, worded(title)), list);
 }

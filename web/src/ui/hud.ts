@@ -1,6 +1,7 @@
 /** The small table of numbers in the corner. */
 
 import type { Status } from "../generated/messages";
+import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
 
 /** What the page itself measures. */
@@ -13,7 +14,7 @@ export interface PageNumbers {
   readonly planner: string;
 }
 
-const ROWS = [
+export const ROWS = [
   ["queue", "Queue", ""],
   ["planning", "Planning", ""],
   ["answer", "Answer", "extra"],
@@ -42,7 +43,7 @@ export class Hud {
     for (const [name, title, kind] of ROWS) {
       const cell = make("dd", { class: kind }, "–");
       this.cells.set(name, cell);
-      list.append(make("dt", { class: kind }, title), cell);
+      list.append(make("dt", { class: kind }, worded(title)), cell);
     }
     this.cells.get("queue")?.replaceChildren(this.pips, this.queueText);
     this.planList.hidden = true;
@@ -112,8 +113,8 @@ function plansText({ plans, plansFailed, latePlans }: Status): string {
 }
 
 function clearanceText(clearance: number): string {
-  if (!Number.isFinite(clearance)) return "free";
-  return clearance < 0 ? "touching" : `${(100 * clearance).toFixed(1)} cm`;
+  if (!Number.isFinite(clearance)) return worded("free");
+  return clearance < 0 ? worded("touching") : `${(100 * clearance).toFixed(1)} cm`;
 }
 
 function tone(status: string): string {

@@ -5,6 +5,7 @@ import type { Catalog, Configure, Settings } from "../generated/messages";
 import type { Action } from "../input/keyboard";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
 import type { Preferences } from "../preferences";
+import { worded } from "../texts/worded";
 import { ClipPanel } from "./clip_panel";
 import { CoursePanel } from "./course_panel";
 import { byId, make, setOptions } from "./dom";
@@ -94,10 +95,10 @@ export class Menu {
     const assist = byId("assist", HTMLButtonElement);
     assist.setAttribute("aria-checked", String(settings.assist));
     const value = assist.querySelector(".value");
-    if (value) value.textContent = settings.assist ? "on" : "off";
+    if (value) value.textContent = worded(settings.assist ? "on" : "off");
     const pause = byId("pause", HTMLButtonElement);
     pause.setAttribute("aria-pressed", String(settings.paused));
-    pause.setAttribute("aria-label", settings.paused ? "Resume" : "Pause");
+    pause.setAttribute("aria-label", worded(settings.paused ? "Resume" : "Pause"));
     for (const slow of document.querySelectorAll("[data-action=slow]")) {
       slow.setAttribute("aria-pressed", String(settings.speed < 1));
     }
@@ -168,7 +169,7 @@ export class Menu {
   private addViews(): void {
     const host = byId("views", HTMLElement);
     VIEW_NAMES.forEach((name, i) => {
-      const button = make("button", { class: "plain", type: "button", title: `${VIEWS[name].title} (${i + 1})` }, VIEWS[name].title);
+      const button = make("button", { class: "plain", type: "button", title: `${worded(VIEWS[name].title)} (${i + 1})` }, worded(VIEWS[name].title));
       button.dataset["action"] = `view:${name}`;
       host.append(button);
     });
@@ -188,7 +189,7 @@ export class Menu {
       const box = make("input", { type: "checkbox", id: `overlay-${name}` });
       box.addEventListener("change", () => this.listener.overlay(name, box.checked));
       this.checks.set(name, box);
-      host.append(make("label", {}, box, OVERLAY_TITLES[name], make("span", { class: `key key-${name}`, "aria-hidden": "true" })));
+      host.append(make("label", {}, box, worded(OVERLAY_TITLES[name]), make("span", { class: `key key-${name}`, "aria-hidden": "true" })));
     }
   }
 

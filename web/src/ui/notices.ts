@@ -1,5 +1,6 @@
 /** Sentences for the user: they appear under the bar and go by themselves or at a click. */
 
+import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
 
 const SECONDS: Readonly<Record<Level, number>> = { info: 5, warning: 9, error: 14 };
@@ -11,7 +12,7 @@ export class Notices {
   private readonly host = byId("notices", HTMLElement);
 
   show(level: Level, message: string): void {
-    const close = make("button", { type: "button", "aria-label": "Dismiss" }, "✕");
+    const close = make("button", { type: "button", "aria-label": worded("Dismiss") }, "✕");
     const notice = make("div", { class: `notice ${level}` }, make("p", {}, message), close);
     close.addEventListener("click", () => notice.remove());
     for (const other of [...this.host.children]) if (other.firstChild?.textContent === message) other.remove();

@@ -2,6 +2,8 @@
 
 import { POSE_FLAGS, type Crossed, type PoseFrame, type Settings, type Status } from "../generated/messages";
 import { blockedSentence } from "./blocked_sentence";
+import { worded } from "../texts/worded";
+import { text } from "../texts/texts";
 import { byId } from "./dom";
 
 type Tone = "" | "good" | "bad";
@@ -30,13 +32,13 @@ export class StatusLine {
   }
 
   update(pose: PoseFrame | null, status: Status | null, settings: Settings | null, now: number): void {
-    const [text, tone] = this.sentence(pose, status, settings, now);
-    if (text !== this.wanted) {
-      this.wanted = text;
+    const [said, tone] = this.sentence(pose, status, settings, now);
+    if (said !== this.wanted) {
+      this.wanted = said;
       this.wantedSince = now;
     }
-    if (now - this.wantedSince < QUIET_BEFORE_CHANGE || this.element.textContent === text) return;
-    this.element.textContent = text;
+    if (now - this.wantedSince < QUIET_BEFORE_CHANGE || this.element.textContent === said) return;
+    this.element.textContent = said;
     this.element.dataset["tone"] = tone;
   }
 
@@ -45,25 +47,25 @@ export class StatusLine {
   ): readonly [string, Tone] {
     if (!pose || !settings) return ["", ""];
     if (this.celebrated && now < this.celebrated.until) return [crossedText(this.celebrated.crossed), "good"];
-    if (settings.paused) return ["Paused: . for one step, P to go on", ""];
-    if (settings.clip !== "") return ["A recorded motion plays: choose “none: walk” in the menu to steer", ""];
-    if (!settings.assist && (pose.flags & POSE_FLAGS.touching) !== 0) return ["Assist is off: the body passes through things", "bad"];
+    if (settings.paused) return [worded("Paused: . for one step, P to go on"), ""];
+    if (settings.clip !== "") return [worded("A recorded motion plays: choose “none: walk” in the menu to steer"), ""];
+    if (!settings.assist && (pose.flags & POSE_FLAGS.touching) !== 0) return [worded("Assist is off: the body passes through things"), "bad"];
     if (status?.blocked && settings.assist) return [blockedSentence(status.blocked), "bad"];
-    if ((pose.flags & POSE_FLAGS.stuck) !== 0) return ["No room this way: back up with S and try another", "bad"];
+    if ((pose.flags & POSE_FLAGS.stuck) !== 0) return [worded("No room this way: back up with S and try another"), "bad"];
     if (!this.everMoved) return [firstHint(), ""];
-    if (status?.rootKind === "stopped") return ["The way ahead is closed", ""];
-    if (status?.rootKind === "detour") return ["Going round", ""];
+    if (status?.rootKind === "stopped") return [worded("The way ahead is closed"), ""];
+    if (status?.rootKind === "detour") return [worded("Going round"), ""];
     return ["", ""];
   }
 }
 
 function crossedText({ seconds, stuckTimes }: Crossed): string {
-  const stuck = stuckTimes === 0 ? "never stuck" : stuckTimes === 1 ? "stuck once" : `stuck ${stuckTimes} times`;
-  return `Through in ${seconds.toFixed(1)} s, ${stuck}`;
+  const stuck = stuckTimes === 0 ? text("stuck.never") : stuckTimes === 1 ? text("stuck.once") : text("stuck.times", stuckTimes);
+  return text("status.through", seconds.toFixed(1), stuck);
 }
 
 function firstHint(): string {
   return window.matchMedia("(pointer: coarse)").matches
-    ? "Drag on the left to walk through the gate"
-    : "Hold W to walk through the gate · ? for help";
+    ? worded("Drag on the left to walk through the gate")
+    : worded("Hold W to walk through the gate · ? for help");
 }

@@ -2,6 +2,8 @@
 
 import type { Loading } from "../generated/messages";
 import type { ConnectionState } from "../net/connection";
+import { worded } from "../texts/worded";
+import { text } from "../texts/texts";
 import { byId } from "./dom";
 
 const PATIENCE_MS = 180;
@@ -12,7 +14,7 @@ const WHAT: Readonly<Record<Loading["what"], string>> = {
 
 export class Veil {
   private readonly element = byId("veil", HTMLElement);
-  private readonly text = this.element.firstElementChild as HTMLElement;
+  private readonly line = this.element.firstElementChild as HTMLElement;
   private readonly reasons = new Map<string, string>();
   private timer = 0;
 
@@ -20,35 +22,35 @@ export class Veil {
   connection(state: ConnectionState, why: string): void {
     if (state === "lost") {
       for (const what of Object.keys(WHAT)) this.reasons.delete(what);
-      this.set("connection", `${why}; trying again`);
-    } else this.set("connection", state === "connecting" ? "Connecting" : null);
+      this.set("connection", text("veil.again", worded(why)));
+    } else this.set("connection", state === "connecting" ? worded("Connecting") : null);
   }
 
   loading({ what, active }: Loading): void {
-    this.set(what, active ? WHAT[what] : null);
+    this.set(what, active ? worded(WHAT[what]) : null);
   }
 
   /** A file on its way to the server; null when it is through. */
   upload(name: string | null): void {
-    this.set("upload", name === null ? null : `Sending ${name}`);
+    this.set("upload", name === null ? null : text("veil.sending", name));
   }
 
   /** The avatar's own file on its way to the page. */
   download(active: boolean): void {
-    this.set("download", active ? "Loading the avatar" : null);
+    this.set("download", active ? worded("Loading the avatar") : null);
   }
 
-  private set(reason: string, text: string | null): void {
-    if (text === null) this.reasons.delete(reason);
-    else this.reasons.set(reason, text);
+  private set(reason: string, said: string | null): void {
+    if (said === null) this.reasons.delete(reason);
+    else this.reasons.set(reason, said);
     window.clearTimeout(this.timer);
     // What is over in a moment does not flash.
     this.timer = window.setTimeout(() => this.show(), this.element.hidden ? PATIENCE_MS : 0);
   }
 
   private show(): void {
-    const [text] = this.reasons.values();
-    this.element.hidden = text === undefined;
-    if (text !== undefined) this.text.textContent = `${text} …`;
+    const [said] = this.reasons.values();
+    this.element.hidden = said === undefined;
+    if (said !== undefined) this.line.textContent = `${said} …`;
   }
 }
