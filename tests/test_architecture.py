@@ -24,7 +24,7 @@ ROOMS = [
 ]
 # Of `planning/exact`, bottom to top.
 CHAPTERS = ["memory", "lattice", "sweep", "group", "joint", "refine", "certificate", "plan"]
-FOR_ALL = {"errors", "jit", "kernel_cache"}
+FOR_ALL = {"errors", "jit", "kernel_cache", "kept_kernels"}
 
 
 def imported_modules(path: Path) -> Iterator[str]:

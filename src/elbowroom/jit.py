@@ -16,6 +16,7 @@ import numba
 import numpy as np
 from llvmlite.binding import get_host_cpu_features
 
+from elbowroom.kept_kernels import KeptKernel, name_of
 from elbowroom.kernel_cache import cache_folder, cached_by_sources
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -71,8 +72,12 @@ def kernels_made() -> list[Any]:
 
 
 def _compiled(function: Function, **options: Any) -> Function:
-    kept = cache_folder(Path(function.__code__.co_filename)) is not None
+    code = function.__code__
+    folder = cache_folder(Path(code.co_filename))
     with cached_by_sources():
-        dispatcher = numba.njit(cache=kept, **_OPTIONS, **options)(function)
+        dispatcher = numba.njit(cache=folder is not None, **_OPTIONS, **options)(function)
+    if folder is not None and hasattr(dispatcher, "_cache"):  # a plain function, where Numba is told not to compile
+        name = name_of(Path(code.co_filename), function.__qualname__, code.co_firstlineno)
+        dispatcher._cache = KeptKernel(dispatcher._cache, folder, name)
     _kernels.append(dispatcher)
     return cast(Function, dispatcher)

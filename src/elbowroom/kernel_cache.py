@@ -11,7 +11,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -72,9 +72,12 @@ def cache_folder(file: Path) -> Path | None:
     config: Any = numba.config
     if config.CACHE_DIR:
         return _first_writable((Path(config.CACHE_DIR) / f"{file.stem}_{digest_of(file)[:32]}",))
+    folders = [file.parent / "__pycache__"]
     beside = f"{file.parent.name}_{hashlib.sha256(str(file.parent.resolve()).encode()).hexdigest()[:32]}"
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
-    return _first_writable((file.parent / "__pycache__", user / "elbowroom" / "kernels" / beside))
+    with suppress(RuntimeError):  # there is no home
+        user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+        folders.append(user / "elbowroom" / "kernels" / beside)
+    return _first_writable(tuple(folders))
 
 
 @lru_cache(maxsize=1024)

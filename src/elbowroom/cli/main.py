@@ -7,7 +7,6 @@ A command is one function in a module of its own, registered at the foot of this
 inside their function, so that `elbowroom --help` answers at once.
 """
 
-import atexit
 import errno
 import signal
 import sys
@@ -35,7 +34,7 @@ class _Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         if not {"-h", "--help", "--version"} & set(sys.argv):
-            _look_over_kernels()
+            _find_place_for_kernels()
         try:
             return super().invoke(ctx)
         except InputError as error:
@@ -96,18 +95,13 @@ def _told_to_end(sig: int, _frame: FrameType | None) -> None:
 
 
 @cache
-def _look_over_kernels() -> None:
-    """Compiled kernels are read as they are: before that, those that are damaged are removed."""
+def _find_place_for_kernels() -> None:
+    """See to it that there is a place for compiled kernels, and say so where there is none."""
     from elbowroom.server import kernel_files
 
     told = kernel_files.find_place()
     if told is not None:
         typer.echo(f"elbowroom: {told}", err=True)
-    for place in kernel_files.places():
-        removed = place.check()
-        if removed:
-            typer.echo(f"elbowroom: {len(removed)} damaged kernels in {place.root} are compiled anew", err=True)
-        atexit.register(place.note)
 
 
 def _one_line(error: Any) -> str:
