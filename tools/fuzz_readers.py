@@ -33,7 +33,7 @@ from elbowroom.server.apart.bounds import Bounds, keep_to
 from fuzzing import Container, Reader, answer, damaged
 
 LONGEST = 2.0  # seconds of processor time that one input may take
-_GIVEN_UP = 20.0  # seconds after which it is stopped
+_GIVEN_UP = 20.0  # seconds of it after which it is stopped
 MEMORY = 2**30  # bytes that the process of a reader may have
 
 
@@ -362,18 +362,18 @@ def _tell(name: str, number: int, seed: int, result: str, keep: Path | None) -> 
 
 
 def _watched(reader: Reader, data: bytes) -> str:
-    signal.signal(signal.SIGALRM, _stop)
-    signal.setitimer(signal.ITIMER_REAL, _GIVEN_UP)
+    signal.signal(signal.SIGPROF, _stop)
+    signal.setitimer(signal.ITIMER_PROF, _GIVEN_UP)
     try:
         return answer(reader, data)
     except Exception as error:
         return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
 def _stop(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise TimeoutError(f"stopped after {_GIVEN_UP:.0f} s")
+    raise TimeoutError(f"stopped after {_GIVEN_UP:.0f} s of processor time")
 
 
 def main() -> None:

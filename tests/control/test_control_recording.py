@@ -1,5 +1,6 @@
 """Recordings: what is written is read back, a torn file up to its last whole chunk, a hostile one not at all."""
 
+import json
 import struct
 import zlib
 from pathlib import Path
@@ -205,6 +206,18 @@ def test_nested_json_in_a_header_is_a_plain_error(tmp_path: Path) -> None:
     path.write_bytes(MAGIC + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text)))
     with pytest.raises(InputError, match=r"deep\.elbow"):
         Recording(path)
+
+
+def test_what_a_header_says_is_repeated_in_part(tmp_path: Path, run: tuple[Path, object]) -> None:
+    document = json.loads(Recording(run[0]).header.to_json())
+    document["settings"]["assis\n" + "[[ " * 5000] = 1
+    text = json.dumps(document).encode()
+    path = tmp_path / "long.elbow"
+    path.write_bytes(MAGIC + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text)))
+    with pytest.raises(InputError, match=r"long\.elbow: the header does not describe a run") as raised:
+        Recording(path)
+    assert len(str(raised.value)) < 600
+    assert "\n" not in str(raised.value)
 
 
 def test_a_missing_file_is_a_plain_error(tmp_path: Path) -> None:

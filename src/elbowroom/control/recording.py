@@ -59,6 +59,7 @@ STEP = np.dtype(
 _STEP_1 = np.dtype([(name, "<f8", DOF - 1) if name == "q" else (name, STEP[name]) for name in STEP.names or ()])
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 _PHASES = tuple(Phase)
+_SAID = 200  # characters of what a header says that are repeated in a message
 
 Steps = NDArray[np.void]
 
@@ -218,7 +219,8 @@ class Recording:
         try:
             return RecordingHeader.from_json(data)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise InputError(f"{self.path}: the header does not describe a run ({error})") from None
+            why = " ".join(str(error).split())[:_SAID]
+            raise InputError(f"{self.path}: the header does not describe a run ({why})") from None
 
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
