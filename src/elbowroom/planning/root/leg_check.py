@@ -17,6 +17,9 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
+_STRIDE = 0.1  # metres that a knee or a heel comes out of where it stands
+_GRAZE = 0.002  # metres that who goes along something may come nearer
+
 
 class LegCheck:
     """How legs are checked, of one body: what does not change from plan to plan, and what is known by now."""
@@ -49,6 +52,17 @@ class FreeLegs:
             return False
         shown, _ = dense_states(states, self._interval, self._check.spacing, np.ones(len(states) - 1, np.bool_))
         return bool(np.any(self._clearance(shown) < 0.0))
+
+    @property
+    def close(self) -> bool:
+        """Whether something stands so close by that a stride may have no room."""
+        standing = np.array([self._start, self._start])
+        return not self._near.empty and bool(self._to_check(standing, _STRIDE)[0].any())
+
+    def leaves(self, states: Floats) -> bool:
+        """Whether a path ends no nearer to what stands than it begins."""
+        first, last = self._clearance(states[[0, -1]])
+        return bool(last > first - _GRAZE)
 
     @cached_property
     def _skin(self) -> float:

@@ -50,6 +50,8 @@ class RootPlannerSettings:
         *((-0.7, 0.0), (0.0, 0.6), (0.0, -0.6), (-0.5, 0.45), (-0.5, -0.45)),
         *((1.1, 0.0), (0.8, 0.5), (0.8, -0.5)),
     )
+    # The same where none of these has a first step: steps so short that knees and heels stay where they are.
+    creeping: tuple[float, ...] = (0.05, 0.02, 0.01)
     slower: tuple[float, ...] = (1.0, 0.6, 0.35, 0.2, 0.1)  # shares of the wanted speed that are tried
 
 

@@ -1,7 +1,7 @@
 """One root plan in the making: candidates in the order in which they are liked, and the first that is free."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]
 
+_SLOW = 0.1  # m/s: who walks faster has room for a stride
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 
 
@@ -103,6 +104,19 @@ class RootQuery:
             return self._given_way(), -1
         return (best, -1) if best is not None else (self.stop(), -1)
 
+    def _crept(self, states: Floats, candidate: Callable[[float], Floats]) -> Floats:
+        """The path, or where it gets nowhere one of steps so short that they lead out of where a stride has no room.
+
+        Hard by an obstacle a stride away from it brings a knee or a heel into it.
+        """
+        walks = math.hypot(self.start.forward, self.start.lateral) > _SLOW
+        if self.around or walks or not gets_nowhere(states) or not self._legs.close:
+            return states
+        for path in map(candidate, self.settings.creeping):
+            if self._legs.leaves(path) and self._legs.kept(path) == self.horizon:
+                return path
+        return states
+
     def _given_way(self) -> Floats:
         """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
         best, longest = self._stopped(), -1
@@ -152,6 +166,8 @@ class RootQuery:
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
+        if not on_the_spot:
+            states = self._crept(states, candidate)
         return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
     def travelled(self, line: TravelLine, speed: float, sight: float) -> Answer:
@@ -159,12 +175,15 @@ class RootQuery:
         route = self._route_along(line, sight)
 
         def candidate(share: float) -> Floats:
+            return walked(Travel(share * speed, line.facing, line.turns, route.ends))
+
+        def walked(travel: Travel) -> Floats:
             states = self._blank()
-            travel = Travel(share * speed, line.facing, line.turns, route.ends)
             follow(states, route.corners, travel, self.interval, self.bounds)
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
+        states = self._crept(states, lambda share: walked(Travel(share * speed, self.start.heading, False, route.ends)))
         kind = self._kind(states, whole=number == 0, detour=route.detour)
         return Answer(states, kind, _place(route.corners[-1]), route.ends)
 
