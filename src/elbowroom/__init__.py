@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from elbowroom.planning.result import LocalPlan as LocalPlan
     from elbowroom.planning.result import PlanStatus as PlanStatus
     from elbowroom.planning.root.path import RootPath as RootPath
+    from elbowroom.world.places.options import PlaceOptions as PlaceOptions
     from elbowroom.world.scene import Gate as Gate
     from elbowroom.world.scene import Scene as Scene
 
@@ -42,6 +43,7 @@ _HOMES = {
     "InputError": "errors",
     "LocalPlan": "planning.result",
     "Phase": "control.frame",
+    "PlaceOptions": "world.places.options",
     "PlanStatus": "planning.result",
     "Planner": "planning.planner",
     "Recorder": "control.recording",

@@ -124,7 +124,7 @@ export class App implements SessionListener, MenuListener {
   scene(scene: SceneMessage): void {
     this.sceneMessage = scene;
     this.noteLive();
-    if (!this.replay.active) this.picture.showScene(scene);
+    if (!this.replay.active) this.furnish(scene);
     this.statusLine.restart();
     this.finishCard.hide();
     this.menu.addScene(scene.name, scene.title);
@@ -140,6 +140,15 @@ export class App implements SessionListener, MenuListener {
     this.menu.addAvatar(message.id, message.title);
     this.subscribe();
     if (!this.replay.active) this.dress(message);
+  }
+
+  private furnish(scene: SceneMessage): void {
+    this.picture.showScene(scene);
+    if (scene.model) this.veil.download(true);
+    this.picture
+      .showModel()
+      .catch((error: unknown) => this.notices.show("error", `${scene.title} cannot be shown: ${words(error)}`))
+      .finally(() => scene.model && this.veil.download(false));
   }
 
   private dress(message: AvatarMessage): void {
@@ -256,8 +265,13 @@ export class App implements SessionListener, MenuListener {
       .finally(() => this.veil.upload(null));
   }
 
-  /** An avatar is put on, a motion is played; the motions of an avatar's own file wait in the menu. */
-  private use({ avatar, clips }: Uploaded): void {
+  /** An avatar is put on, a motion is played, a place is gone to; the motions of an avatar's own file wait in the menu. */
+  private use({ avatar, clips, scene }: Uploaded): void {
+    if (scene) {
+      this.lastFile = null;
+      this.menu.addScene(scene.name, scene.title);
+      this.configure({ scene: scene.name });
+    }
     this.menu.clips.add(clips);
     if (avatar) {
       this.menu.addAvatar(avatar.id, avatar.title);
@@ -344,7 +358,7 @@ export class App implements SessionListener, MenuListener {
 
   /** The replay is closed: the live walk is shown again and goes on. */
   private goOnLive(): void {
-    if (this.sceneMessage) this.picture.showScene(this.sceneMessage);
+    if (this.sceneMessage) this.furnish(this.sceneMessage);
     if (this.avatarMessage && this.picture.shownAvatar !== this.avatarMessage) this.dress(this.avatarMessage);
     if (this.held) this.session.send({ type: "clock", paused: false });
     this.held = false;

@@ -85,6 +85,11 @@ export class Picture {
     this.last = [Infinity, Infinity];
   }
 
+  /** Fetches the model of the place that is shown, if it has one. @throws Error when it cannot be shown */
+  showModel(): Promise<void> {
+    return this.world.showModel();
+  }
+
   /** Fetches the avatar's file and shows it; the newest call wins. @throws Error when the file cannot be shown */
   async showAvatar(message: AvatarMessage): Promise<void> {
     const load = ++this.loads;

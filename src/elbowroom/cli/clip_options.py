@@ -17,7 +17,10 @@ Dodge = Annotated[
     typer.Option("--dodge", help="Let the avatar learn this clip too; may be repeated.", metavar="CLIP"),
 ]
 Unit = Annotated[str | None, typer.Option("--unit", help="Unit of the clips' files: m, cm, inch, cmu, or metres.")]
-Up = Annotated[str | None, typer.Option("--up", help="The axis that points up in the clips' files: y, z, -x, ...")]
+Up = Annotated[
+    str | None,
+    typer.Option("--up", help="The axis that points up in the place's file, or else in the clips': y, z, -x, ..."),
+]
 Fps = Annotated[float | None, typer.Option("--fps", help="Frames a second of the clips, whatever their files say.")]
 
 

@@ -17,7 +17,8 @@ PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
 QUEUE_HELP = "Size of the key-frame queue, |Q|: 2 to 32; the paper has 3 to 7."
 
 SCENE_HELP = (
-    "A scene by name (a, b, c, d, beam, doorway, traffic, shapes, empty), a course (gauntlet:5:1013) or a scene file."
+    "A scene by name (a, b, c, d, beam, doorway, traffic, shapes, empty), a course (gauntlet:5:1013), a scene file, "
+    "or a model of a place (GLB, X3D, VRML, OBJ, STL, PLY)."
 )
 
 

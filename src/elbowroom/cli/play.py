@@ -15,6 +15,7 @@ from elbowroom.cli import clip_options, vmc_options
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
 from elbowroom.cli.vmc_options import stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -41,6 +42,10 @@ def play(
     include_hair: IncludeHair = False,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    scale: Scale = None,
+    ground: GroundHeight = None,
+    drop: Drop = None,
+    passable: Passable = None,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -56,13 +61,16 @@ def play(
     from elbowroom.server.walk import WalkSettings
 
     settings = WalkSettings(planner=planner, queue_size=queue)
-    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
+    of_place = is_model(scene)
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
+    told = place_options(scale, up if of_place else None, ground, drop, passable)
     read = LoadSettings(bones, include_hair, height)
 
     with stream_to(vmc, vmc_root, bundles=vmc_bundles) or contextlib.nullcontext() as stream:
 
         def library() -> Library:
-            return replace(Library.open(scene, avatar, settings, motions, read), vmc=stream)
+            shown = open_scene(scene, told, quiet=False)
+            return replace(Library.open(shown, avatar, settings, motions, read), vmc=stream)
 
         serve_until_interrupted(library, host, port, open_page=open_page)
 

@@ -12,6 +12,7 @@ from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
 from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -39,6 +40,10 @@ def walk(
     include_hair: IncludeHair = False,
     limit: Annotated[float, typer.Option(help="Seconds that the user has for the crossing.")] = 30.0,
     record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    scale: Scale = None,
+    ground: GroundHeight = None,
+    drop: Drop = None,
+    passable: Passable = None,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -59,11 +64,12 @@ def walk(
     compile_first(quiet=quiet)
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
-    from elbowroom.experiment.gauntlet.scenes import load_scene
 
-    place = load_scene(scene)
     settings = CrossingSettings(planner, queue, seed, limit)
-    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, up, fps))
+    of_place = is_model(scene)
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
+    told = place_options(scale, up if of_place else None, ground, drop, passable)
+    place = open_scene(scene, told, quiet)
     with progress_bar("Opening the avatar", None, quiet):
         humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, settings, motions)

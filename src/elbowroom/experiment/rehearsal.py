@@ -40,6 +40,7 @@ from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.solids import inner_boxes
+from elbowroom.world.places.columns import surface_keys
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
@@ -63,6 +64,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_crouch(humanoid)
     rehearse_product()
     rehearse_mesh()
+    rehearse_place()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
@@ -105,6 +107,11 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
     path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).obstacles)
     keys = np.full(len(path.states), 0.1)
     legs.blocked_intervals(path, keys, np.zeros_like(keys), 0.0)
+
+
+def rehearse_place() -> None:
+    """Look a triangle over as if it were a place."""
+    surface_keys(np.eye(3)[None], 1.0, (2, 2))
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:

@@ -65,6 +65,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
         Route("/api/run", handlers.run),
         Route("/api/motions", desk.save, methods=["POST"]),
         Route("/avatars/{avatar}.glb", handlers.avatar),
+        Route("/places/{place}.glb", handlers.place),
         WebSocketRoute("/ws", handlers.session),
         Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),
     ]
@@ -135,6 +136,12 @@ class _Handlers:
         if avatar.glb is None or not avatar.glb.is_file():
             return JSONResponse({"error": "this avatar has no file"}, 404)
         return FileResponse(avatar.glb, media_type="model/gltf-binary", headers={"cache-control": "no-cache"})
+
+    def place(self, request: Request) -> Response:
+        glb = self._library.places.get(request.path_params["place"])
+        if glb is None or not glb.is_file():
+            return JSONResponse({"error": "there is no such place here"}, 404)
+        return FileResponse(glb, media_type="model/gltf-binary", headers={"cache-control": "no-cache"})
 
     async def session(self, socket: WebSocket) -> None:
         await socket.accept()

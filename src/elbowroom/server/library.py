@@ -1,8 +1,9 @@
 """What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
 
+import secrets
 from collections.abc import Hashable
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from threading import Event
@@ -17,6 +18,7 @@ from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.courses import Courses
+from elbowroom.server.place_files import PlaceFiles
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.server.schema.menus import Catalog, SceneChoice
 from elbowroom.server.vmc_stream import VmcStream
@@ -26,6 +28,8 @@ from elbowroom.world.scene import Scene
 if TYPE_CHECKING:
     from elbowroom.server.wanted import Wanted
 
+_SENT = "place:"  # begins the names of scenes that pages have sent
+_MOST_PLACES = 8  # of these
 _THREADS = 16  # twice as many as sessions: a walk that was given up may still be planning
 
 
@@ -49,19 +53,21 @@ class Library:
     planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
     run: Path | None = None  # a recording that the page opens with
     vmc: VmcStream | None = None  # where what is shown is sent too
+    sent_places: dict[str, Scene] = field(default_factory=dict)  # by name, the oldest first
+    places: PlaceFiles = field(default_factory=lambda: PlaceFiles(Path()))
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
     @classmethod
     def open(
         cls,
-        scene: str = "a",
+        scene: str | Scene = "a",
         avatar: Path | None = None,
         walk: WalkSettings | None = None,
         motions: MotionSet | None = None,
         read: LoadSettings | None = None,
     ) -> "Library":
         """The stock scenes and avatar, and those asked for; raises `InputError` if one cannot be read."""
-        first = load_scene(scene)
+        first = load_scene(scene) if isinstance(scene, str) else scene
         scenes = {name: Scene.load(name) for name in Scene.stock_names()}
         avatars = AvatarStore()
         try:
@@ -69,6 +75,8 @@ class Library:
         except BaseException:
             avatars.close()
             raise
+        places = PlaceFiles(avatars.folder)
+        first = places.shown(first)
         return cls(
             avatars,
             {first.name: first} | scenes | {first.name: first},
@@ -76,6 +84,7 @@ class Library:
             chosen,
             walk or WalkSettings(),
             motions=motions or MotionSet(),
+            places=places,
         )
 
     def close(self) -> None:
@@ -86,7 +95,8 @@ class Library:
     async def find_scene(self, name: str, client: Hashable) -> Scene:
         """A scene of this server, or a random course for a client. Raises as `check_scene` and `Courses.find`."""
         self.check_scene(name)
-        return self.scenes[name] if name in self.scenes else await self.courses.find(name, client)
+        known = self.scenes.get(name) or self.sent_places.get(name)
+        return known if known is not None else await self.courses.find(name, client)
 
     def hold(self, user: Hashable, *shown: "Wanted") -> None:
         """This is what a session shows from now on, or will in a moment: it stays here. Nothing: it has ended."""
@@ -95,12 +105,25 @@ class Library:
 
     def files(self) -> set[Path]:
         """The files of what clients sent and this server keeps."""
-        return self.avatars.files() | self.clips.files()
+        return self.avatars.files() | self.clips.files() | self.places.files()
+
+    def add_place(self, scene: Scene, glb: Path) -> Scene:
+        """The scene of a place that a page has sent, under a name that only this page learns; `glb` is kept with it.
+
+        The place that was sent longest ago goes when there are too many; who walks there goes on.
+        """
+        own = self.places.adopt(replace(scene, name=f"{_SENT}{secrets.token_hex(8)}"), glb)
+        self.sent_places[own.name] = own
+        while len(self.sent_places) > _MOST_PLACES:
+            self.places.forget(self.sent_places.pop(next(iter(self.sent_places))))
+        return own
 
     def check_scene(self, name: str) -> None:
         """Raises `InputError` if there is no scene and no course of this name."""
-        if name in self.scenes:
+        if name in self.scenes or name in self.sent_places:
             return
+        if name.startswith(_SENT):
+            raise InputError("that place is not here any more; drop its file on the page again")
         if not name.startswith(PREFIX):
             known = ", ".join(self.scenes)
             raise InputError(f"scene {name[:40]!r} is not known here; there are {known}, and courses: {NAMED}")

@@ -22,6 +22,7 @@ from elbowroom.server.schema.picture import (
     Form,
     Gate,
     Ground,
+    Model,
     MovingObstacle,
     Obstacle,
     Place,
@@ -52,17 +53,26 @@ _REASONS: dict[BlockadeKind, Reason] = {
 
 
 def scene_message(scene: Scene) -> SceneMessage:
-    """The scene as a client draws it."""
+    """The scene as a client draws it: what a model shows of it is not told as obstacles too."""
+    model = model_of(scene)
+    shown = scene.place.parts if model and scene.place else 0
     return SceneMessage(
         name=scene.name,
         title=scene.title,
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
-        obstacles=[_obstacle(*obstacle) for obstacle in scene.obstacles],
+        model=model,
+        obstacles=[_obstacle(*obstacle) for obstacle in list(scene.obstacles)[shown:]],
         moving=[_moving(track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
     )
+
+
+def model_of(scene: Scene) -> Model | None:
+    """The model that a client fetches and shows; none where the scene has no file for it."""
+    place = scene.place
+    return Model(f"places/{place.glb.stem}.glb", place.file) if place and place.glb else None
 
 
 def _obstacle(name: str, shape: Shape, center: Floats, turn: Floats) -> Obstacle:

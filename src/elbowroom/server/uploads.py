@@ -1,4 +1,4 @@
-"""Avatars, motions and recordings that arrive over HTTP: received into files, read in processes of their own."""
+"""Avatars, motions, places and runs that arrive over HTTP: received into files, read in processes of their own."""
 
 import asyncio
 import contextlib
@@ -15,6 +15,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
 from elbowroom.errors import InputError
+from elbowroom.server.apart.jobs import PLACE
 from elbowroom.server.apart.process import ApartError, FullDiskError, run_apart
 from elbowroom.server.clip_store import SentMotions
 from elbowroom.server.codec import plain
@@ -23,8 +24,9 @@ from elbowroom.server.page_key import Sender, page_key
 from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.saved_motion import save_motion
 from elbowroom.server.schema.bounds import MAX_UPLOAD
-from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, Uploaded
+from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, SceneChoice, Uploaded
 from elbowroom.server.while_there import while_there
+from elbowroom.world.scene import Scene
 
 _NAME = 120  # characters of a file's name that are kept
 _AT_ONCE, _EACH = 8, 4  # files that are received at once, in all and from each machine
@@ -71,7 +73,7 @@ class UploadDesk:
         self._reading = asyncio.Semaphore(1)
 
     async def take(self, request: Request) -> Response:
-        """POST: the raw bytes of an avatar or motion file, `?name=` its name. Answers 201 with an `Uploaded`."""
+        """POST: the raw bytes of an avatar, a motion or a place, `?name=` its name. Answers 201 with an `Uploaded`."""
 
         async def taken(sender: Sender) -> Response:
             return JSONResponse(plain(await self._taken(request, sender)), 201)
@@ -132,6 +134,12 @@ class UploadDesk:
             async with self._reading:
                 read = run_apart("read_upload", name, str(file), name, str(glb))
                 humanoid, clips, kind = await while_there(request, read)
+                if kind == PLACE:
+                    read = run_apart("read_place", name, str(file), name, str(glb))
+                    document = await while_there(request, read)
+            if kind == PLACE:
+                scene = self._library.add_place(Scene.from_dict(document, name), glb)
+                return Uploaded(None, [], SceneChoice(scene.name, scene.title))
             avatar, own = None, []
             if humanoid is not None:
                 avatar = self._library.avatars.add_upload(humanoid, glb if glb.exists() else None, sender)

@@ -1,20 +1,23 @@
 """Where: obstacles, ground, a start and a finish."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
+from elbowroom.formats.models.kinds import kind_by_name
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.places.options import PlaceOptions
+from elbowroom.world.places.scene_place import ScenePlace
 from elbowroom.world.stock_scenes import check_scene_name, stock_folder, stock_names
 
 MAX_FILE_BYTES = 16 * 2**20
-_SCENES_ARE = "a scene is a JSON file (docs/scenes.md), places in other formats are not read"
+_SCENES_ARE = "a scene is a JSON file or a model of a place: glTF, X3D, VRML97, OBJ, STL or PLY (docs/scenes.md)"
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,20 @@ class Scene:
     start: RootState  # where an avatar is put
     finish: Gate  # the line that ends the walk
     obstacles: Obstacles = field(default_factory=Obstacles)  # all that stands or moves in the way
+    place: ScenePlace | None = None  # the model that the scene shows; its parts are the first of the obstacles
 
     @classmethod
-    def load(cls, name_or_path: str | Path) -> "Scene":
-        """A stock scene by its name (`"a"`, in either case) or a scene file (JSON) by its path.
+    def load(
+        cls,
+        name_or_path: str | Path,
+        options: PlaceOptions | None = None,
+        progress: Callable[[str, float], None] = lambda _what, _share: None,
+    ) -> "Scene":
+        """A stock scene by its name (`"a"`, in either case), a scene file (JSON) or a model of a place by its path.
 
-        Raises `InputError` if there is no such scene, or the file breaks the published schema
-        (`elbowroom/world/data/scene.schema.json`), or its start stands in an obstacle.
+        `options` tell how a model is to be read; `progress` hears what is done and which share of it. Raises
+        `InputError` if there is no such scene, or the file breaks the published schema
+        (`elbowroom/world/data/scene.schema.json`), or its start stands in an obstacle, or the model cannot be read.
         """
         stock = None if isinstance(name_or_path, Path) else name_or_path.lower()
         if stock in stock_names():
@@ -58,7 +68,13 @@ class Scene:
             return cls.from_dict(parse_json((stock_folder() / source).read_text("utf-8"), source), source)
         check_scene_name(name_or_path)
         path = Path(name_or_path)
-        return cls.from_dict(_read(path), str(path))
+        if kind_by_name(path.name) is not None:
+            from elbowroom.world.places.place_scene import load_place_scene
+
+            return load_place_scene(path, options or PlaceOptions(), progress)
+        if options is not None and options != PlaceOptions():
+            raise InputError(f'{path}: how a model is read is told in the scene\'s own "place" (docs/scenes.md)')
+        return cls.from_dict(_read(path), str(path), path.parent)
 
     @staticmethod
     def stock_names() -> tuple[str, ...]:
@@ -66,11 +82,14 @@ class Scene:
         return stock_names()
 
     @classmethod
-    def from_dict(cls, document: Any, source: str = "scene") -> "Scene":
-        """A scene from a parsed JSON document; `source` is how error messages call it. Raises `InputError`."""
+    def from_dict(cls, document: Any, source: str = "scene", folder: Path | None = None) -> "Scene":
+        """A scene from a parsed JSON document; `source` is how error messages call it. Raises `InputError`.
+
+        `folder` is where the model lies that the document may name.
+        """
         from elbowroom.world.scene_format import read_scene
 
-        return read_scene(document, source)
+        return read_scene(document, source, folder)
 
     @classmethod
     def of(

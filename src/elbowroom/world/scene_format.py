@@ -6,6 +6,7 @@ A test holds reader and schema together on many broken documents.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from elbowroom.world.moving_format import read_moving, write_moving
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Hull, Shape
+from elbowroom.world.place_format import read_place_field, write_place
+from elbowroom.world.places.scene_place import with_more
 from elbowroom.world.scene import Gate, Scene
 from elbowroom.world.shape_format import FIELDS, MOST_POINTS_TOGETHER, read_shape, type_of, write_shape
 
@@ -33,35 +36,52 @@ _AROUND = 8.0  # metres of ground around start and finish, where nobody says how
 # What a start must leave free: a slim standing figure's legs and pelvis, metres.
 _STANCE_LOW, _STANCE_HIGH, _STANCE_RADIUS = 0.1, 1.0, 0.12
 
-_REQUIRED = ("format", "version", "name", "ground", "start", "finish", "obstacles")
+_ALWAYS = ("format", "version", "name")
+_FOUND = ("ground", "start", "finish", "obstacles")  # in a model of a place, where the scene has one
 _TURNS = ("rotation", "yaw", "euler")
 
 
-def read_scene(document: Any, source: str) -> Scene:
-    """The scene in a parsed JSON document; raises `InputError` at the first wrong field."""
-    fields = Place(source, "$", document).fields(_REQUIRED, ("$schema", "title", "description", "moving"))
+def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
+    """The scene in a parsed JSON document; raises `InputError` at the first wrong field.
+
+    `folder` is where the model of a place lies that it may name.
+    """
+    placed = isinstance(document, dict) and "place" in document
+    needed, possible = (_ALWAYS, ("place", *_FOUND)) if placed else ((*_ALWAYS, *_FOUND), ())
+    fields = Place(source, "$", document).fields(needed, ("$schema", "title", "description", "moving", *possible))
     fields["format"].constant(FORMAT)
     fields["version"].constant(VERSION)
     if "$schema" in fields:
         fields["$schema"].text(_TITLE)
     name = fields["name"].text(NAME, least=1)
-    ground = fields["ground"].fields(("size",), ("center",))
+    found = read_place_field(fields["place"], folder) if placed else _EMPTY
+    standing = _read_obstacles(fields["obstacles"]) if "obstacles" in fields else Obstacles()
+    standing = replace(standing, moving=read_moving(fields["moving"]) if "moving" in fields else Moving())
+    center, size = _read_ground(fields["ground"]) if "ground" in fields else (found.ground_center, found.ground_size)
     scene = Scene(
         name=name,
         title=fields["title"].text(_TITLE) if "title" in fields else name,
-        description=fields["description"].text(_PROSE) if "description" in fields else "",
-        ground_center=_pair(ground["center"].vector(2, -FARTHEST, FARTHEST)) if "center" in ground else (0.0, 0.0),
-        ground_size=_pair(ground["size"].vector(2, 0.0, LARGEST, above=True)),
-        start=_read_start(fields["start"]),
-        finish=_read_gate(fields["finish"]),
-        obstacles=replace(
-            _read_obstacles(fields["obstacles"]),
-            moving=read_moving(fields["moving"]) if "moving" in fields else Moving(),
-        ),
+        description=fields["description"].text(_PROSE) if "description" in fields else found.description,
+        ground_center=center,
+        ground_size=size,
+        start=_read_start(fields["start"]) if "start" in fields else found.start,
+        finish=_read_gate(fields["finish"]) if "finish" in fields else found.finish,
+        obstacles=with_more(found.obstacles, standing) if placed else standing,
+        place=found.place,
     )
     _refuse_off_the_ground(scene, fields)
-    _refuse_start_in_obstacle(scene, fields["start"])
+    _refuse_start_in_obstacle(scene, fields.get("start", fields.get("place", fields["name"])))
     return scene
+
+
+def _read_ground(place: Place) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The middle of the ground and its size."""
+    fields = place.fields(("size",), ("center",))
+    center = _pair(fields["center"].vector(2, -FARTHEST, FARTHEST)) if "center" in fields else (0.0, 0.0)
+    return center, _pair(fields["size"].vector(2, 0.0, LARGEST, above=True))
+
+
+_EMPTY = Scene("", "", "", (0.0, 0.0), (1.0, 1.0), RootState(), Gate((0.0, 1.0)))
 
 
 def _pair(values: list[float]) -> tuple[float, float]:
@@ -146,10 +166,12 @@ def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
         edges = zip(point, scene.ground_center, scene.ground_size, strict=True)
         beyond = max(abs(at - middle) - 0.5 * size for at, middle, size in edges)
         if beyond > 0.0:
-            place = Place(fields[name].source, f"{fields[name].path}.position", list(point))
+            place = Place(fields["name"].source, f"$.{name}.position", list(point))
             place.fail(f"it lies {beyond:.3g} m off the ground; move it or make the ground larger")
     if scene.finished(scene.start):
-        fields["finish"].fail("the start lies behind it already; turn its heading or move one of them")
+        fields.get("finish", fields["name"]).fail(
+            "the start lies behind it already; turn its heading or move one of them"
+        )
 
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
@@ -205,10 +227,11 @@ def write_scene(scene: Scene) -> dict[str, Any]:
             "heading": scene.finish.heading,
             "width": scene.finish.width,
         },
-        "obstacles": [_written(*row) for row in scene.obstacles],
+        "obstacles": [_written(*row) for row in list(scene.obstacles)[scene.place.parts if scene.place else 0 :]],
     }
     moving = scene.obstacles.moving
-    return document | ({"moving": write_moving(moving)} if len(moving) else {})
+    placed = {"place": write_place(scene.place, scene.obstacles)} if scene.place else {}
+    return document | placed | ({"moving": write_moving(moving)} if len(moving) else {})
 
 
 def _written(name: str, shape: Shape, center: NDArray[np.float64], rotation: NDArray[np.float64]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-/** Sends an avatar or motion file to the server. */
+/** Sends the file of an avatar, a motion or a place to the server. */
 
 import { MAX_UPLOAD, type Uploaded } from "../generated/messages";
 import { uploadUrl } from "../net/endpoints";
@@ -17,7 +17,7 @@ export async function uploadFile(file: File): Promise<Uploaded> {
   if (!response.ok || !answer.clips) {
     throw new Error(answer.error ?? `${file.name} was not taken (status ${response.status}).`);
   }
-  return { avatar: answer.avatar ?? null, clips: answer.clips };
+  return { avatar: answer.avatar ?? null, clips: answer.clips, scene: answer.scene ?? null };
 }
 
 function megabytes(bytes: number): string {

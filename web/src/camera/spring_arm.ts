@@ -134,6 +134,8 @@ export interface CameraObstacles {
   readonly all: readonly PreparedBox[];
   /** Those that hold the arm back; past the others the camera looks through, they fade. */
   readonly walls: readonly PreparedBox[];
+  /** How far one sees from a point along a unit vector, at most so many metres: for what is no box. */
+  readonly sight?: (from: Vec3, direction: Vec3, reach: number) => number;
 }
 
 /**

@@ -151,7 +151,8 @@ export class ThirdPersonCamera {
     this.pivot = this.pivotFor(followed, heading, obstacles);
     this.seekRoom(obstacles, heading, pitch, dt);
     const back = backwards(heading + this.shiftedYaw, pitch + this.shiftedPitch);
-    const goal = cameraReach(obstacles, this.pivot, back, this.zoomed, RADIUS);
+    const seen = obstacles.sight?.(this.pivot, back, this.zoomed + RADIUS) ?? Infinity;
+    const goal = Math.min(cameraReach(obstacles, this.pivot, back, this.zoomed, RADIUS), Math.max(seen - RADIUS, 0));
     const smooth = goal < this.arm ? goal : damp(this.arm, goal, OUT_HALFLIFE, dt);
     const free = distanceToBoxes(obstacles.all, ...pointAlong(this.pivot, back, smooth)) >= 0.9 * RADIUS;
     this.arm = free ? smooth : goal; // past furniture the camera cuts: it is never inside

@@ -98,9 +98,11 @@ export interface ClipChoice {
 
 /** The answer to a file that was posted to /api/avatars. */
 export interface Uploaded {
-  /** null for a file of motion alone */
+  /** null for a file without one */
   avatar: AvatarChoice | null;
   clips: ClipChoice[];
+  /** of the model of a place */
+  scene: SceneChoice | null;
 }
 
 /** What the menus offer; also at GET /api/catalog. */
@@ -223,6 +225,13 @@ export interface MovingObstacle {
   repeat: "once" | "loop" | "pingpong";
 }
 
+/** The model of a place, to be shown as it is: in the scene's metres and axes. */
+export interface Model {
+  /** of a GLB, relative to the page */
+  url: string;
+  title: string;
+}
+
 /** The world to draw; the following frames happen in it. */
 export interface SceneMessage {
   type: "scene";
@@ -230,6 +239,8 @@ export interface SceneMessage {
   title: string;
   description: string;
   ground: Ground;
+  /** shows what stands in it, which is not among the obstacles */
+  model: Model | null;
   obstacles: Obstacle[];
   moving: MovingObstacle[];
   start: Place;

@@ -8,11 +8,14 @@ import { Gate } from "./gate";
 import { Ground } from "./ground";
 import { boxAt } from "./moving";
 import { Obstacles, type DrawnObstacle } from "./obstacles";
+import { PlaceModel } from "./place_model";
 import { nearestOnSegment } from "../overlays/touching";
 import type { Palette } from "./palette";
 
 const SIGHT_RADIUS = 0.06;
 const BESIDE_THE_BODY = 0.97;
+/** Metres: so the floor of a model, at height 0 too, is what one sees. */
+const BELOW_A_MODEL = -0.02;
 
 export class World {
   readonly group = new Group();
@@ -23,15 +26,24 @@ export class World {
   readonly gate = new Gate();
   private readonly ground = new Ground();
   private readonly obstacles = new Obstacles();
+  private readonly place = new PlaceModel();
 
   constructor() {
-    this.group.add(this.ground.group, this.obstacles.group, this.gate.group);
+    this.group.add(this.ground.group, this.obstacles.group, this.gate.group, this.place.group);
+  }
+
+  /** Fetches the model of the place that is shown, if it has one. @throws Error when it cannot be shown */
+  showModel(): Promise<void> {
+    return this.place.show(this.message?.model?.url ?? null);
   }
 
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
     this.boxes = allObstacles(message).map(({ form, box }) => prepareBox(inBox(form, box)));
-    this.cameraObstacles = { all: this.boxes, walls: this.boxes.filter((box) => isWall(box)) };
+    const walls = this.boxes.filter((box) => isWall(box));
+    const sight = message.model ? { sight: this.place.sight } : {};
+    this.cameraObstacles = { all: this.boxes, walls, ...sight };
+    this.ground.group.position.y = message.model ? BELOW_A_MODEL : 0;
     this.repaint(palette, rich);
   }
 

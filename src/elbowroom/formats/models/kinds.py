@@ -27,7 +27,6 @@ class ModelKind(Enum):
 _BY_SUFFIX = {
     ".glb": ModelKind.GLTF,
     ".gltf": ModelKind.GLTF,
-    ".vrm": ModelKind.GLTF,
     ".obj": ModelKind.OBJ,
     ".stl": ModelKind.STL,
     ".ply": ModelKind.PLY,

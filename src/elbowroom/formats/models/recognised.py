@@ -3,12 +3,21 @@
 from pathlib import Path
 
 from elbowroom.errors import InputError
-from elbowroom.formats.gltf import read_gltf
-from elbowroom.formats.models.kinds import ModelKind, kind_by_name
+from elbowroom.formats.gltf import parse_gltf, read_gltf
+from elbowroom.formats.models.kinds import ModelKind, kind_by_name, kind_of
 from elbowroom.formats.x3d.files import read_bytes, unpacked
 
 _VRM = ("VRM", "VRMC_vrm")
 _HUMANOIDS = (b"Humanoid", b"HAnimJoint")
+
+
+def may_be_a_place(data: bytes, name: str) -> bool:
+    """Whether these bytes are a model with surfaces and no skin: a place, should it be nobody. Raises `InputError`."""
+    kind = kind_of(data, name)
+    if kind is not ModelKind.GLTF:
+        return kind is not None
+    root = parse_gltf(data, name).root
+    return bool(root.at("meshes").items()) and not root.at("skins").items()
 
 
 def is_of_a_place(path: Path) -> bool:

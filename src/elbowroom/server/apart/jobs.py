@@ -14,12 +14,14 @@ if TYPE_CHECKING:  # each job imports what it needs
     from elbowroom.clips.clip import Clip
 
 MAX_CLIPS = 200  # of one file
+PLACE = "place"  # the format of a file that is no avatar and no motion, and may be a place
 
 
 def read_upload(file: str, name: str, glb: str) -> tuple["Humanoid | None", list[str], str]:
     """By content: an avatar, motions, or both: the humanoid, the names of its clips, and their format.
 
-    The avatar's file for a viewer is written to `glb`. Raises `InputError`.
+    The avatar's file for a viewer is written to `glb`. The format is `PLACE` for the model of what has no bones.
+    Raises `InputError`.
     """
     from elbowroom.body.loading import load_humanoid_bytes
     from elbowroom.clips.files import has_animations, is_motion_only, parse_motion
@@ -30,7 +32,14 @@ def read_upload(file: str, name: str, glb: str) -> tuple["Humanoid | None", list
         names = list(motions.clips)[:MAX_CLIPS]
         motions.clip(names[0])  # that it can be shown is found out now
         return None, names, motions.format
-    humanoid = load_humanoid_bytes(data, name)
+    try:
+        humanoid = load_humanoid_bytes(data, name)
+    except InputError:
+        from elbowroom.formats.models.recognised import may_be_a_place
+
+        if may_be_a_place(data, name):
+            return None, [], PLACE
+        raise
     if humanoid.glb is not None:
         Path(glb).write_bytes(humanoid.glb)
     names, kind = [], ""
@@ -40,6 +49,19 @@ def read_upload(file: str, name: str, glb: str) -> tuple["Humanoid | None", list
             motions.clip(next(iter(motions.clips)))
             names, kind = list(motions.clips)[:MAX_CLIPS], motions.format
     return replace(humanoid, glb=None), names, kind
+
+
+def read_place(file: str, name: str, glb: str) -> dict[str, Any]:
+    """The scene of a place as `Scene.to_dict` writes it; what a viewer shows is written to `glb`; `InputError`."""
+    from elbowroom.world.places.place_scene import place_scene
+    from elbowroom.world.places.reading import parse_place
+    from elbowroom.world.places.shown import shown_glb
+
+    place = parse_place(Path(file).read_bytes(), name)
+    scene = place_scene(place)
+    assert scene.place is not None
+    Path(glb).write_bytes(shown_glb(place, scene.place.options.ground or 0.0))
+    return scene.to_dict()
 
 
 def read_clip(file: str, name: str, clip: str) -> "Clip":
@@ -72,4 +94,6 @@ def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
     return tuple(getattr(run, field.name) for field in fields(run))
 
 
-JOBS: dict[str, Callable[..., object]] = {job.__name__: job for job in (read_upload, read_clip, make_course, pose_run)}
+JOBS: dict[str, Callable[..., object]] = {
+    job.__name__: job for job in (read_upload, read_place, read_clip, make_course, pose_run)
+}

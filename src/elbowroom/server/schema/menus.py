@@ -31,8 +31,9 @@ class ClipChoice:
 class Uploaded:
     """The answer to a file that was posted to /api/avatars."""
 
-    avatar: AvatarChoice | None  # None for a file of motion alone
+    avatar: AvatarChoice | None  # None for a file without one
     clips: list[ClipChoice]
+    scene: SceneChoice | None = None  # of the model of a place
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,14 @@ class MovingObstacle:
 
 
 @dataclass(frozen=True)
+class Model:
+    """The model of a place, to be shown as it is: in the scene's metres and axes."""
+
+    url: str  # of a GLB, relative to the page
+    title: str
+
+
+@dataclass(frozen=True)
 class SceneMessage:
     """The world to draw; the following frames happen in it."""
 
@@ -91,6 +99,7 @@ class SceneMessage:
     title: str
     description: str
     ground: Ground
+    model: Model | None  # shows what stands in it, which is not among the obstacles
     obstacles: list[Obstacle]
     moving: list[MovingObstacle]
     start: Place

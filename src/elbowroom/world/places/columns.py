@@ -58,7 +58,7 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
     found, count = [np.empty(0, np.int64)], 0
     for start in range(0, len(triangles), _AT_ONCE):
         progress(start / len(triangles))
-        keys = _keys(triangles[start : start + _AT_ONCE] - least, cell, shape)
+        keys = surface_keys(triangles[start : start + _AT_ONCE] - least, cell, shape)
         count += len(keys)
         if count > _MOST_SURFACES:
             raise InputError(f"{place.name}: has too much surface to be looked over; is its unit right (--scale)?")
@@ -77,8 +77,8 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
     )
 
 
-def _keys(triangles: Floats, cell: float, shape: tuple[int, int]) -> Ints:
-    """What triangles (T, 3, 3) put over the cells, as numbers made of cell, lowest step, steps above, whether level."""
+def surface_keys(triangles: Floats, cell: float, shape: tuple[int, int]) -> Ints:
+    """What triangles (T, 3, 3) put over cells, each as one number: cell, lowest step, steps above it, whether level."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.sqrt(np.einsum("ti,ti->t", normals, normals))
     level = (np.abs(normals[:, 1]) >= _LEVEL * size) & (size > 0.0)
@@ -91,7 +91,7 @@ def _keys(triangles: Floats, cell: float, shape: tuple[int, int]) -> Ints:
 
 @exact_kernel
 def _fill(triangles: Floats, level: Flags, width: int, depth: int, out: Ints) -> int:
-    """Write the numbers of `_keys` for triangles in cells and steps, as far as `out` reaches; how many there are."""
+    """Write the numbers of `surface_keys` for triangles in cells and steps, as far as `out` holds; how many."""
     count = 0
     strip, piece, part = np.empty((9, 3)), np.empty((9, 3)), np.empty((9, 3))
     for t in range(len(triangles)):
