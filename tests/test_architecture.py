@@ -20,6 +20,7 @@ ROOMS = [
     "export",
     "experiment",
     "server",
+    "film",
     "cli",
 ]
 # Of `planning/exact`, bottom to top.

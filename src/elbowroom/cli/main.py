@@ -18,7 +18,21 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom import __version__
-from elbowroom.cli import bench, clips, doctor, export, first_run, gauntlet, inspect, play, replay, table1, verify, walk
+from elbowroom.cli import (
+    bench,
+    clips,
+    doctor,
+    export,
+    film,
+    first_run,
+    gauntlet,
+    inspect,
+    play,
+    replay,
+    table1,
+    verify,
+    walk,
+)
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -114,6 +128,7 @@ app.command("play", epilog=play.EXAMPLES)(play.play)
 app.command("clips", epilog=clips.EXAMPLES)(clips.clips)
 app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
 app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
+app.command("film", epilog=film.EXAMPLES)(film.film)
 app.command("export", epilog=export.EXAMPLES)(export.export)
 app.command("table1", epilog=table1.EXAMPLES)(table1.table1)
 app.command("gauntlet", epilog=gauntlet.EXAMPLES)(gauntlet.gauntlet)

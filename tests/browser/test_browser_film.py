@@ -1,0 +1,51 @@
+"""Films of a recording, judged by the browser that plays them and by Pillow."""
+
+import base64
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from browser_recording import record_walk
+from elbowroom.cli.main import app
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return record_walk(tmp_path_factory.mktemp("film") / "walk.elbow", 60)
+
+
+def film(recording: Path, output: Path, *options: str) -> None:
+    call = ["film", str(recording), "-o", str(output), "--size", "128x96", "--quality", "low", "--quiet", *options]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 0, result.output
+
+
+def test_a_webm_is_played_by_a_browser(chromium: object, recording: Path, tmp_path: Path) -> None:
+    film(recording, tmp_path / "walk.webm", "--fps", "5", "--camera", "front")
+    page = chromium.new_page()  # type: ignore[attr-defined]
+    data = base64.b64encode((tmp_path / "walk.webm").read_bytes()).decode()
+    seen = page.evaluate(
+        """(data) => new Promise((done, failed) => {
+          const video = document.createElement("video");
+          video.muted = true;
+          video.onerror = () => failed(new Error(video.error.message));
+          video.onended = () => done([video.videoWidth, video.videoHeight, video.currentTime]);
+          video.src = "data:video/webm;base64," + data;
+          video.play();
+        })""",
+        data,
+    )
+    page.close()
+    assert seen[:2] == [128, 96]
+    assert 0.6 < seen[2] < 1.4
+
+
+@pytest.mark.usefixtures("chromium")
+def test_a_sheet_has_sixteen_moments_and_none_like_another(recording: Path, tmp_path: Path) -> None:
+    film(recording, tmp_path / "sheet.png", "--sheet")
+    sheet = Image.open(tmp_path / "sheet.png")
+    assert sheet.size == (128, 96)
+    tiles = [sheet.crop((32 * (i % 4), 24 * (i // 4), 32 * (i % 4) + 32, 24 * (i // 4) + 24)) for i in range(16)]
+    assert len({tile.tobytes() for tile in tiles}) > 8
