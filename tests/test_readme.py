@@ -42,7 +42,7 @@ def test_two_avatars_in_the_planners_page_pass_each_other(capsys) -> None:  # ty
 
 
 def test_the_scene_in_the_docs_is_a_scene() -> None:
-    (example,) = code_blocks("json", "docs/scenes.md")
+    example = code_blocks("json", "docs/scenes.md")[0]
     assert Scene.from_dict(json.loads(example)).name == "attic"
     page = (ROOT / "docs" / "scenes.md").read_text("utf-8")
     assert [name for name in Scene.stock_names() if name not in "bc" and f"`{name}`" not in page] == []
