@@ -17,6 +17,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
+from elbowroom.planning.root.memory import RootMemory
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.world.scene import Scene
@@ -29,7 +30,7 @@ WALK = Command(forward=1.0)
 class FakeRootPlanner:
     """Walks straight on at once."""
 
-    memory = None
+    memory = RootMemory()
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         pass
