@@ -68,12 +68,15 @@ class OwnBody:
         return touching
 
     def folded(self, waists: Floats) -> Bools:
-        """Which waists (V, d) lay the trunk on the thighs at some phase of the natural walk."""
+        """Which waists (V, d) lay the trunk on the thighs at some phase of the natural walk.
+
+        Nothing is kept to spare: a duck is deep, and the motion between its postures is proven by itself.
+        """
         states, uppers = _walking(), with_waist(waists)
         gaps = self_clearances(
             self.model, self.pairs, np.tile(states, (len(waists), 1)), np.repeat(uppers, len(states), axis=0)
         )[SEARCH_ORDER.index(DofGroup.WAIST)]
-        found: Bools = gaps.reshape(len(waists), -1).min(axis=1) < SPARE
+        found: Bools = gaps.reshape(len(waists), -1).min(axis=1) < 0.0
         return found
 
     def own_body_nodes(self, group: DofGroup, postures: Postures, resting: Bools) -> OwnBodyNodes:
