@@ -83,12 +83,10 @@ def gauntlet(
         raise InputError(f"level {level}: {_NO_COURSE.format(_listed(without))}; try another level or other seeds")
     summary = GauntletSummary.of(results)
     document = _document(settings, processes, summary) | {"without_course": list(without)}
+    whole = document | _trials(results)
     if out is not None:
-        _write(out / f"gauntlet-{level}.json", json_text(document | _trials(results)) + "\n")
-    if json:
-        print_json(document | _trials(results))
-    else:
-        _print(settings, summary)
+        _write(out / f"gauntlet-{level}.json", json_text(whole) + "\n")
+    print_json(whole) if json else _print(settings, summary)
     if without:
         typer.echo(f"elbowroom: {_NO_COURSE.format(_listed(without))}; the figures are of the others", err=True)
     raise typer.Exit(0 if _is_good(summary) else FELL_SHORT)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.capsule_inputs import CapsuleInputs, capsule_inputs
 from elbowroom.experiment.bench.collision import Speed, checks_per_second
+from elbowroom.experiment.bench.rivals import coal_capsules
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.touching import Touching
@@ -187,15 +188,9 @@ def _coal(inputs: CapsuleInputs, mesh: Mesh) -> tuple[str, str, Callable[[], Boo
     import coal
 
     tree, still = _tree(mesh), coal.Transform3s.Identity()
-    sizes = zip(inputs.radii, inputs.lengths, strict=True)
+    capsules, places = coal_capsules(inputs)
     # A functor does not keep its shapes alive, so they stay beside it.
-    capsules = [coal.Capsule(float(radius), float(length)) for radius, length in sizes]
     functors = [(coal.ComputeCollision(capsule, tree), capsule, tree) for capsule in capsules]
-    middles, turns = inputs.placements()
-    places = [
-        [coal.Transform3s(matrix, middle) for matrix, middle in zip(row, spots, strict=True)]
-        for row, spots in zip(quaternion.to_matrix(turns), middles, strict=True)
-    ]
     request, result = coal.CollisionRequest(), coal.CollisionResult()
 
     def touches(row: list[Any]) -> bool:

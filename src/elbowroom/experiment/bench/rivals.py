@@ -95,6 +95,20 @@ def _pinocchio(inputs: CapsuleInputs) -> Rival:
     return Rival(f"Pinocchio {version('pin')}", "computeCollisionsInParallel, 1 thread", inputs.checks, touching)
 
 
+def coal_capsules(inputs: CapsuleInputs) -> tuple[list[Any], list[list[Any]]]:
+    """The capsules (C), and their places in each posture (N lists of C), as coal has them."""
+    import coal
+
+    sizes = zip(inputs.radii, inputs.lengths, strict=True)
+    capsules = [coal.Capsule(float(radius), float(length)) for radius, length in sizes]
+    middles, turns = inputs.placements()
+    places = [
+        [coal.Transform3s(matrix, middle) for matrix, middle in zip(row, spots, strict=True)]
+        for row, spots in zip(quaternion.to_matrix(turns), middles, strict=True)
+    ]
+    return capsules, places
+
+
 def _coal(inputs: CapsuleInputs) -> Rival:
     import coal
 
@@ -103,16 +117,9 @@ def _coal(inputs: CapsuleInputs) -> Rival:
         (coal.Box(*(2.0 * half)), coal.Transform3s(matrix, center))
         for center, matrix, half in zip(inputs.boxes.centers, matrices, inputs.boxes.half_sizes, strict=True)
     ]
-    capsules = [
-        coal.Capsule(float(radius), float(length)) for radius, length in zip(inputs.radii, inputs.lengths, strict=True)
-    ]
+    capsules, places = coal_capsules(inputs)
     # A functor does not keep its shapes alive, so `capsules` and `boxes` stay in the closure.
     functors = [[coal.ComputeCollision(capsule, box) for box, _ in boxes] for capsule in capsules]
-    middles, turns = inputs.placements()
-    places = [
-        [coal.Transform3s(matrix, middle) for matrix, middle in zip(row, spots, strict=True)]
-        for row, spots in zip(quaternion.to_matrix(turns), middles, strict=True)
-    ]
     request, result = coal.CollisionRequest(), coal.CollisionResult()
 
     def touches(row: list[Any]) -> bool:

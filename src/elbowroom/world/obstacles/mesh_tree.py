@@ -91,8 +91,11 @@ def _bounds(low: Floats, high: Floats, group: NDArray[np.int64]) -> tuple[Floats
 
 
 @helper
-def _from_side(px: Any, py: Any, pz: Any, dx: Any, dy: Any, dz: Any, dd: Any, ex: Any, ey: Any, ez: Any) -> Any:
-    """Squared distance of an axis, seen from where a side begins, from the side."""
+def _from_side(begin: Any, step: Any, dd: Any, side: Any) -> Any:
+    """Squared distance of an axis, seen from where a side begins, from the side; `dd` is the step's square."""
+    px, py, pz = begin
+    dx, dy, dz = step
+    ex, ey, ez = side
     ee, de = ex * ex + ey * ey + ez * ez, dx * ex + dy * ey + dz * ez
     er, dr = ex * px + ey * py + ez * pz, dx * px + dy * py + dz * pz
     per = _ONE / max(ee, _TINY)
@@ -120,9 +123,9 @@ def leaf_square(leaves: Floats32, leaf: int, axis: Floats32, squares: Floats32) 
             own[i + np.uint64(6) * _LANES], own[i + np.uint64(7) * _LANES], own[i + np.uint64(8) * _LANES],
         )  # fmt: skip
         least = min(
-            _from_side(px, py, pz, dx, dy, dz, dd, ux, uy, uz),
-            _from_side(px, py, pz, dx, dy, dz, dd, vx, vy, vz),
-            _from_side(px - ux, py - uy, pz - uz, dx, dy, dz, dd, vx - ux, vy - uy, vz - uz),
+            _from_side((px, py, pz), (dx, dy, dz), dd, (ux, uy, uz)),
+            _from_side((px, py, pz), (dx, dy, dz), dd, (vx, vy, vz)),
+            _from_side((px - ux, py - uy, pz - uz), (dx, dy, dz), dd, (vx - ux, vy - uy, vz - uz)),
         )
         nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
         square = nx * nx + ny * ny + nz * nz
