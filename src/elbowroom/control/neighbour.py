@@ -24,7 +24,7 @@ class Walker(NamedTuple):
     @property
     def walks(self) -> bool:
         """Whether it wants to go somewhere."""
-        return bool(self.wanted.any())
+        return bool(self.wanted @ self.wanted > 0.5)  # its length is 1 or 0
 
 
 class Neighbour(NamedTuple):

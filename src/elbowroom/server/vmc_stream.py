@@ -50,7 +50,8 @@ class VmcStream:
         try:
             found = socket.getaddrinfo(settings.host, settings.port, type=socket.SOCK_DGRAM)[0]
         except OSError as error:
-            raise InputError(f"vmc: {settings.host}: {error.strerror or error}") from None
+            reason = error.strerror or error
+            raise InputError(f"vmc: {settings.host}: {reason}; name the receiver's HOST or HOST:PORT") from None
         self._address = found[4]
         self._socket = socket.socket(found[0], socket.SOCK_DGRAM)
         self._socket.setblocking(False)
