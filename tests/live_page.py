@@ -6,6 +6,18 @@ from typing import Any
 LOAD_SECONDS = 60.0
 PATIENCE = 60.0  # seconds: much more than it takes, as other programs may keep both processors busy
 STEP = 0.05
+REST = 12  # frames over which what is shown may not change, to be at rest
+# A few frames later: the panels that slide (what turns for ever is not waited for), the camera and the avatar.
+_SHOWN = """
+async (frames) => {
+  for (let k = 0; k < frames; k += 1) await new Promise(requestAnimationFrame);
+  const ends = (animation) => animation.effect?.getComputedTiming().endTime !== Infinity;
+  const sliding = document.getAnimations().filter((a) => a.playState === "running" && ends(a)).length;
+  const { camera, root } = window.__app;
+  return { sliding, at: [...Object.values(camera ?? {}), ...Object.values(root ?? {})].map(Number) };
+}
+"""
+_NO_SERVER = ("WebSocket", "net::ERR_CONNECTION")
 
 
 class LivePage:
@@ -32,6 +44,21 @@ class LivePage:
             time.sleep(STEP)
         raise AssertionError(f"after {seconds:g} s still not: {condition}; the page says {self.state()}")
 
+    def settle(self, seconds: float = PATIENCE) -> None:
+        """Wait until panels, camera and avatar have come to rest, however slow the machine."""
+        deadline = time.monotonic() + seconds
+        before: list[float] = []
+        while time.monotonic() < deadline:
+            shown = self.page.evaluate(_SHOWN, REST)
+            if not shown["sliding"] and len(before) == len(shown["at"]) and _near(before, shown["at"]):
+                return
+            before = shown["at"]
+        raise AssertionError(f"after {seconds:g} s something on the page still moves: {self.state()}")
+
+    def excuse_lost_server(self) -> None:
+        """A test that ended its server: what the browser logs while none answers is no error of the page."""
+        self.errors[:] = [error for error in self.errors if not any(part in error for part in _NO_SERVER)]
+
     def close(self) -> None:
         """Close the page and its context."""
         self._context.close()
@@ -39,6 +66,10 @@ class LivePage:
     def _note(self, message: Any) -> None:
         if message.type == "error":
             self.errors.append(message.text)
+
+
+def _near(a: list[float], b: list[float]) -> bool:
+    return all(abs(one - other) < 1e-4 for one, other in zip(a, b, strict=True))
 
 
 def open_live_page(

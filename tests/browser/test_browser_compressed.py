@@ -22,7 +22,7 @@ _ALONE = ".chrome, .notice { visibility: hidden !important }"
 
 def picture(live: LivePage) -> Picture:
     """What is drawn when all has come to rest, (H, W, 3)."""
-    live.page.wait_for_timeout(1500)  # the camera settles
+    live.settle()
     return np.asarray(Image.open(io.BytesIO(live.page.screenshot())).convert("RGB"), np.int16)
 
 

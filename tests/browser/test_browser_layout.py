@@ -37,7 +37,7 @@ def test_no_panel_lies_on_another(open_page: Open) -> None:
     live.page.keyboard.press("i")
     for width, height in SIZES:
         live.page.set_viewport_size({"width": width, "height": height})
-        live.page.wait_for_timeout(400)  # the menu slides
+        live.settle()
         found = boxes(live)
         assert {"#brand", "#bar", "#hud", "#status", "#inset"} <= set(found)
         for one, box in found.items():

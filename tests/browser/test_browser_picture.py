@@ -40,11 +40,11 @@ def test_with_all_overlays_on_the_avatar_stays_in_sight(open_page: Open, camera:
     live.page.keyboard.press("p")
     live.page.keyboard.up("w")
     live.wait("s.paused")
-    live.page.wait_for_timeout(2000)  # the camera comes to rest
+    live.settle()
     covered = body(live)
     live.page.keyboard.press("o")
     live.wait("s.overlays.length === 0")
-    live.page.wait_for_timeout(1000)
+    live.settle()
     bare = body(live)
     for part, (_, _, most) in PARTS.items():
         assert np.abs(covered[part] - bare[part]).mean() < most, part

@@ -81,7 +81,7 @@ def test_keys_are_released_on_blur(open_page: Open) -> None:
     live.page.evaluate("window.dispatchEvent(new Event('blur'))")
     sent = live.wait("s.heldKeys === 0")["sent"]
     live.wait(f"s.acknowledged >= {sent}")
-    live.page.wait_for_timeout(1500)
+    live.settle()
     z = live.state()["root"]["z"]
     live.page.wait_for_timeout(500)
     assert abs(live.state()["root"]["z"] - z) < 0.02
