@@ -1,5 +1,7 @@
 """The one proof: against dense looks at all kinds of pairs, random intervals; and how far points move at most."""
 
+from dataclasses import replace
+
 import coal
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -198,3 +201,20 @@ def test_what_is_shown_beside_a_wall_is_free_between_the_frames() -> None:
         assert free or min(gaps) < 0.01
         found[int(free)] += 1
     assert min(found) >= 3
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.0, 0.9, 7))
+def test_feet_that_pass_a_wall_by_five_millimetres_are_shown(phase: float) -> None:
+    """While the walk slows down in a turn: the bound on feet in their stride is many times what they move."""
+    first = np.array([0.0, 0.0, 0.3, 0.96, 0.08, 2.07, phase])
+    last = first + np.array([0.006, 0.014, 0.033, -0.048, -0.031, -0.233, 0.023])
+    frames = Frames((first, last), (np.zeros(LOCAL), np.zeros(LOCAL)), (0.0, FRAME))
+    roots, uppers = between(frames, np.linspace(0.0, 1.0, 30))
+    place = 1.5
+    for _ in range(50):
+        box = np.array([[place, 0.15, 0.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[0.5, 0.15, 2.0]])
+        check = BodyCheck(HUMANOID, replace(Scene.load("empty"), obstacles=Obstacles.boxes(*box)))
+        gaps = [check.clearance(root, upper, 0.0) for root, upper in zip(roots, uppers, strict=True)]
+        place -= min(gaps) - 0.005
+    assert 0.004 < min(gaps) < 0.006
+    assert check.free_between(frames, (gaps[0], gaps[-1]))

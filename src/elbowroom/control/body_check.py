@@ -19,7 +19,7 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_HALVINGS = 5  # of the time between two frames
+_HALVINGS = 7  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 _LOOKS = 8  # at once
 _BOTH = np.array([0.0, 1.0])  # the frames themselves
 
