@@ -11,6 +11,7 @@ from elbowroom.cli import clip_options, vmc_options
 from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.going import TO_HELP, place_of, report_leg
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
 from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from elbowroom.experiment.crossing import CrossingResult, Listener
     from elbowroom.planning.command import Command
 
-EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --swing my_walk.bvh"
+EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
 FELL_SHORT = 1
 _FRAMES_PER_UPDATE = 30
 _PAPERS = {True: "more than one frame in every second", False: "a second with one frame or none"}
@@ -39,6 +40,7 @@ def walk(
     height: Height = None,
     include_hair: IncludeHair = False,
     limit: Annotated[float, typer.Option(help="Seconds that the user has for the crossing.")] = 30.0,
+    to: Annotated[str | None, typer.Option(help=TO_HELP, metavar="X,Z")] = None,
     record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
     scale: Scale = None,
     ground: GroundHeight = None,
@@ -57,13 +59,16 @@ def walk(
 ) -> None:
     """Walk an avatar through a scene, faster than real time, and print how it went.
 
-    A scripted user walks forward, and when stuck backs up and tries again. Exit code 0: through in time, 1: not.
+    A scripted user walks forward, and when stuck backs up and tries again; with --to the avatar finds its way to a
+    place on the ground. Exit code 0: through, or there, in time, 1: not.
     """
     check_vmc(vmc, vmc_root)
+    target = None if to is None else place_of(to, "--to")
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
     compile_first(quiet=quiet)
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
+    from elbowroom.experiment.tour.leg import walk_to
 
     settings = CrossingSettings(planner, queue, seed, limit)
     of_place = is_model(scene)
@@ -80,7 +85,14 @@ def walk(
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
         send = None if stream is None else in_time(stream, humanoid)
-        result = run_crossing(controller, settings, _listener(bar, recorder, send))
+        listener = _listener(bar, recorder, send)
+        if target is not None:
+            leg = walk_to(controller, target, limit, listener)[0]
+        else:
+            result = run_crossing(controller, settings, listener)
+    if target is not None:
+        report_leg(leg, place.name, record, json)
+        raise typer.Exit(0 if leg.arrived else FELL_SHORT)
     _report(result, record, json)
     raise typer.Exit(0 if result.passed else FELL_SHORT)
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from elbowroom.control.desk import ImmediateDesk, PlanningDesk
 from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
+from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.control.neighbour import Neighbour, Walker
 from elbowroom.control.passing import expected, way_made
@@ -31,6 +33,8 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
+from elbowroom.planning.navigation.navigator import Navigator
+from elbowroom.planning.navigation.way import Way
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import UNMOVED, is_still
 from elbowroom.world.obstacles.moving import Moving
@@ -38,6 +42,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
+FORWARD = Command(forward=1.0)
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
@@ -87,17 +92,36 @@ class Controller:
         self._worn = fitted(self.motions, humanoid)
         self._planners = Planners(planner, humanoid, scene, self._worn)
         self._wayfinder = Wayfinder(self.settings, self._check, self._worn, self._planners)
+        self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
 
     def reset(self) -> None:
         """Back to the start, as if newly made."""
         self._errands.forget()
+        self.journey = None
         self._wayfinder = self._wayfinder.afresh()
         self._begin()
 
     def prepare(self) -> None:
         """Make the planners now, in the caller's thread, so that the first plan need not wait for that."""
         self._planners.make()
+
+    @cached_property
+    def navigator(self) -> Navigator:
+        """Finds ways in the scene, for `goto` and for who wants to find them in another thread."""
+        return Navigator(self.humanoid, self.scene)
+
+    def goto(self, place: tuple[float, float], pace: Command = FORWARD) -> Journey:
+        """Go to a place (x, z) on the ground, with the following steps; a command that is not idle takes over.
+
+        `pace` says how fast, by its `forward` and `run`. Raises `NoWayError` where no way leads there.
+        """
+        return self.set_out(self.navigator.find((self.root.x, self.root.z), place), pace)
+
+    def set_out(self, way: Way, pace: Command = FORWARD) -> Journey:
+        """Go along a way that was found before."""
+        self.journey = Journey(self.navigator, way, pace)
+        return self.journey
 
     def _begin(self) -> None:
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
@@ -152,6 +176,11 @@ class Controller:
         return Walker(self._shown.root[:2], wanted)
 
     @property
+    def stands(self) -> bool:
+        """Whether the root stands still."""
+        return is_still(self._shown.root[3:6])
+
+    @property
     def phase(self) -> Phase:
         """The flow that the last turn took."""
         return self._flow
@@ -180,10 +209,20 @@ class Controller:
         wanted = steering.checked(command)
         if not 0.0 <= dt <= LONGEST_STEP:
             raise InputError(f"dt: {dt} is not between 0 and {LONGEST_STEP:g} seconds")
+        wanted = self._on_the_way(wanted, dt)
         turns = math.ceil(dt / LONGEST_TURN)
         flows = [self._turn(self._aside(wanted), dt / turns) for _ in range(turns)]
         self._flow = next((flow for flow in (Phase.RESET, Phase.PLAN) if flow in flows), Phase.PLAY)
         return self._frame(wanted)
+
+    def _on_the_way(self, command: Command, dt: float) -> Command:
+        """The user's command, or where nothing is wanted, what the journey asks for."""
+        if self.journey is None or not self.journey.walking or dt <= 0.0:
+            return command
+        if not command.idle:
+            self.journey.take_over()
+            return command
+        return self.journey.command(self.root, dt, stuck=self._blocked or self._walled_in())
 
     def _aside(self, command: Command) -> Command:
         """What to do under a command: a step aside, where nothing is wanted and others want to pass."""
@@ -383,12 +422,13 @@ class Controller:
             key_frames=self._queue.unplayed(),
             goal=self._goal(),
             plan=self._plan_report,
+            command=command,
         )
 
     def _walled_in(self) -> bool:
         """Whether the root stands because there is no way on for it."""
         stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
-        return stopped and is_still(self._shown.root[3:6])
+        return stopped and self.stands
 
     def _goal(self) -> Floats:
         """The goal functions' posture now, from the last plan (LOCAL,)."""

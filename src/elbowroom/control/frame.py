@@ -13,6 +13,8 @@ from elbowroom.planning.root.plan import RootPlan
 
 Floats = NDArray[np.float64]
 
+STANDING = Command()
+
 
 class Phase(Enum):
     """The flow of the control loop (the paper's Figure 4) that a turn took."""
@@ -53,3 +55,4 @@ class Frame:
     key_frames: KeyFrames  # the unplayed key frames
     goal: Floats  # (11,) what the goal functions would show now: waist, left arm, right arm
     plan: PlanReport | None  # the last planning call
+    command: Command = STANDING  # what was obeyed: the user's, or that of a walk to a place

@@ -33,6 +33,7 @@ from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.model.self_pairs import with_waist
+from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
@@ -65,6 +66,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_product()
     rehearse_mesh()
     rehearse_place()
+    rehearse_way(humanoid)
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
@@ -112,6 +114,11 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
 def rehearse_place() -> None:
     """Look a triangle over as if it were a place."""
     surface_keys(np.eye(3)[None], 1.0, (2, 2))
+
+
+def rehearse_way(humanoid: Humanoid) -> None:
+    """Look for the way to a place."""
+    Navigator(humanoid, _scene_with(*_LOW)).find((0.0, 0.0), (1.0, 2.0)).aim((0.0, 0.0), 1.0)
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.planning.heap import pop, push
 from elbowroom.world.walkable import WalkableMap, interpolate_grid
 
 Floats = NDArray[np.float64]
@@ -131,11 +132,11 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
     cost[:], parents[:], done[:] = np.inf, -1, False
     keys, nodes = np.empty(rows * columns * 16 + 1), np.empty(rows * columns * 16 + 1, np.int64)
     here = float(grid[first // columns, first % columns])
-    size = _push(keys, nodes, _EMPTY, 0.0, first)
+    size = push(keys, nodes, _EMPTY, 0.0, first)
     cost[first] = 0.0
     while size > 0:
         node = nodes[0]
-        size = _pop(keys, nodes, size)
+        size = pop(keys, nodes, size)
         if done[node]:
             continue
         done[node] = True
@@ -157,37 +158,8 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
             total = cost[node] + length * (1.0 + aside + narrow)
             if total < cost[a * columns + b] - 1e-12:
                 cost[a * columns + b], parents[a * columns + b] = total, node
-                size = _push(keys, nodes, size, total, a * columns + b)
+                size = push(keys, nodes, size, total, a * columns + b)
     return cost, parents
-
-
-@exact_kernel
-def _push(keys: Floats, nodes: Indices, size: int, key: float, node: int) -> int:
-    """Add to the binary heap; returns its new size."""
-    at = size
-    while at > 0 and keys[(at - 1) // 2] > key:
-        keys[at], nodes[at] = keys[(at - 1) // 2], nodes[(at - 1) // 2]
-        at = (at - 1) // 2
-    keys[at], nodes[at] = key, node
-    return size + 1
-
-
-@exact_kernel
-def _pop(keys: Floats, nodes: Indices, size: int) -> int:
-    """Remove the least entry of the binary heap; returns its new size."""
-    size -= 1
-    key, node = keys[size], nodes[size]
-    at = 0
-    while 2 * at + 1 < size:
-        child = 2 * at + 1
-        if child + 1 < size and keys[child + 1] < keys[child]:
-            child += 1
-        if keys[child] >= key:
-            break
-        keys[at], nodes[at] = keys[child], nodes[child]
-        at = child
-    keys[at], nodes[at] = key, node
-    return size
 
 
 @exact_kernel

@@ -1,0 +1,1 @@
+"""Walks to places in a scene, one after the other."""

@@ -1,0 +1,90 @@
+"""One walk to one place, as fast as it can be computed."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.control.controller import FORWARD, Controller
+from elbowroom.control.frame import Frame
+from elbowroom.control.journey import JourneyState
+from elbowroom.experiment.crossing import DT
+from elbowroom.planning.command import Command
+from elbowroom.planning.navigation.way import NoWayError, Place
+
+Listener = Callable[[Command, float, Frame], None]
+
+NO_WAY, OUT_OF_TIME = "no way", "out of time"
+
+
+@dataclass(frozen=True)
+class Leg:
+    """How a walk to one place went."""
+
+    target: Place
+    outcome: str  # "arrived", "given up", `NO_WAY` or `OUT_OF_TIME`
+    reason: str  # why it was given up; else empty
+    place: Place  # where it ended
+    way_m: float  # metres along the way that was found first, more where it is narrow; 0 where there was none
+    seconds: float
+    stuck_times: int
+    stuck_s: float  # seconds
+    least_clearance: float  # metres, over its frames
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it led there."""
+        return self.outcome == JourneyState.ARRIVED.value
+
+
+@dataclass(frozen=True, eq=False)
+class LegTimes:
+    """What it cost to compute."""
+
+    find_ms: float  # the way
+    frame_ms: NDArray[np.float64]  # (frames,)
+    plan_ms: NDArray[np.float64]  # (plans,) of these, the frames that planned
+
+
+def walk_to(
+    controller: Controller, target: Place, limit: float, listener: Listener | None = None
+) -> tuple[Leg, LegTimes]:
+    """Go to a place and stand there, or give up after `limit` seconds; `listener` hears of every step."""
+    frame = controller.step(Command(), 0.0)
+    began, started = time.perf_counter(), frame.time
+    try:
+        journey = controller.goto(target, FORWARD)
+    except NoWayError as error:
+        here = controller.root.x, controller.root.z
+        none = np.empty(0)
+        leg = Leg(target, NO_WAY, str(error), here, 0.0, 0.0, 0, 0.0, round(frame.clearance, 6))
+        return leg, LegTimes(1e3 * (time.perf_counter() - began), none, none)
+    found = time.perf_counter() - began
+    way_m = journey.way.left((controller.root.x, controller.root.z))
+    costs, planned, stuck_times, stuck_frames, clearance = list[float](), list[bool](), 0, 0, frame.clearance
+    while (journey.walking or not controller.stands) and frame.time - started < limit:
+        before, began = frame, time.perf_counter()
+        frame = controller.step(Command(), DT)
+        costs.append(time.perf_counter() - began)
+        planned.append(frame.plan is not before.plan)
+        stuck_times += frame.stuck and not before.stuck
+        stuck_frames += frame.stuck
+        clearance = min(clearance, frame.clearance)
+        if listener is not None:
+            listener(frame.command, DT, frame)
+    outcome = OUT_OF_TIME if journey.walking else journey.state.value
+    leg = Leg(
+        target=target,
+        outcome=outcome,
+        reason=journey.reason or (f"{limit:g} s were not enough" if journey.walking else ""),
+        place=(round(controller.root.x, 3), round(controller.root.z, 3)),
+        way_m=round(way_m, 2),
+        seconds=round(frame.time - started, 3),
+        stuck_times=stuck_times,
+        stuck_s=round(stuck_frames * DT, 3),
+        least_clearance=round(float(clearance), 6),
+    )
+    frame_ms = 1e3 * np.array(costs)
+    return leg, LegTimes(1e3 * found, frame_ms, frame_ms[np.array(planned, bool)])
