@@ -16,6 +16,7 @@ from elbowroom.body.skeleton import Skeleton
 from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 STANDARD_LEG = 0.491 * 1.72  # metres: thigh and shin of an average adult, see `proportions`
 
@@ -274,6 +275,20 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     feet, drops = np.empty((len(roots), 2, 6)), np.empty(len(roots))
     walk_into(legs, scale, roots, feet, drops, np.empty(6))
     return feet, drops
+
+
+@kernel
+def feet_standing(scale: float, roots: Floats) -> Bools:
+    """Which feet (N, 2), left and right, stand on the ground at root states (N, 7); both do where the root rests."""
+    standing = np.empty((len(roots), 2), np.bool_)
+    for n in range(len(roots)):
+        forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
+        duty = _stride(scale, forward, lateral, turn).duty
+        rests = abs(forward) + abs(lateral) + abs(turn) < _STILL
+        for side in range(2):
+            cycle = phase + 0.5 * side
+            standing[n, side] = rests or cycle - np.floor(cycle) < duty
+    return standing
 
 
 @helper

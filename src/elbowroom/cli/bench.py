@@ -4,7 +4,15 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli import bench_collision, bench_compile, bench_crowd, bench_plan, bench_planners, bench_steer
+from elbowroom.cli import (
+    bench_collision,
+    bench_compile,
+    bench_crowd,
+    bench_motion,
+    bench_plan,
+    bench_planners,
+    bench_steer,
+)
 from elbowroom.cli.output import print_json
 
 EXAMPLES = "Examples:  elbowroom bench  |  elbowroom bench --json  |  elbowroom bench plan --scene d"
@@ -38,4 +46,5 @@ bench.command("plan", epilog=bench_plan.EXAMPLES)(bench_plan.plan)
 bench.command("planners", epilog=bench_planners.EXAMPLES)(bench_planners.planners)
 bench.command("crowd", epilog=bench_crowd.EXAMPLES)(bench_crowd.crowd)
 bench.command("steer", epilog=bench_steer.EXAMPLES)(bench_steer.steer)
+bench.command("motion", epilog=bench_motion.EXAMPLES)(bench_motion.motion)
 bench.command("compile", epilog=bench_compile.EXAMPLES)(bench_compile.compile_)

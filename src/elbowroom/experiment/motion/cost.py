@@ -1,0 +1,46 @@
+"""What gait, inverse kinematics and skeleton cost."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import thread_time_ns
+
+import numpy as np
+
+from elbowroom.body.dof import DOF
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.root import ROOT_STATE
+
+MANY = 256
+_ROUNDS, _CALLS = 7, 50
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Microseconds of processor time: the best of several rounds."""
+
+    one: float  # a skeleton alone
+    each_of_many: float  # of 256 at once
+
+
+def cost(humanoid: Humanoid) -> Cost:
+    """Time the posing of walking bodies."""
+    model = body_model(humanoid)
+    states = np.zeros((MANY, ROOT_STATE))
+    states[:, 3], states[:, 6] = 1.1, np.linspace(0.0, 1.0, MANY)
+    postures = np.zeros((MANY, DOF))
+    return Cost(
+        _best(lambda: posture_capsules(model, postures[:1], states[:1])),
+        _best(lambda: posture_capsules(model, postures, states)) / MANY,
+    )
+
+
+def _best(job: Callable[[], object]) -> float:
+    job()
+    rounds = []
+    for _ in range(_ROUNDS):
+        began = thread_time_ns()
+        for _ in range(_CALLS):
+            job()
+        rounds.append((thread_time_ns() - began) / _CALLS)
+    return 1e-3 * min(rounds)

@@ -1,0 +1,86 @@
+"""What the feet of a walk do: slide, sink in, clear the ground, stand."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.experiment.motion.sole import Sole
+from elbowroom.experiment.motion.stance import slides, standing_by_looks, stretches
+from elbowroom.experiment.motion.walked import RATE, Walked
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_MIDDLE = (0.3, 0.8)  # of a swing: where a foot passes the other one
+_SWING = 5  # frames that a swing has at least
+
+
+@dataclass(frozen=True)
+class Slides:
+    """How far feet slide while they stand, millimetres."""
+
+    stances: int
+    median: float
+    p99: float
+    worst: float
+
+
+@dataclass(frozen=True)
+class Feet:
+    """The feet in the walks of one case."""
+
+    as_planned: Slides  # while the walk says that they stand
+    by_looks: Slides  # from when they have come to rest until they are lifted
+    in_ground: float  # millimetres that the lowest point of a sole is below the ground at most
+    clearance: float | None  # millimetres: the least height of a sole in the middle of a swing; None without a swing
+
+
+@dataclass(frozen=True, eq=False)
+class FootTrack:
+    """One foot in one walk."""
+
+    points: Floats  # (N, P, 3) of its sole
+    planned: Bools  # (N,)
+    seen: Bools  # (N,)
+
+    def clearances(self) -> Floats:
+        """The least height of the sole in the middle of each swing, metres."""
+        lowest, found = self.points[:, :, 1].min(axis=1), []
+        for swing in stretches(~self.planned):
+            length = swing.stop - swing.start
+            whole = swing.start > 0 and swing.stop < len(lowest)
+            if whole and length >= _SWING:
+                first, end = (swing.start + round(part * length) for part in _MIDDLE)
+                found.append(float(lowest[first : end + 1].min()))
+        return np.array(found)
+
+
+def foot_tracks(walked: Walked, soles: Sequence[Sole]) -> tuple[FootTrack, FootTrack]:
+    """Left and right foot of a walk, from where it is settled."""
+    span = walked.settled()
+    left, right = (
+        FootTrack(points, walked.standing[span, side], standing_by_looks(points, RATE))
+        for side, points in enumerate(sole.points(walked.joints)[span] for sole in soles)
+    )
+    return left, right
+
+
+def feet(tracks: Sequence[FootTrack]) -> Feet:
+    """The figures of some feet together."""
+    clearances = np.concatenate([track.clearances() for track in tracks])
+    return Feet(
+        slides_of([slides(track.points, track.planned) for track in tracks]),
+        slides_of([slides(track.points, track.seen) for track in tracks]),
+        max(0.0, -1e3 * min(float(track.points[:, :, 1].min()) for track in tracks)),
+        1e3 * float(clearances.min()) if len(clearances) else None,
+    )
+
+
+def slides_of(found: Sequence[Floats]) -> Slides:
+    """The figures of slides in metres."""
+    every = 1e3 * np.concatenate([*found, np.empty(0)])
+    if not len(every):
+        return Slides(0, 0.0, 0.0, 0.0)
+    return Slides(len(every), float(np.median(every)), float(np.percentile(every, 99)), float(every.max()))

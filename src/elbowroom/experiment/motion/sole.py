@@ -1,0 +1,89 @@
+"""The soles of an avatar: a few points of each foot that touch the ground first, however the foot is turned."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait import gait_shape
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.experiment.judge.poses import Posed
+from elbowroom.experiment.judge.skin import Skin, skin_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_THICK = 0.025  # of a leg: what is so near the lowest point of a foot in T-pose is its sole
+_DIRECTIONS, _SPREAD = 48, 24  # in which the farthest points are taken, and points spread over the whole sole besides
+
+
+@dataclass(frozen=True, eq=False)
+class Sole:
+    """Points of one foot, each fixed to the joint that carries most of it."""
+
+    joints: Ints  # (P,)
+    offsets: Floats  # (P, 3) from the joint in T-pose, metres
+
+    def points(self, posed: Posed) -> Floats:
+        """Where they are (N, P, 3) in N poses."""
+        turned = np.einsum("npij,pj->npi", posed.rotations[:, self.joints], self.offsets)
+        places: Floats = posed.positions[:, self.joints] + turned
+        return places
+
+
+def soles_of(humanoid: Humanoid) -> tuple[Sole, Sole]:
+    """The left and the right sole: of the avatar's own surface, or of its skeleton where it has none."""
+    skin, _ = skin_of(humanoid)
+    left, right = (_of_skin(humanoid, skin, side) for side in ("left", "right"))
+    return left, right
+
+
+def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> Sole:
+    skeleton = humanoid.skeleton
+    own = [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)]
+    if skin is None:
+        return _of_skeleton(humanoid, side)
+    carriers, offsets = skin.joints[:, 0], skin.offsets[:, 0]
+    mine = np.flatnonzero(np.isin(carriers, own))
+    if not len(mine):
+        return _of_skeleton(humanoid, side)
+    places = skeleton.positions[carriers[mine]] + offsets[mine]
+    leg = 2.0 * gait_shape(skeleton).half_leg
+    low = places[:, 1] < places[:, 1].min() + _THICK * leg
+    kept = np.array([places[low][:, 2].argmin(), *_outermost(places[low]), *_spread(places[low])])
+    chosen = mine[low][np.unique(kept)]
+    return Sole(carriers[chosen].astype(np.int64), offsets[chosen])
+
+
+def _outermost(places: Floats) -> Ints:
+    """The points that lie farthest down in directions that a foot is turned to."""
+    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _DIRECTIONS)
+    ways = [
+        np.stack([0 * angles, -np.cos(angles), np.sin(angles)]),
+        np.stack([np.sin(angles), -np.cos(angles), 0 * angles]),
+    ]
+    farthest: Ints = np.concatenate([(places @ way).argmax(axis=0) for way in ways])
+    return farthest
+
+
+def _spread(places: Floats) -> Ints:
+    """Points all over, each the farthest from those before it."""
+    chosen, away = [0], np.full(len(places), np.inf)
+    for _ in range(min(_SPREAD, len(places)) - 1):
+        away = np.minimum(away, np.linalg.norm(places - places[chosen[-1]], axis=1))
+        chosen.append(int(away.argmax()))
+    return np.array(chosen)
+
+
+def _of_skeleton(humanoid: Humanoid, side: str) -> Sole:
+    """Heel, ball and tip of the toes, by the bones and the foot's capsule."""
+    skeleton, capsules = humanoid.skeleton, humanoid.capsules
+    foot = skeleton.index(f"{side}Foot")
+    front = skeleton.index(f"{side}Toes") if skeleton.has(f"{side}Toes") else foot
+    ankle, toes = skeleton.positions[foot], skeleton.positions[front]
+    at = capsules.names.index(f"{side}Foot")
+    ahead = max(float(capsules.starts[at, 2]), float(capsules.ends[at, 2])) + float(capsules.radii[at])
+    heel = 0.16 * gait_shape(skeleton).half_leg
+    offsets = np.array([[0.0, -ankle[1], -heel], [0.0, -ankle[1], toes[2] - ankle[2]], [0.0, -toes[1], 0.0]])
+    offsets[2] = [0.0, -toes[1], ankle[2] + ahead - toes[2]]
+    return Sole(np.array([foot, foot, front]), offsets)

@@ -1,0 +1,86 @@
+"""The motion benchmark: scripted walks in the real controller, measured."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from elbowroom.body.gait import feet_standing
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.cli.main import app
+from elbowroom.errors import InputError
+from elbowroom.experiment.motion.gaps import shoulder_width, walls
+from elbowroom.experiment.motion.plots import motion_plots
+from elbowroom.experiment.motion.report import MotionSettings, amount, run
+from elbowroom.experiment.motion.scripts import SPEEDS, at_speed, scripts, steady
+from elbowroom.experiment.motion.walked import walk
+
+
+def test_every_case_of_the_issue_is_walked() -> None:
+    cases = {script.case for script in scripts()}
+    assert cases == {
+        "steady", "start", "stop", "turn", "change of direction", "turn in place", "strafe", "back", "circle",
+        "there and back", "crouch", "doorway", "slalom",
+    }  # fmt: skip
+    assert [script.speed for script in scripts(["steady"])] == list(SPEEDS)
+
+
+def test_a_steady_walk_is_as_fast_as_it_says() -> None:
+    walked = walk(Humanoid.default(), steady(0.8))
+    roots = walked.roots[walked.settled()]
+    assert roots[:, 3] == pytest.approx(np.full(len(roots), 0.8), abs=1e-6)
+    assert np.diff(roots[:, 1]) == pytest.approx(np.full(len(roots) - 1, 0.8 / 60.0), abs=1e-6)
+
+
+def test_feet_stand_for_as_much_of_a_stride_as_the_walk_says() -> None:
+    roots = np.zeros((1000, 7))
+    roots[:, 3], roots[:, 6] = 0.8, np.linspace(0.0, 1.0, 1000, endpoint=False)
+    standing = feet_standing(1.0, roots)
+    assert standing.mean(axis=0) == pytest.approx([0.61, 0.61], abs=0.02)
+    assert np.array_equal(standing[:, 1], np.roll(standing[:, 0], 500))
+    assert feet_standing(1.0, np.zeros((1, 7))).all()
+
+
+def test_a_report_has_figures_bands_and_pictures() -> None:
+    settings, done = MotionSettings(("steady", "stop", "gaps"), (0.8, 1.1), (1.5,)), list[int]()
+    report = run(Humanoid.default(), settings, done.append)
+    assert done == list(range(1, amount(settings) + 1))
+    assert set(report.feet) == {"steady", "stop"}
+    assert [gait.speed for gait in report.gaits] == [0.8, 1.1]
+    assert report.feet["steady"].as_planned.stances > 10
+    assert report.narrow is not None
+    assert report.narrow.passages[0].passed
+    assert report.cost.each_of_many > 0.0
+    names = [band.name for band in report.bands()]
+    assert len(names) == len(set(names))
+    for joint, picture in motion_plots(report).items():
+        assert joint in picture
+        assert picture.count("<polyline") == 2
+
+
+def test_a_gap_is_as_wide_as_it_says() -> None:
+    boxes = list(walls(0.6).obstacles)
+    inner = [abs(center[0]) - 0.5 * shape.size[0] for _, shape, center, _ in boxes]  # type: ignore[union-attr]
+    assert inner == pytest.approx([0.3, 0.3])
+    assert shoulder_width(Humanoid.default()) == pytest.approx(0.45, abs=0.01)
+
+
+def test_the_command_prints_one_object_and_draws(tmp_path: Path) -> None:
+    arguments = ["bench", "motion", "--case", "steady", "--speeds", "1.1", "--json", "--plots", str(tmp_path), "-q"]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert found["gaits"][0]["speed"] == 1.1
+    assert {path.name for path in tmp_path.iterdir()} == {"motion_hip.svg", "motion_knee.svg", "motion_ankle.svg"}
+
+
+def test_nonsense_is_refused() -> None:
+    for settings in ({"cases": ("hop",)}, {"speeds": (9.0,)}, {"ratios": (0.0,)}):
+        with pytest.raises(InputError):
+            MotionSettings(**settings)
+    with pytest.raises(InputError):
+        at_speed(0.0)
+    result = CliRunner().invoke(app, ["bench", "motion", "--speeds", "fast"], standalone_mode=False)
+    assert result.return_value == 2
