@@ -21,6 +21,7 @@ ROOMS = [
     "experiment",
     "server",
     "film",
+    "cluster",
     "cli",
 ]
 # Of `planning/exact`, bottom to top.

@@ -1,8 +1,10 @@
 """Walks through courses: legs are never hindered, who follows the certificate gets through, results add up."""
 
 import json
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from elbowroom.experiment.gauntlet.summary import GauntletSummary
 from elbowroom.experiment.gauntlet.sweep import STEERING
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.experiment.parallel import Processes
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -121,25 +124,25 @@ def test_wrong_settings_are_refused(settings: dict[str, int], words: str) -> Non
         GauntletSettings(**settings)  # type: ignore[arg-type]
 
 
-def test_an_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
     walked: list[int] = []
 
-    def run_here(tasks: list[CourseTask], jobs: int):  # type: ignore[no-untyped-def]
-        for place, task in enumerate(tasks):
-            walked.append(task.seed)
-            if len(walked) == 3:
-                raise KeyboardInterrupt
-            yield place, {**vars(result(seed=task.seed)), "judge": None}
+    class Here(Processes):
+        def run(self, tasks: Sequence[Any]) -> Iterator[tuple[int, Any]]:
+            for place, task in enumerate(tasks):
+                walked.append(task.seed)
+                if len(walked) == 3:
+                    raise KeyboardInterrupt
+                yield place, {**vars(result(seed=task.seed)), "judge": None}
 
-    monkeypatch.setattr("elbowroom.experiment.gauntlet.runner.run_all", run_here)
     settings, told = GauntletSettings(level=1, courses=4, seed=10), []
     with pytest.raises(KeyboardInterrupt):
-        run_gauntlet(settings, folder=tmp_path)
-    results, _ = run_gauntlet(settings, folder=tmp_path, progress=lambda done, total: told.append((done, total)))
+        run_gauntlet(settings, Here(), tmp_path)
+    results, _ = run_gauntlet(settings, Here(), tmp_path, progress=lambda done, total: told.append((done, total)))
     assert walked == [10, 11, 12, 12, 13]
     assert told == [(2, 4), (3, 4), (4, 4)]
     assert [each.seed for each in results] == [10, 11, 12, 13]
-    assert len(run_gauntlet(replace(settings, judge=True), folder=tmp_path).results) == 4
+    assert len(run_gauntlet(replace(settings, judge=True), Here(), tmp_path).results) == 4
     assert walked[5:] == [10, 11, 12, 13]  # other settings, other results
 
 
@@ -150,11 +153,11 @@ def test_a_seed_without_a_course_is_passed_over(tmp_path: Path, monkeypatch: pyt
                 raise NoCourseError("none")
             return replace(course(level, 0), seed=seed, limit=0.2)
 
-    def run_here(tasks: list[CourseTask], jobs: int):  # type: ignore[no-untyped-def]
+    def run_here(self: Processes, tasks: Sequence[Any]) -> Iterator[tuple[int, Any]]:
         yield from ((place, json.loads(json.dumps(task.run()))) for place, task in enumerate(tasks))
 
-    monkeypatch.setattr("elbowroom.experiment.gauntlet.tasks._opened", lambda avatar: (stock()[0], Maker()))
-    monkeypatch.setattr("elbowroom.experiment.gauntlet.runner.run_all", run_here)
+    monkeypatch.setattr("elbowroom.experiment.gauntlet.tasks._maker", lambda avatar: Maker())
+    monkeypatch.setattr(Processes, "run", run_here)
     settings = GauntletSettings(level=1, courses=3, seed=10)
     for _ in range(2):  # the second time from the log
         results, without = run_gauntlet(settings, folder=tmp_path)

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli import (
+    bench_cluster,
     bench_collision,
     bench_compile,
     bench_crowd,
@@ -45,6 +46,7 @@ bench.command("collision", epilog=bench_collision.EXAMPLES)(bench_collision.coll
 bench.command("plan", epilog=bench_plan.EXAMPLES)(bench_plan.plan)
 bench.command("planners", epilog=bench_planners.EXAMPLES)(bench_planners.planners)
 bench.command("crowd", epilog=bench_crowd.EXAMPLES)(bench_crowd.crowd)
+bench.command("cluster", epilog=bench_cluster.EXAMPLES)(bench_cluster.cluster)
 bench.command("steer", epilog=bench_steer.EXAMPLES)(bench_steer.steer)
 bench.command("motion", epilog=bench_motion.EXAMPLES)(bench_motion.motion)
 bench.command("compile", epilog=bench_compile.EXAMPLES)(bench_compile.compile_)

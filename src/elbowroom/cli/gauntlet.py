@@ -11,6 +11,7 @@ from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, cho
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
+from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -38,7 +39,8 @@ def gauntlet(
     seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
-    jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
     judge: Annotated[
         bool, typer.Option("--judge", help="Have every walk judged by another library, coal: capsules and mesh.")
@@ -64,11 +66,11 @@ def gauntlet(
     Exit code 0: all crossed and nothing touched, 1: not, 2: no seed gives a course.
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones])
+    check_cluster(cluster)
     compile_first(quiet=quiet)
     from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialSettings
-    from elbowroom.experiment.parallel import usable_cores
 
     walker = _Walker(avatar, bones, height, include_hair)
     settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference(), shapes)
@@ -76,9 +78,9 @@ def gauntlet(
         return _save(_course(settings, walker, save[0], quiet), save[1])
     if show is not None:
         return _show(_course(settings, walker, show, quiet), settings, walker)
-    processes = min(courses, usable_cores()) if jobs is None else jobs
-    with time_left_bar("Courses", quiet) as move:
-        results, without = run_gauntlet(settings, processes, out, move)
+    with chosen_workers(cluster, jobs, courses) as workers, time_left_bar("Courses", quiet) as move:
+        results, without = run_gauntlet(settings, workers, out, move)
+        processes = workers.at_once
     if not results:
         raise InputError(f"level {level}: {_NO_COURSE.format(_listed(without))}; try another level or other seeds")
     summary = GauntletSummary.of(results)

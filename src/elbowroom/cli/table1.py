@@ -10,10 +10,13 @@ from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import json_text, print_json, progress_bar
 from elbowroom.cli.time_left import time_left_bar
+from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
 from elbowroom.errors import InputError
 from elbowroom.planning.names import FIGURE6
 
 if TYPE_CHECKING:
+    from elbowroom.experiment.parallel import Workers
+    from elbowroom.experiment.table1.table import Table1
     from elbowroom.experiment.table1.tasks import Table1Settings
 
 EXAMPLES = (
@@ -29,7 +32,8 @@ def table1(
     scenes: Annotated[str, typer.Option(help="Stock scenes by name, or scene files.")] = "a,b,c,d",
     queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|: each 2 to 32.")] = "3,4,5,6,7",
     seeds: Annotated[int, typer.Option(help="Trials for each cell, with the seeds 1 to N; the paper has 3.")] = 20,
-    jobs: Annotated[int | None, typer.Option(help="Processes at once (all cores); 1 gives the truest times.")] = None,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
     out: Annotated[Path, typer.Option(help="Folder for results; an interrupted run goes on there.")] = Path("table1"),
     limit: Annotated[float, typer.Option(help="Seconds that the user has for each crossing.")] = 30.0,
     avatar: Annotated[Path | None, typer.Option(help="A VRM or GLB humanoid instead of the stock avatar.")] = None,
@@ -48,26 +52,15 @@ def table1(
     check_arguments(
         scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
     )
+    check_cluster(cluster)
     compile_first(quiet=quiet)
-    from elbowroom.experiment.parallel import check_jobs, usable_cores
-    from elbowroom.experiment.report.crossings import successful_crossings
-    from elbowroom.experiment.report.page import report_html
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
-    from elbowroom.experiment.table1.table import run_table1
 
     settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
-    processes = usable_cores() if jobs is None else jobs
-    check_jobs(processes)
-    with progress_bar("Opening the avatar", None, quiet):
-        about = _about(settings, processes)
-    try:
-        with time_left_bar("Trials", quiet) as move:
-            table = run_table1(settings, out, processes, move)
-    except KeyboardInterrupt:
-        typer.echo(f"elbowroom: interrupted; what is done is kept in {out}, the same call goes on from there", err=True)
-        raise
-    with progress_bar("Drawing the report", None, quiet):
-        page = report_html(table, about, successful_crossings(table, processes))
+    with chosen_workers(cluster, jobs) as workers:
+        with progress_bar("Opening the avatar", None, quiet):
+            about = _about(settings, workers.at_once)
+        table, page = _run(settings, about, out, workers, quiet=quiet)
     document = table_document(table, about)
     files = {
         out / REPORT: page,
@@ -83,6 +76,24 @@ def table1(
 
         print_table1(table, about, [str(path) for path in files])
     raise typer.Exit(FELL_SHORT if document["touching_trials"] else 0)
+
+
+def _run(
+    settings: "Table1Settings", about: dict[str, Any], out: Path, workers: "Workers", *, quiet: bool
+) -> "tuple[Table1, str]":
+    """The table, and its report."""
+    from elbowroom.experiment.report.crossings import successful_crossings
+    from elbowroom.experiment.report.page import report_html
+    from elbowroom.experiment.table1.table import run_table1
+
+    try:
+        with time_left_bar("Trials", quiet) as move:
+            table = run_table1(settings, out, workers, move)
+    except KeyboardInterrupt:
+        typer.echo(f"elbowroom: interrupted; what is done is kept in {out}, the same call goes on from there", err=True)
+        raise
+    with progress_bar("Drawing the report", None, quiet):
+        return table, report_html(table, about, successful_crossings(table, workers))
 
 
 def _settings(

@@ -1,4 +1,4 @@
-"""Many small jobs, each in one of several processes of their own."""
+"""Many small tasks, and who does them: several processes of this machine, or whatever else is `Workers`."""
 
 import multiprocessing
 import os
@@ -7,9 +7,11 @@ import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from typing import Protocol, TypeVar
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeVar
 
 from elbowroom.errors import InputError
+from elbowroom.experiment.opened import Thing
 
 MAX_JOBS = 256
 Result_co = TypeVar("Result_co", covariant=True)
@@ -19,8 +21,27 @@ Result = TypeVar("Result")
 class Task(Protocol[Result_co]):
     """Something that can be sent to another process and done there; equal tasks give equal results."""
 
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """What it asks of `opened`: scenes, avatars. Who does many tasks on another machine sends each there once."""
+
     def run(self) -> Result_co:
         """Do it."""
+
+
+class Workers(Protocol):
+    """Who does tasks."""
+
+    @property
+    def at_once(self) -> int:
+        """How many tasks are done at the same time."""
+
+    def run(self, tasks: Sequence[Task[Result]]) -> Iterator[tuple[int, Result]]:
+        """Do the tasks; gives (index of the task, its result) as they finish, each once.
+
+        What a task raises is raised here; raises `InputError` where the workers are lost. What is begun ends with the
+        iterator.
+        """
 
 
 def usable_cores() -> int:
@@ -34,25 +55,32 @@ def check_jobs(jobs: int) -> None:
         raise InputError(f"jobs: {jobs} is not between 1 and {MAX_JOBS}")
 
 
-def run_all(tasks: Sequence[Task[Result]], jobs: int) -> Iterator[tuple[int, Result]]:
-    """Run the tasks in `jobs` processes; gives (index of the task, its result) as they finish.
+@dataclass(frozen=True)
+class Processes:
+    """Processes of this machine: fresh ones (spawned) for each call, that do not outlive this one, however it ends.
 
-    The processes are fresh ones (spawned), end with the iterator, and do not outlive this process, however it ends.
-    What a task raises is raised here; raises `InputError` if a process dies.
+    Raises `InputError` for numbers out of range.
     """
-    check_jobs(jobs)
-    if not tasks:
-        return
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=context, initializer=_prepare)
-    try:
-        places = {pool.submit(_run, task): place for place, task in enumerate(tasks)}
-        for future in as_completed(places):
-            yield places.pop(future), future.result()
-    except BrokenProcessPool:
-        raise InputError("a worker process died (out of memory?); run again, what is done is kept") from None
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+
+    at_once: int = 1
+
+    def __post_init__(self) -> None:
+        check_jobs(self.at_once)
+
+    def run(self, tasks: Sequence[Task[Result]]) -> Iterator[tuple[int, Result]]:
+        """See `Workers`; raises `InputError` if a process dies."""
+        if not tasks:
+            return
+        context = multiprocessing.get_context("spawn")
+        pool = ProcessPoolExecutor(min(self.at_once, len(tasks)), mp_context=context, initializer=_prepare)
+        try:
+            places = {pool.submit(_run, task): place for place, task in enumerate(tasks)}
+            for future in as_completed(places):
+                yield places.pop(future), future.result()
+        except BrokenProcessPool:
+            raise InputError("a worker process died (out of memory?); run again, what is done is kept") from None
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
 
 
 def _run(task: Task[Result]) -> Result:

@@ -17,7 +17,7 @@ from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
 from elbowroom.experiment.machine import machine_kind, program_digest
-from elbowroom.experiment.parallel import run_all
+from elbowroom.experiment.parallel import Processes, Workers
 from elbowroom.experiment.trial_log import TrialLog, digest
 from elbowroom.planning.names import check_planner
 
@@ -77,7 +77,10 @@ def identity(settings: GauntletSettings) -> dict[str, Any]:
 
 
 def run_gauntlet(
-    settings: GauntletSettings, jobs: int = 1, folder: Path | None = None, progress: Progress | None = None
+    settings: GauntletSettings,
+    workers: Workers = Processes(),  # noqa: B008  frozen
+    folder: Path | None = None,
+    progress: Progress | None = None,
 ) -> GauntletRun:
     """Walk all courses and give the results in their order; seeds that give this body no course are passed over.
 
@@ -90,7 +93,7 @@ def run_gauntlet(
         missing = [task for task in tasks if task.key not in done]
         if progress is not None:
             progress(len(done), len(tasks))
-        for place, record in run_all(missing, jobs):
+        for place, record in workers.run(missing):
             done[missing[place].key] = record
             if log is not None:
                 log.append(missing[place].key, record)

@@ -15,11 +15,25 @@ from elbowroom.experiment.crossing import DT, warm_up
 from elbowroom.experiment.gauntlet.course import Course, CourseMaker, NoCourseError
 from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.experiment.opened import Thing, opened
 from elbowroom.planning.command import Command
 
 Record = dict[str, Any]
 
 _NO_COURSE = "no_course"
+
+
+@dataclass(frozen=True)
+class CourseWalker:
+    """Who walks the courses: an avatar that is known by its content, or the stock one."""
+
+    avatar: AvatarReference | None
+
+    def open(self) -> Humanoid:
+        """Read the avatar."""
+        if self.avatar is None:
+            return Humanoid.default()
+        return self.avatar.load(Path(self.avatar.path) if self.avatar.path else None)
 
 
 @dataclass(frozen=True)
@@ -38,9 +52,14 @@ class CourseTask:
         """What tells this task from all others with the same settings."""
         return f"{self.level}-{self.seed}"
 
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """The avatar."""
+        return (CourseWalker(self.avatar),)
+
     def run(self) -> Record:
         """The result as a plain record, see `result_of`."""
-        humanoid, maker = _opened(self.avatar)
+        humanoid, maker = opened(CourseWalker(self.avatar)), _maker(self.avatar)
         try:
             course = maker.course(self.level, self.seed)
         except NoCourseError:
@@ -70,13 +89,9 @@ def result_of(record: Mapping[str, Any]) -> TrialResult | None:
 
 
 @lru_cache(maxsize=1)
-def _opened(avatar: AvatarReference | None) -> tuple[Humanoid, CourseMaker]:
-    """An avatar and the maker of its courses, once in a process."""
-    if avatar is None:
-        humanoid = Humanoid.default()
-    else:
-        humanoid = avatar.load(Path(avatar.path) if avatar.path else None)
-    return humanoid, CourseMaker.of(humanoid)
+def _maker(avatar: AvatarReference | None) -> CourseMaker:
+    """The maker of an avatar's courses, once in a process."""
+    return CourseMaker.of(opened(CourseWalker(avatar)))
 
 
 def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigures:

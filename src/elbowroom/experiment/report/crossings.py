@@ -13,9 +13,10 @@ from elbowroom.body.dof import DofGroup
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
-from elbowroom.experiment.parallel import run_all
+from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.table import Table1
-from elbowroom.experiment.table1.tasks import open_avatar, open_scene
+from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene, open_avatar, open_scene
 from elbowroom.planning.command import Command
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,11 @@ class DrawTask:
     avatar: Path | None
     settings: CrossingSettings
 
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """Avatar and scene."""
+        return AvatarFile(self.avatar), NamedScene(self.scene)
+
     def run(self) -> DrawnCrossing:
         """The crossing."""
         humanoid, scene = open_avatar(self.avatar), open_scene(self.scene)
@@ -73,7 +79,7 @@ class DrawTask:
         )
 
 
-def successful_crossings(table: Table1, jobs: int) -> dict[str, DrawnCrossing]:
+def successful_crossings(table: Table1, workers: Workers) -> dict[str, DrawnCrossing]:
     """The best crossing of every scene that has one, by the scene's name: straight ones first, then the quickest."""
     names = {open_scene(scene).name: scene for scene in table.settings.scenes}
     best = {name: _best([trial for trial in table.trials if trial["scene"] == name]) for name in names}
@@ -82,7 +88,7 @@ def successful_crossings(table: Table1, jobs: int) -> dict[str, DrawnCrossing]:
         for name, trial in best.items()
         if trial is not None
     ]
-    drawn = [crossing for _, crossing in run_all(tasks, jobs)]
+    drawn = [crossing for _, crossing in workers.run(tasks)]
     return {open_scene(crossing.scene).name: crossing for crossing in drawn}
 
 

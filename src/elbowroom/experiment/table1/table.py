@@ -12,7 +12,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 from elbowroom.experiment.machine import machine_kind, program_digest
 from elbowroom.experiment.paper_table import PaperCell, paper_table
-from elbowroom.experiment.parallel import run_all
+from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.cells import CannedCell, Cell, fold_canned, fold_cell
 from elbowroom.experiment.table1.tasks import (
     CannedTask,
@@ -90,7 +90,7 @@ def planner_settings(settings: Table1Settings) -> Record:
     return {name: asdict(planner.settings) for name, planner in planners.items() if hasattr(planner, "settings")}
 
 
-def run_table1(settings: Table1Settings, folder: Path, jobs: int, progress: Progress | None = None) -> Table1:
+def run_table1(settings: Table1Settings, folder: Path, workers: Workers, progress: Progress | None = None) -> Table1:
     """Run all trials that the folder's log does not hold yet, and fold the table from all of them."""
     check(settings)
     tasks: list[CrossingTask | CannedTask] = [*crossing_tasks(settings), *canned_tasks(settings)]
@@ -99,7 +99,7 @@ def run_table1(settings: Table1Settings, folder: Path, jobs: int, progress: Prog
         done = len(tasks) - len(missing)
         if progress is not None:
             progress(done, len(tasks))
-        for place, record in run_all(missing, jobs):
+        for place, record in workers.run(missing):
             log.append(missing[place].key, record)
             done += 1
             if progress is not None:

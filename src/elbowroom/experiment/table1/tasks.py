@@ -19,6 +19,7 @@ from elbowroom.experiment.crossing import (
     start_for,
     warm_up,
 )
+from elbowroom.experiment.opened import Thing, opened
 from elbowroom.experiment.scripted_user import FORWARD
 from elbowroom.experiment.trial_log import digest
 from elbowroom.planning.names import FIGURE6
@@ -50,6 +51,28 @@ class Table1Settings:
 
 
 @dataclass(frozen=True)
+class NamedScene:
+    """A stock scene by its name, or a scene file."""
+
+    name: str
+
+    def open(self) -> Scene:
+        """Read it."""
+        return Scene.load(self.name)
+
+
+@dataclass(frozen=True)
+class AvatarFile:
+    """An avatar's file, None for the stock one."""
+
+    path: Path | None
+
+    def open(self) -> Humanoid:
+        """Read it."""
+        return Humanoid.default() if self.path is None else Humanoid.load(self.path)
+
+
+@dataclass(frozen=True)
 class CrossingTask:
     """One crossing trial."""
 
@@ -65,6 +88,11 @@ class CrossingTask:
             f"crossing {scene_key(self.scene)} {chosen.planner} {chosen.queue_size} {chosen.seed}"
             + " live" * chosen.live
         )
+
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """Avatar and scene."""
+        return AvatarFile(self.avatar), NamedScene(self.scene)
 
     def run(self) -> dict[str, Any]:
         """The row of the trial, and what each of its frames and plans cost."""
@@ -92,6 +120,11 @@ class CannedTask:
     def key(self) -> str:
         """By what the trial log knows it."""
         return f"{CANNED} {scene_key(self.scene)} {self.seed}"
+
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """Avatar and scene."""
+        return AvatarFile(self.avatar), NamedScene(self.scene)
 
     def run(self) -> dict[str, Any]:
         """How many frames of it touch, and how deep, in metres."""
@@ -131,16 +164,14 @@ def canned_tasks(settings: Table1Settings) -> Iterator[CannedTask]:
         yield CannedTask(scene, settings.avatar, seed, settings.limit)
 
 
-@lru_cache(maxsize=64)
 def open_scene(name: str) -> Scene:
     """A scene, opened once in a process."""
-    return Scene.load(name)
+    return opened(NamedScene(name))
 
 
-@lru_cache(maxsize=1)
 def open_avatar(path: Path | None) -> Humanoid:
     """The avatar, opened once in a process; the stock one for None."""
-    return Humanoid.default() if path is None else Humanoid.load(path)
+    return opened(AvatarFile(path))
 
 
 @lru_cache(maxsize=64)

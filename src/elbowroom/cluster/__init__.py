@@ -1,0 +1,1 @@
+"""Many machines: experiments, whose tasks are done on the nodes of a Ray cluster."""
