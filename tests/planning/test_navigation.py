@@ -2,6 +2,7 @@
 
 import heapq
 import math
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -35,7 +36,7 @@ def naive_price(room: NDArray[np.float32], above: NDArray[np.float32], i: int, j
     if room[i, j] < PRICES.slim:
         return math.inf
     narrow = min(max((PRICES.roomy - room[i, j]) / (PRICES.roomy - PRICES.slim), 0.0), 1.0)
-    return 1.0 + PRICES.tight * narrow**2 + PRICES.ducked * (above[i, j] < PRICES.headroom)
+    return float(1.0 + PRICES.tight * narrow**2 + PRICES.ducked * (above[i, j] < PRICES.headroom))
 
 
 def naive_costs(room: NDArray[np.float32], above: NDArray[np.float32], goal: tuple[int, int]) -> NDArray[np.float64]:
@@ -132,7 +133,7 @@ def humanoid() -> Humanoid:
     return Humanoid.default()
 
 
-def navigator_among(humanoid: Humanoid, *obstacles: dict[str, object]) -> Navigator:
+def navigator_among(humanoid: Humanoid, *obstacles: Mapping[str, object]) -> Navigator:
     return Navigator(humanoid, Scene.of("walls", obstacles, finish=(0.0, 4.0)))
 
 
