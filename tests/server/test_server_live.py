@@ -20,10 +20,10 @@ from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.schema.bounds import MAX_MESSAGE
-from elbowroom.server.schema.commands import ClockMessage, Configure, Overlays, Ping, Reset
+from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Overlays, Ping, Reset
 from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, SceneMessage
-from elbowroom.server.schema.progress import Crossed, Loading, Plan, Status
+from elbowroom.server.schema.progress import Crossed, Going, Loading, Plan, Status
 from elbowroom.server.walk import Walk
 from live_session import Client, client_of, running
 
@@ -379,3 +379,19 @@ def test_a_session_that_has_ended_leaves_nothing(url: str, monkeypatch: pytest.M
         assert [walk() for walk in walks] == [None, None]
     finally:
         gc.enable()
+
+
+def test_a_place_on_the_floor_is_walked_to_and_a_key_takes_over(client: Client) -> None:
+    client.send(Goto((0.0, 1.0)))
+    assert client.wait_for(Going).state == "walking"
+    arrived = client.wait_for(Going)
+    assert (arrived.state, arrived.place) == ("arrived", (0.0, 1.0))
+    assert client.frame(lambda frame: abs(frame.forward) < 0.01).z == pytest.approx(1.0, abs=0.25)
+    client.send(Goto((0.0, 1e5)))
+    refused = client.wait_for(Going)
+    assert refused.state == "refused"
+    assert "off the ground" in refused.reason
+    client.send(Goto((0.0, 3.0)))
+    assert client.wait_for(Going).state == "walking"
+    client.press(forward=-1.0)
+    assert client.wait_for(Going).state == "taken over"

@@ -4,8 +4,9 @@ import { AddressLine, isPrivate, withOwnAvatar } from "./address";
 import { uploadFile } from "./avatar/upload";
 import { nextView, viewNamed, type ViewName } from "./camera/views";
 import { FrameStats } from "./frame_stats";
+import { GoingSomewhere } from "./going/going";
 import { POSE_FLAGS } from "./generated/messages";
-import type { AvatarMessage, Catalog, ClipMessage, Crossed, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
+import type { AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
 import { Controls } from "./input/controls";
 import type { Action } from "./input/keyboard";
 import { PointerInput } from "./input/pointer";
@@ -48,6 +49,7 @@ export class App implements SessionListener, MenuListener {
   readonly stats = new FrameStats();
   readonly replay: ReplayDoor;
   readonly steps: Steps;
+  readonly somewhere: GoingSomewhere;
   pose: ShownPose | null = null;
   sceneMessage: SceneMessage | null = null;
   private avatarMessage: AvatarMessage | null = null;
@@ -90,6 +92,10 @@ export class App implements SessionListener, MenuListener {
     this.menu = new Menu(this, this.preferences);
     this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement));
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
+    this.somewhere = new GoingSomewhere(this.view, {
+      picture: this.picture, send: (message) => this.session.send(message),
+      say: (level, said) => this.notices.show(level, said), walks: () => !this.replay.active,
+    });
     keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
     this.showPanels();
@@ -124,6 +130,7 @@ export class App implements SessionListener, MenuListener {
   scene(scene: SceneMessage): void {
     this.sceneMessage = scene;
     this.noteLive();
+    this.somewhere.forget();
     if (!this.replay.active) this.furnish(scene);
     this.statusLine.restart();
     this.finishCard.hide();
@@ -200,6 +207,10 @@ export class App implements SessionListener, MenuListener {
     const best = assist ? this.best.note(this.sceneMessage?.name ?? "", planner, crossed.seconds) : null;
     this.finishCard.show({ crossed, clearance: this.session.leastClearance.value, assist, best });
     this.picture.world.gate.flash();
+  }
+
+  going(going: Going): void {
+    this.somewhere.heard(going);
   }
 
   notice(level: Notice["level"], message: string): void {
@@ -299,6 +310,7 @@ export class App implements SessionListener, MenuListener {
     reset: () => {
       this.statusLine.restart();
       this.finishCard.hide();
+      this.somewhere.forget();
       this.session.send({ type: "reset" });
     },
     pause: () => this.session.send({ type: "clock", paused: !this.session.settings?.paused }),

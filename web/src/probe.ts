@@ -45,6 +45,7 @@ export interface AppState {
   readonly delayMs: number;
   readonly roundTripMs: number;
   readonly replay: unknown;
+  readonly going: unknown;
   readonly steps: number;
   readonly footprints: number;
 }
@@ -104,6 +105,7 @@ function snapshot(app: App): AppState {
     delayMs: 1000 * session.delay,
     roundTripMs: session.roundTripMs,
     replay: app.replay.state,
+    going: app.somewhere.last,
     steps: app.steps.count,
     footprints: app.steps.printed,
   };

@@ -4,12 +4,23 @@ They travel over one WebSocket as JSON text, `{"type": "input", ...}`; poses tra
 (`pose_frame`).
 """
 
-from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Overlays, Ping, Reset
+from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Reset
 from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, ClipMessage, SceneMessage
-from elbowroom.server.schema.progress import Crossed, Loading, Notice, Plan, Pong, Status
+from elbowroom.server.schema.progress import Crossed, Going, Loading, Notice, Plan, Pong, Status
 
-ClientMessage = Input | Configure | ClockMessage | Reset | Overlays | Ping
+ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Overlays | Ping
 ServerMessage = (
-    Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Notice | Pong
+    Hello
+    | Settings
+    | SceneMessage
+    | AvatarMessage
+    | ClipMessage
+    | Status
+    | Plan
+    | Loading
+    | Crossed
+    | Going
+    | Notice
+    | Pong
 )

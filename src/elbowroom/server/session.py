@@ -4,7 +4,7 @@ import asyncio
 import contextlib
 import logging
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Coroutine, Iterable, Sequence
 
 from starlette.types import Message
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -21,12 +21,13 @@ from elbowroom.server.page_key import page_key
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
-from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Overlays, Ping, Reset
+from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Reset
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.schema.progress import Loading, Notice, Pong
 from elbowroom.server.stage import Stage
 from elbowroom.server.standstill import Standstill
 from elbowroom.server.wanted import Wanted
+from elbowroom.server.ways import Ways
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -60,15 +61,16 @@ class Session:
         self._heard = 0.0
         self._answered = 0.0  # when the last input was answered by a frame of its own
         self._told = -_SELDOM  # when the last status went out
-        self._stage: Stage  # both made by _open
+        self._stage: Stage  # these are made by _open
         self._changes: Changes
+        self._ways: Ways
 
     async def run(self) -> None:
         """Serve the client until it leaves or fails."""
         sender = asyncio.create_task(self._outbox.send_to(self._socket))
         try:
             await self._open()
-            await _first_of([sender, *map(asyncio.create_task, (self._read(), self._play(), self._changes.run()))])
+            await _first_of([sender, *map(asyncio.create_task, self._tasks())])
         except (WebSocketDisconnect, OSError):
             return
         except (_DoneError, SlowClientError, InputError) as error:
@@ -84,6 +86,9 @@ class Session:
             with contextlib.suppress(AttributeError):  # where it had not begun
                 self._stage.close()
 
+    def _tasks(self) -> list[Coroutine[None, None, None]]:
+        return [self._read(), self._play(), self._changes.run(), self._ways.run()]
+
     def _now(self) -> float:
         return time.monotonic() - self._began
 
@@ -96,6 +101,7 @@ class Session:
         self._outbox.put(Loading("avatar", library.avatar, False))
         self._stage = Stage(walk, self._now())
         self._changes = Changes(library, self._stage, self._outbox, self)
+        self._ways = Ways(self._stage, self._outbox)
         self._outbox.put(self._stage.settings())
         self._outbox.put(scene_message(walk.scene))
         self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
@@ -135,6 +141,8 @@ class Session:
             self._outbox.put(Pong(message.t, self._now()))
         elif isinstance(message, Configure):
             self._changes.ask(message)
+        elif isinstance(message, Goto):
+            self._ways.ask(message)
         else:
             self._control(message)
             self._outbox.put(self._stage.settings())
@@ -163,6 +171,7 @@ class Session:
                 self._show()
                 self._stage.punctuality.shown(self._now() - due)
             if seldom:
+                self._ways.report()
                 self._report()
 
     def _show(self) -> None:

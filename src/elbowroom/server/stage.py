@@ -146,7 +146,8 @@ class Stage:
     @property
     def restless(self) -> bool:
         """Whether something may move though the avatar stands: it is told to go, or obstacles move by themselves."""
-        return not self.paused and (not self.command.idle or bool(len(self.walk.scene.obstacles.moving)))
+        moves = not self.walk.frame.command.idle or bool(len(self.walk.scene.obstacles.moving))
+        return not self.paused and (moves or not self.command.idle)
 
     def status(self, now: float) -> Status:
         """The state in numbers."""

@@ -5,13 +5,16 @@ from dataclasses import dataclass, replace
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
-from elbowroom.control.controller import Controller
+from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
+from elbowroom.control.journey import Journey
 from elbowroom.control.settings import check_queue_size
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
+from elbowroom.planning.navigation.navigator import Navigator
+from elbowroom.planning.navigation.way import Way
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
@@ -134,6 +137,20 @@ class Walk:
     def place(self) -> RootState:
         """Where the avatar is."""
         return self._controller.root
+
+    @property
+    def navigator(self) -> Navigator:
+        """Finds ways in the scene; threads may ask it."""
+        return self._controller.navigator
+
+    @property
+    def journey(self) -> Journey | None:
+        """The walk to a place that goes on, or has ended last."""
+        return self._controller.journey
+
+    def set_out(self, way: Way) -> None:
+        """Go along a way, at the walking speed that is set."""
+        self._controller.set_out(way, at_speed(FORWARD, self.settings.walk_speed))
 
     @property
     def plans(self) -> int:

@@ -63,6 +63,13 @@ export interface Reset {
   type: "reset";
 }
 
+/** Go to a place on the ground; an input that asks for anything takes over. */
+export interface Goto {
+  type: "goto";
+  /** x, z; from -1000000 to 1000000, from -1000000 to 1000000 */
+  place: [number, number];
+}
+
 /** Which extra data to send. */
 export interface Overlays {
   type: "overlays";
@@ -403,6 +410,18 @@ export interface Crossed {
   count: number;
 }
 
+/** How it stands with a walk to a place; told when that changes. */
+export interface Going {
+  type: "going";
+  state: "walking" | "arrived" | "given up" | "taken over" | "refused";
+  /** x, z */
+  place: [number, number];
+  /** why it was refused or given up; else empty */
+  reason: string;
+  /** where one can stand instead, of a place that was refused */
+  nearest: [number, number] | null;
+}
+
 /** A sentence for the user. */
 export interface Notice {
   type: "notice";
@@ -434,9 +453,9 @@ export interface Run {
   frameBytes: number;
 }
 
-export type ClientMessage = Input | Configure | ClockMessage | Reset | Overlays | Ping;
+export type ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Overlays | Ping;
 
-export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Notice | Pong;
+export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Going | Notice | Pong;
 
 /** One pose as it travels. */
 export interface PoseFrame {

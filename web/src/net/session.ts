@@ -1,7 +1,7 @@
 /** The live session as the page sees it: the server's latest words, the poses, and what to say after a reconnect. */
 
 import {
-  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type ClipMessage, type Configure, type Crossed, type Hello,
+  PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type ClipMessage, type Configure, type Crossed, type Going, type Hello,
   type Loading, type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
 } from "../generated/messages";
 import type { SessionWishes } from "../preferences";
@@ -27,6 +27,7 @@ export interface SessionListener {
   avatarLost(id: string): boolean;
   loading(loading: Loading): void;
   crossed(crossed: Crossed): void;
+  going(going: Going): void;
   notice(level: Notice["level"], message: string): void;
 }
 
@@ -171,6 +172,9 @@ export class Session {
         break;
       case "crossed":
         listener.crossed(message);
+        break;
+      case "going":
+        listener.going(message);
         break;
       case "notice":
         this.decided ||= message.level === "error";

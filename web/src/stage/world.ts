@@ -47,6 +47,11 @@ export class World {
     this.repaint(palette, rich);
   }
 
+  /** What one cannot see through: obstacles and the model. */
+  get solid(): Group[] {
+    return [this.obstacles.group, this.place.group];
+  }
+
   /** Lets the obstacles of these names glow: they close the way. */
   markBlocking(names: readonly string[]): void {
     const wanted = new Set(names);

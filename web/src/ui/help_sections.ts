@@ -23,6 +23,7 @@ const KEYBOARD: readonly Section[] = [
     [["S"], "back up, facing the same way"],
     [["Q", "E"], "step to the left and right"],
     [["Shift"], "run"],
+    [["click"], "on the floor: go there; any key takes over"],
     [["R"], "back to the start"],
   ] },
   { title: "Look", rows: [
@@ -78,6 +79,7 @@ const GAMEPAD: Section = { title: "Gamepad", rows: [
 const TOUCH: Section = { title: "Touch", rows: [
   [["left half"], "put a finger down and drag: the stick; push far out to run"],
   [["right half"], "drag to look, two fingers zoom"],
+  [["tap"], "on the floor: go there"],
   [["☰"], "everything else: time, overlays, measurements, hiding the panels"],
 ] };
 

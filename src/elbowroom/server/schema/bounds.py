@@ -29,6 +29,7 @@ class Length:
 
 
 Heading = Annotated[float, Range(-1e4, 1e4)]
+Coordinate = Annotated[float, Range(-1e6, 1e6)]  # metres
 Share = Annotated[float, Range(-1.0, 1.0)]
 Sequence = Annotated[int, Range(0, 2**32 - 1)]
 Name = Annotated[str, Length(128)]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from elbowroom.server.schema.bounds import Heading, Name, Range, Sequence, Share
+from elbowroom.server.schema.bounds import Coordinate, Heading, Name, Range, Sequence, Share
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,13 @@ class ClockMessage:
 @dataclass(frozen=True)
 class Reset:
     """Back to the start of the scene."""
+
+
+@dataclass(frozen=True)
+class Goto:
+    """Go to a place on the ground; an input that asks for anything takes over."""
+
+    place: tuple[Coordinate, Coordinate]  # x, z
 
 
 @dataclass(frozen=True)

@@ -100,6 +100,16 @@ class Crossed:
 
 
 @dataclass(frozen=True)
+class Going:
+    """How it stands with a walk to a place; told when that changes."""
+
+    state: Literal["walking", "arrived", "given up", "taken over", "refused"]
+    place: tuple[float, float]  # x, z
+    reason: str  # why it was refused or given up; else empty
+    nearest: tuple[float, float] | None  # where one can stand instead, of a place that was refused
+
+
+@dataclass(frozen=True)
 class Notice:
     """A sentence for the user."""
 

@@ -1,0 +1,68 @@
+/** Going to a place that is clicked on the floor: the question to the server, and what the page shows of its answers. */
+
+import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import type { ClientMessage, Going, Notice } from "../generated/messages";
+import type { Picture } from "../picture";
+import { text } from "../texts/texts";
+import { FloorClicks } from "./floor_click";
+import { GoalMarker } from "./marker";
+
+/** Metres: what is clicked higher than this is no floor, and what is higher than that is the storey above. */
+const FLOOR = 0.15;
+const ABOVE = 2;
+
+export interface GoingHost {
+  readonly picture: Picture;
+  send(message: ClientMessage): void;
+  say(level: Notice["level"], said: string): void;
+  /** Whether one walks now: not while a run is replayed. */
+  walks(): boolean;
+}
+
+export class GoingSomewhere {
+  /** What the server said last, for tests. */
+  last: Going | null = null;
+  private readonly marker = new GoalMarker();
+
+  constructor(view: HTMLElement, private readonly host: GoingHost) {
+    host.picture.stage.scene.add(this.marker.group);
+    new FloorClicks(view, (x, y) => this.clicked(x, y, view));
+  }
+
+  /** The server's word on a walk to a place. */
+  heard(going: Going): void {
+    this.last = going;
+    const { palette } = this.host.picture.stage;
+    if (going.state === "walking") this.marker.show(going.place, palette.accent, false);
+    else if (going.nearest) this.marker.show(going.nearest, palette.accent, true);
+    else this.marker.hide();
+    if (going.state === "refused") this.host.say("warning", going.nearest ? text("going.offered") : text("going.noWay", going.reason));
+    if (going.state === "given up") this.host.say("warning", text("going.givenUp", going.reason));
+  }
+
+  /** Another scene, or back at the start: nobody goes anywhere. */
+  forget(): void {
+    this.last = null;
+    this.marker.hide();
+  }
+
+  private clicked(x: number, y: number, view: HTMLElement): void {
+    if (!this.host.walks()) return;
+    const place = this.floorAt(x / view.clientWidth, y / view.clientHeight);
+    if (place) this.host.send({ type: "goto", place });
+  }
+
+  /** The place on the floor under a spot of the view (shares of its width and height), if nothing hides it. */
+  private floorAt(right: number, down: number): [number, number] | null {
+    const { picture } = this.host;
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(2 * right - 1, 1 - 2 * down), picture.stage.camera);
+    const floor = ray.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), 0), new Vector3());
+    if (!floor) return null;
+    const far = floor.distanceTo(ray.ray.origin);
+    const hides = ray
+      .intersectObjects(picture.world.solid, true)
+      .some(({ distance, point, object }) => object.visible && distance < far - FLOOR && point.y > FLOOR && point.y < ABOVE);
+    return hides ? null : [floor.x, floor.z];
+  }
+}
