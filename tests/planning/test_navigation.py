@@ -169,8 +169,8 @@ def test_a_slit_is_no_way(humanoid: Humanoid) -> None:
 
 
 def test_under_a_beam_one_goes_stooped_or_not_at_all(humanoid: Humanoid) -> None:
-    beam = {"type": "box", "center": [0.0, 1.9, 2.0], "size": [20.0, 1.0, 0.2]}
-    low = {**beam, "center": [0.0, 1.5, 2.0]}
+    beam: dict[str, object] = {"type": "box", "center": [0.0, 1.9, 2.0], "size": [20.0, 1.0, 0.2]}
+    low: dict[str, object] = {**beam, "center": [0.0, 1.5, 2.0]}
     straight = navigator_among(humanoid).find((0.0, 0.0), (0.0, 4.0)).left((0.0, 0.0))
     ducked = navigator_among(humanoid, beam).find((0.0, 0.0), (0.0, 4.0)).left((0.0, 0.0))
     assert ducked > straight + 0.3
@@ -179,7 +179,7 @@ def test_under_a_beam_one_goes_stooped_or_not_at_all(humanoid: Humanoid) -> None
 
 
 def test_who_asks_for_the_inside_of_a_box_is_told_the_nearest_place(humanoid: Humanoid) -> None:
-    box = {"type": "box", "center": [0.0, 0.5, 2.0], "size": [1.0, 1.0, 1.0]}
+    box: dict[str, object] = {"type": "box", "center": [0.0, 0.5, 2.0], "size": [1.0, 1.0, 1.0]}
     navigator = navigator_among(humanoid, box)
     with pytest.raises(NoWayError, match=r"nobody can stand at 0\.40, 2\.00: .* nearest place") as told:
         navigator.find((0.0, 0.0), (0.4, 2.0))

@@ -30,6 +30,7 @@ from elbowroom.cli import (
     play,
     replay,
     table1,
+    tour,
     verify,
     walk,
 )
@@ -127,6 +128,7 @@ def _one_line(error: Any) -> str:
 app.command("play", epilog=play.EXAMPLES)(play.play)
 app.command("clips", epilog=clips.EXAMPLES)(clips.clips)
 app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
+app.command("tour", epilog=tour.EXAMPLES)(tour.tour)
 app.command("replay", epilog=replay.EXAMPLES)(replay.replay)
 app.command("film", epilog=film.EXAMPLES)(film.film)
 app.command("export", epilog=export.EXAMPLES)(export.export)

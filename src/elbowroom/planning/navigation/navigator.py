@@ -4,12 +4,15 @@ import math
 from collections.abc import Sequence
 from threading import Lock
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.planning.navigation.field import Prices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
-from elbowroom.planning.navigation.way import NoWayError, Place, Way, said, way_over
+from elbowroom.planning.navigation.way import NoWayError, Place, Way, reachable_over, said, way_over
 from elbowroom.world.scene import Scene
 
 _MARGINS = (4.0, 16.0, math.inf)  # metres around start and goal that are looked at, one after the other
@@ -48,6 +51,10 @@ class Navigator:
     def room(self) -> RoomMap:
         """The room over the whole ground."""
         return self._map_of(self._ground)
+
+    def reachable(self, start: Place) -> NDArray[np.bool_]:
+        """The points of the map of the whole ground (nz, nx) that a way leads to from a place."""
+        return reachable_over(self.room(), self._prices, start)
 
     @property
     def prices(self) -> Prices:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.world.scene import Scene
@@ -78,4 +79,18 @@ def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
         walkable_window(near, Stance(0.0, low, high), origin, 0.0, shape, cell, FARTHEST).clearance
         for low, high in ((_LOW, girth.stooped - girth.slim), (girth.stooped, girth.tall))
     )
-    return RoomMap(area, cell, below, above)
+    return RoomMap(area, cell, _within_floor(below, scene, area, cell), above)
+
+
+def _within_floor(room: Floats32, scene: Scene, area: Rectangle, cell: float) -> Floats32:
+    """The room (nz, nx) where a floor ends is no more than what is left to its edge."""
+    floor = None if scene.place is None else scene.place.floor
+    if floor is None:
+        return room
+    rows, columns = (np.arange(float(size)) for size in room.shape)
+    there = floor.holds(*np.broadcast_arrays(area.low_x + cell * columns, area.low_z + cell * rows[:, None]))
+    if there.all():
+        return room
+    left = cell * ndimage.distance_transform_edt(there)
+    within: Floats32 = np.minimum(room, left.astype(np.float32))
+    return within

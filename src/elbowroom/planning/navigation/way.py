@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 Place = tuple[float, float]  # x, z, metres
 
 _BESIDE = 0.6  # metres: who stands where a map has no room looks so far for the way
+_NOBODY = -1  # a start that no point is: costs to all points
 _BEYOND = 4.0  # metres off the way to which costs are known
 
 
@@ -104,6 +105,17 @@ def way_over(room: RoomMap, prices: Prices, start: Place, goal: Place, closed: S
     if not np.isfinite(field.cost[begin]):
         raise NoWayError(f"no way leads from {said(start)} to {said(goal)}")
     return Way(goal, room, prices, field)
+
+
+def reachable_over(room: RoomMap, prices: Prices, start: Place) -> NDArray[np.bool_]:
+    """The points of a map (nz, nx) that a way leads to from a place; none where nothing leads away from it."""
+    free = room.room >= prices.slim
+    row, column = room.points(np.array(start)).tolist()
+    begin = (row, column) if free[row, column] else nearest_of(free, (row, column), _BESIDE / room.cell)
+    if begin is None:
+        return np.zeros_like(free)
+    at = begin[0] * room.room.shape[1] + begin[1]
+    return np.isfinite(field_to(room.room, room.above, room.cell, prices, at, _NOBODY, _BEYOND).cost)
 
 
 def nearest_of(wanted: NDArray[np.bool_], point: tuple[int, int], most: float = math.inf) -> tuple[int, int] | None:

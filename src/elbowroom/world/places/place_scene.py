@@ -55,6 +55,7 @@ def place_scene(place: Place, progress: Progress = lambda _what, _share: None) -
             parts=len(obstacles),
             place=place,
             notes=(*found.notes, *place.notes),
+            floor=found.floor,
         ),
     )
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
+from elbowroom.world.places.floor_area import FloorArea
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.place import Place
 
@@ -34,6 +35,7 @@ class ScenePlace:
     place: Place | None = None  # as it was read; None where the scene came without the file, or nobody needs it now
     glb: Path | None = None  # a file of what a viewer shows, in the scene's metres and axes
     notes: tuple[str, ...] = ()
+    floor: FloorArea | None = None  # None: one walks all round, or nobody knows
 
 
 def standing_parts(place: Place, ground: float) -> Obstacles:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from elbowroom.world.places.beginning import Beginning, beginning_beside, beginning_on
 from elbowroom.world.places.columns import Columns, columns_of
+from elbowroom.world.places.floor_area import FloorArea
 from elbowroom.world.places.floors import Floor, floor_at, floors_of, ground_floor
 from elbowroom.world.places.place import Place
 
@@ -21,6 +22,7 @@ class Survey:
     ground: Floor  # the one that is walked on
     beginning: Beginning
     notes: tuple[str, ...]  # how ground and start were found
+    floor: FloorArea | None  # to keep to; None where one begins beside the place
 
 
 def survey(place: Place, progress: Callable[[str, float], None] = lambda _what, _share: None) -> Survey:
@@ -30,9 +32,9 @@ def survey(place: Place, progress: Callable[[str, float], None] = lambda _what, 
     ground, how = _ground(place, columns, floors)
     _, sizes = ground.regions()
     if max(sizes, default=0.0) >= _ENOUGH and (beginning := beginning_on(ground)):
-        return Survey(place, columns, floors, ground, beginning, (how,))
+        return Survey(place, columns, floors, ground, beginning, (how,), FloorArea.of(ground))
     note = "nowhere in it is there room enough to begin: the start is beside it, on the ground that goes on all round"
-    return Survey(place, columns, floors, ground, beginning_beside(place), (how, note))
+    return Survey(place, columns, floors, ground, beginning_beside(place), (how, note), None)
 
 
 def _ground(place: Place, columns: Columns, floors: tuple[Floor, ...]) -> tuple[Floor, str]:

@@ -1,0 +1,128 @@
+"""`elbowroom tour`: to many places of a scene, one after the other, and what was shown judged."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli import clip_options
+from elbowroom.cli.arguments import check_arguments
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
+from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
+from elbowroom.errors import InputError
+from elbowroom.planning.names import DEFAULT_PLANNER
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.judge.verdict import Verdict
+    from elbowroom.experiment.tour.tour import Milliseconds, TourResult
+
+EXAMPLES = "Examples:  elbowroom tour d  |  elbowroom tour house.glb --drop 'IfcDoor_*' --targets 20 --seed 3 --json"
+FELL_SHORT = 1
+MOST_TARGETS = 1000
+
+
+def tour(
+    scene: Annotated[str, typer.Argument(help=SCENE_HELP)],
+    *,
+    targets: Annotated[int, typer.Option(help="How many places are visited, drawn from all that can be reached.")] = 20,
+    seed: Annotated[int, typer.Option(help="Draws the places, and the planner's chance.")] = 0,
+    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
+    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    avatar: Avatar = None,
+    bones: Bones = None,
+    height: Height = None,
+    include_hair: IncludeHair = False,
+    record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    judge: Annotated[bool, typer.Option(help="Let coal judge what was shown, as `elbowroom verify` does.")] = True,
+    mesh: Annotated[bool, typer.Option(help="Judge the avatar's own surface too, not only its capsules.")] = True,
+    scale: Scale = None,
+    up: UpAxis = None,
+    ground: GroundHeight = None,
+    drop: Drop = None,
+    passable: Passable = None,
+    swing: clip_options.Swing = None,
+    dodge: clip_options.Dodge = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Visit random places of a scene on foot.
+
+    Exit code 0: all were reached and nothing was touched, 1: not.
+    """
+    if not 1 <= targets <= MOST_TARGETS:
+        raise InputError(f"--targets: {targets} is not between 1 and {MOST_TARGETS}")
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
+    compile_first(quiet=quiet)
+    from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
+
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None))
+    place = open_scene(scene, place_options(scale, up, ground, drop, passable), quiet)
+    with progress_bar("Opening the avatar", None, quiet):
+        humanoid = chosen_avatar(avatar, bones, height, include_hair)
+        controller = controller_for(humanoid, place, CrossingSettings(planner, queue, seed), motions)
+        warm_up(controller)
+    result, verdict = _walk_and_judge(controller, targets, record, (judge, mesh), quiet)
+    _report(result, verdict, json)
+    touched = verdict is not None and not verdict.clean
+    raise typer.Exit(FELL_SHORT if touched or result.arrived < result.targets else 0)
+
+
+def _walk_and_judge(
+    controller: Any, count: int, record: Path | None, judging: tuple[bool, bool], quiet: bool
+) -> "tuple[TourResult, Verdict | None]":
+    from contextlib import nullcontext
+
+    from elbowroom.control.recording import Recorder
+    from elbowroom.experiment.tour.targets import random_targets
+    from elbowroom.experiment.tour.tour import Shown, judged, run_tour
+    from elbowroom.planning.command import Command
+
+    start, seed = (controller.root.x, controller.root.z), controller.settings.seed
+    places = random_targets(controller.navigator, start, count, seed)
+    with (
+        progress_bar(f"Touring {controller.scene.title}", float(count), quiet) as bar,
+        nullcontext() if record is None else Recorder(record, controller) as recorder,
+    ):
+        shown = Shown(controller.step(Command(), 0.0), None if recorder is None else recorder.append)
+        result = run_tour(
+            controller, places, shown.append, lambda number, leg: bar.move(number + 1.0, f"{leg.outcome}")
+        )
+    if not judging[0]:
+        return result, None
+    with progress_bar("Judging", max(result.seconds, 1.0), quiet) as bar:
+        verdict = judged(shown, controller, mesh=judging[1], progress=lambda time: bar.move(time, f"{time:.0f} s"))
+    return result, verdict
+
+
+def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None:
+    from dataclasses import asdict
+
+    touching = None if verdict is None else _touching(verdict)
+    if json:
+        told = asdict(result) | {"touching_frames": touching}
+        told["given_up"] = [asdict(leg) for leg in result.given_up]
+        print_json(told | {"frames_judged": None if verdict is None else verdict.poses})
+        return
+    rows = {
+        "arrived": f"{result.arrived} of {result.targets}",
+        "stuck": f"{result.stuck} times, {result.stuck_s:.1f} s of {result.seconds:.0f} s",
+        "touching": "not judged" if verdict is None else f"{touching} of {verdict.poses} poses",
+        "planning": _costs(result.plan_ms),
+        "a frame": _costs(result.frame_ms),
+        "finding the way": _costs(result.find_ms),
+    }
+    print_row(f"Tour of {result.scene}, seed {result.seed}", rows)
+    if result.given_up:
+        lost = {f"{leg.target[0]:.2f}, {leg.target[1]:.2f}": f"{leg.outcome}: {leg.reason}" for leg in result.given_up}
+        print_row("Not reached", lost)
+
+
+def _touching(verdict: "Verdict") -> int:
+    """Poses in which the capsules or the surface touch."""
+    return max(verdict.capsules.touching, 0 if verdict.mesh is None else verdict.mesh.touching)
+
+
+def _costs(cost: "Milliseconds") -> str:
+    return f"{cost.median:.2f} ms, 99 % {cost.p99:.1f}, worst {cost.worst:.1f} ({cost.count})"

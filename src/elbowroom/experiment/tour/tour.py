@@ -1,0 +1,119 @@
+"""A tour: places visited one after the other, and what was shown on the way judged."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.experiment.crossing import DT
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge
+from elbowroom.experiment.tour.leg import Leg, LegTimes, Listener, walk_to
+from elbowroom.planning.command import Command
+from elbowroom.planning.navigation.way import Place
+
+_SPARE, _PACE = 30.0, 0.4  # seconds; m/s: who is slower on the whole has run out of time
+
+Heard = Callable[[int, Leg], object]  # the number of a leg that has ended, and how
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Milliseconds:
+    """What something cost, over all times that it was done."""
+
+    count: int
+    median: float
+    p99: float
+    worst: float
+
+    @classmethod
+    def of(cls, values: Floats) -> "Milliseconds":
+        """Of costs (n,) in milliseconds."""
+        if not len(values):
+            return cls(0, 0.0, 0.0, 0.0)
+        median, p99, worst = (round(float(np.percentile(values, share)), 3) for share in (50, 99, 100))
+        return cls(len(values), median, p99, worst)
+
+
+@dataclass(frozen=True)
+class TourResult:
+    """How a tour went."""
+
+    scene: str
+    seed: int
+    targets: int
+    arrived: int
+    stuck: int  # times
+    stuck_s: float
+    seconds: float  # of walking
+    plan_ms: Milliseconds  # frames that planned
+    frame_ms: Milliseconds  # all frames
+    find_ms: Milliseconds  # finding the ways
+    legs: tuple[Leg, ...]
+
+    @property
+    def given_up(self) -> tuple[Leg, ...]:
+        """The legs that did not lead there."""
+        return tuple(leg for leg in self.legs if not leg.arrived)
+
+
+class Shown:
+    """Collects what is shown, for the judge."""
+
+    def __init__(self, frame: Frame, listener: Listener | None = None) -> None:
+        self._q, self._roots, self._listener = [frame.q], [frame.root], listener
+
+    def append(self, command: Command, dt: float, frame: Frame) -> None:
+        """Keep one step."""
+        self._q.append(frame.q)
+        self._roots.append(frame.root)
+        if self._listener is not None:
+            self._listener(command, dt, frame)
+
+    def motion(self) -> ShownMotion:
+        """All of it."""
+        return ShownMotion.at_rate(np.array(self._q), np.array(self._roots), 1.0 / DT)
+
+
+def run_tour(
+    controller: Controller,
+    targets: Sequence[Place],
+    listener: Listener | None = None,
+    heard: Heard | None = None,
+) -> TourResult:
+    """Visit places one after the other; from where one was not reached, the next is gone to."""
+    legs, times = list[Leg](), list[LegTimes]()
+    for number, target in enumerate(targets):
+        leg, cost = walk_to(controller, target, _limit(controller, target), listener)
+        legs.append(leg)
+        times.append(cost)
+        if heard is not None:
+            heard(number, leg)
+    return TourResult(
+        scene=controller.scene.name,
+        seed=controller.settings.seed,
+        targets=len(legs),
+        arrived=sum(leg.arrived for leg in legs),
+        stuck=sum(leg.stuck_times for leg in legs),
+        stuck_s=round(sum(leg.stuck_s for leg in legs), 3),
+        seconds=round(sum(leg.seconds for leg in legs), 3),
+        plan_ms=Milliseconds.of(np.concatenate([np.empty(0), *(cost.plan_ms for cost in times)])),
+        frame_ms=Milliseconds.of(np.concatenate([np.empty(0), *(cost.frame_ms for cost in times)])),
+        find_ms=Milliseconds.of(np.array([cost.find_ms for cost in times])),
+        legs=tuple(legs),
+    )
+
+
+def judged(shown: Shown, controller: Controller, *, mesh: bool, progress: Callable[[float], object]) -> Verdict:
+    """The other library's verdict on what was shown, against all that stands in the scene."""
+    return judge(shown.motion(), controller.humanoid, controller.scene, JudgeSettings(mesh=mesh), progress)
+
+
+def _limit(controller: Controller, target: Place) -> float:
+    """Seconds that a leg may take."""
+    across = float(np.hypot(*controller.scene.ground_size))
+    return _SPARE + max(across, float(np.hypot(target[0], target[1]))) / _PACE
