@@ -19,6 +19,7 @@ ROOMS = [
     "control",
     "export",
     "experiment",
+    "dataset",
     "server",
     "film",
     "cluster",

@@ -21,6 +21,7 @@ from elbowroom import __version__
 from elbowroom.cli import (
     bench,
     clips,
+    dataset,
     doctor,
     export,
     film,
@@ -138,4 +139,5 @@ app.command("verify", epilog=verify.EXAMPLES)(verify.verify)
 app.command("inspect", epilog=inspect.EXAMPLES)(inspect.inspect)
 app.command("compile", epilog=first_run.EXAMPLES)(first_run.compile_)
 app.command("doctor", epilog=doctor.EXAMPLES)(doctor.doctor)
+app.add_typer(dataset.dataset, name="dataset")
 app.add_typer(bench.bench, name="bench")

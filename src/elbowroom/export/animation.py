@@ -44,7 +44,7 @@ class Animation:
         """
         shown = ShownFrames.of(recording)
         check_length(str(recording.path), shown.duration, humanoid, fps)
-        rotations, hips = _posed(shown, humanoid)
+        rotations, hips = posed_frames(humanoid, shown.q, shown.roots)
         places = np.stack([shown.roots[:, 0], np.zeros(len(shown.roots)), shown.roots[:, 1]], axis=1)
         poses = Poses(shown.times, shown.jumps, rotations, hips, places, shown.roots[:, 2], shown.clock)
         return cls.of_poses(recording.path.stem, humanoid.skeleton, poses, fps)
@@ -117,9 +117,9 @@ def check_rate(fps: float) -> None:
         raise InputError(f"fps: {fps:g}, allowed are {SLOWEST:g} to {FASTEST:g} frames a second")
 
 
-def _posed(shown: ShownFrames, humanoid: Humanoid) -> tuple[Floats, Floats]:
-    """Normalised local rotations (N, J, 4) and hips (N, 3) in the root's frame of every frame."""
+def posed_frames(humanoid: Humanoid, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
+    """Normalised local rotations (N, J, 4) and hips (N, 3) in the root's frame of frames (N, DOF), (N, 7)."""
     model = body_model(humanoid)
-    frames = list(zip(shown.q, shown.roots, strict=True))
+    frames = list(zip(q, roots, strict=True))
     rotations = np.stack([local_rotations(model, q, root) for q, root in frames])
     return rotations, np.stack([hips_position(model, q, root) for q, root in frames])

@@ -1,0 +1,149 @@
+"""`elbowroom dataset`: walks for those who train and evaluate, in Parquet files."""
+
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.output import print_json, print_row
+from elbowroom.cli.time_left import time_left_bar
+from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.errors import InputError
+
+if TYPE_CHECKING:
+    from elbowroom.dataset.spec import DatasetSpec
+
+EXAMPLES = (
+    "Examples:  elbowroom dataset examples/dataset.json -o walks --walks 100  |  elbowroom dataset check walks  |  "
+    "elbowroom dataset check walks --show 7"
+)
+FELL_SHORT = 1
+
+
+class _OrMake(TyperGroup):
+    """`elbowroom dataset SPEC.json` makes one."""
+
+    default = "make"
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        named = args[:1] and (args[0] in self.commands or args[0] in ctx.help_option_names)
+        return super().parse_args(ctx, args if named or not args else [self.default, *args])
+
+
+dataset = typer.Typer(
+    cls=_OrMake, help="Make, check and look at datasets of walks.", epilog=EXAMPLES, no_args_is_help=True
+)
+
+
+@dataset.command(epilog=EXAMPLES)
+def make(
+    spec: Annotated[Path, typer.Argument(help="JSON file that says what is drawn; examples/dataset.json is one.")],
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder; an interrupted run goes on there.")],
+    walks: Annotated[int | None, typer.Option(help="How many are drawn, instead of the spec's number.")] = None,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Draw walks by a seed, walk them, have each judged by coal, and keep the clean ones in Parquet files.
+
+    The same call again goes on where it was interrupted; more `--walks` add to what is there.
+    """
+    from dataclasses import replace
+
+    check_cluster(cluster)
+    _check_installed()
+    from elbowroom.dataset.spec import DatasetSpec
+
+    wanted = DatasetSpec.load(spec)
+    wanted = wanted if walks is None else replace(wanted, walks=walks)
+    compile_first(quiet=quiet)
+    from elbowroom.dataset.card import check_licences
+    from elbowroom.dataset.make import make_dataset
+
+    check_licences(wanted)
+    with chosen_workers(cluster, jobs, wanted.walks) as workers, time_left_bar("Walks", quiet) as move:
+        manifest = make_dataset(wanted, out, workers, move)
+    kept, left_out = sum(one.walks for one in manifest.shards), sum(len(one.rejected) for one in manifest.shards)
+    seconds, size = sum(one.seconds for one in manifest.shards), sum(one.bytes for one in manifest.shards)
+    if json:
+        found = {"walks": kept, "left_out": left_out, "seconds": seconds, "bytes": size, "files": len(manifest.shards)}
+        print_json(found)
+        return
+    rows = {
+        "walks": f"{kept}, {left_out} left out",
+        "motion": f"{seconds / 60:.1f} minutes at {wanted.fps} frames a second",
+        "files": f"{len(manifest.shards)}, {size / 1e6:.1f} MB",
+    }
+    print_row(str(out), rows)
+
+
+@dataset.command(epilog=EXAMPLES)
+def check(
+    folder: Annotated[Path, typer.Argument(help="Of a dataset.")],
+    *,
+    sample: Annotated[int, typer.Option(help="Walks that are walked again.")] = 5,
+    show: Annotated[int | None, typer.Option(metavar="K", help="Open walk K on the page instead.")] = None,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Compare sums and columns, and walk a sample again, bit for bit. Exit code 1: something differs."""
+    check_cluster(cluster)
+    _check_installed()
+    if sample < 0:
+        raise InputError(f"sample: {sample} is less than 0")
+    from elbowroom.dataset.manifest import Manifest
+
+    manifest = Manifest.load(folder)
+    if manifest is None:
+        raise InputError(f"{folder}: holds no dataset (no manifest.json)")
+    if show is not None:
+        return _show(manifest.spec, show)
+    compile_first(quiet=quiet)
+    from elbowroom.dataset.check import check_dataset
+
+    with chosen_workers(cluster, jobs, max(sample, 1)) as workers, time_left_bar("Walking again", quiet) as move:
+        found = check_dataset(folder, workers, sample, move)
+    if json:
+        print_json(found._asdict())
+    else:
+        for fault in found.faults:
+            print(fault)
+        rows = {"files": f"{found.files}", "walks": f"{found.walks}, {found.walked} walked again"}
+        print_row(f"{folder}: {'whole' if not found.faults else f'{len(found.faults)} faults'}", rows)
+    raise typer.Exit(FELL_SHORT if found.faults else 0)
+
+
+def _show(spec: "DatasetSpec", walk: int) -> None:
+    """Walk one walk again and show it on the page, with its timeline, until Ctrl-C."""
+    from elbowroom.cli.play import serve_until_interrupted
+    from elbowroom.cli.replay import library_of
+    from elbowroom.control.recording import Recording
+    from elbowroom.dataset.recorded import record_walk
+    from elbowroom.dataset.spec import STOCK
+    from elbowroom.dataset.walk import draw
+
+    if not 0 <= walk < spec.walks:
+        raise InputError(f"--show: walk {walk} is not between 0 and {spec.walks - 1}")
+    compile_first()
+    name = draw(spec, walk).avatar
+    with TemporaryDirectory() as place:
+        path = Path(place) / f"walk-{walk}.elbow"
+        record_walk(spec, walk, path)
+        library = partial(library_of, Recording(path), None if name == STOCK else Path(name))
+        serve_until_interrupted(library, "127.0.0.1", 8765, open_page=True, query="replay")
+
+
+def _check_installed() -> None:
+    if find_spec("pyarrow") is None:
+        raise InputError("datasets need pyarrow: pip install 'elbowroom[dataset]'")
+    if find_spec("coal") is None:
+        raise InputError("datasets are judged by coal: pip install 'elbowroom[judge]'")

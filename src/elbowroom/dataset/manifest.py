@@ -1,0 +1,68 @@
+"""What lies in a dataset's folder: its spec, its files with their sums, the walks that were left out and why."""
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from elbowroom import __version__
+from elbowroom.control.recording import this_machine
+from elbowroom.dataset.spec import DatasetSpec
+from elbowroom.errors import InputError
+from elbowroom.experiment.machine import program_digest
+
+FORMAT, VERSION = "elbowroom-dataset", 1
+FILE = "manifest.json"
+
+
+@dataclass(frozen=True)
+class Written:
+    """One file."""
+
+    file: str
+    first: int  # walk
+    end: int  # one past the last
+    sha256: str
+    bytes: int
+    walks: int  # that are in it
+    seconds: float  # of motion
+    rejected: dict[str, str] = field(default_factory=dict)  # numbers of walks that are not, and why
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The whole folder."""
+
+    spec: DatasetSpec
+    shards: tuple[Written, ...] = ()
+    made_with: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def new(cls, spec: DatasetSpec) -> "Manifest":
+        """Of a folder with nothing in it yet."""
+        return cls(spec, (), {"version": __version__, "program": program_digest(), "machine": this_machine()})
+
+    @classmethod
+    def load(cls, folder: Path) -> "Manifest | None":
+        """That of a folder, None where there is none; raises `InputError` where it is damaged."""
+        path = folder / FILE
+        if not path.exists():
+            return None
+        try:
+            given = json.loads(path.read_text("utf-8"))
+            if given["format"] != FORMAT or given["version"] != VERSION:
+                raise InputError(f"{path}: is no manifest of a dataset of walks, version {VERSION}")
+            shards = tuple(Written(**entry) for entry in given["shards"])
+            return cls(DatasetSpec.of(given["spec"]), shards, given["made_with"])
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            raise InputError(f"{path}: is damaged; move it away to begin anew") from None
+
+    def save(self, folder: Path) -> None:
+        """Write it, whole or not at all."""
+        path, part = folder / FILE, folder / f".{FILE}.part"
+        document = {"format": FORMAT, "version": VERSION, **asdict(self)}
+        try:
+            part.write_text(json.dumps(document, indent=1, sort_keys=True) + "\n", "utf-8")
+            part.replace(path)
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written ({error.strerror})") from None

@@ -1,0 +1,23 @@
+"""A walk of a dataset as a recording, to be looked at and exported."""
+
+from pathlib import Path
+
+from elbowroom.control.recording import Recorder
+from elbowroom.dataset.spec import DatasetSpec
+from elbowroom.dataset.walk import controller_of, draw, setting_of, steps_of
+from elbowroom.errors import InputError
+from elbowroom.experiment.crossing import DT
+from elbowroom.experiment.gauntlet.course import NoCourseError
+
+
+def record_walk(spec: DatasetSpec, number: int, path: Path) -> None:
+    """Walk it again, into a recording; raises `InputError` where the seed gives no course."""
+    drawn = draw(spec, number)
+    try:
+        setting = setting_of(drawn)
+    except NoCourseError:
+        raise InputError(f"walk {number}: its seed gives no course for this body") from None
+    controller = controller_of(spec, drawn, setting)
+    with Recorder(path, controller) as recorder:
+        for command, frame in steps_of(spec, drawn, setting, controller):
+            recorder.append(command, DT, frame)

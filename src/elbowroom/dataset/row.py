@@ -1,0 +1,105 @@
+"""The row of a walk: what was shown, as plain arrays."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait import feet_standing
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.root import RootState
+from elbowroom.body.skeleton import Skeleton
+from elbowroom.control.frame import Frame
+from elbowroom.experiment.crossing import DT
+from elbowroom.export.animation import Animation, posed_frames
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+
+if TYPE_CHECKING:
+    from elbowroom.dataset.walk import Draw
+
+Floats = NDArray[np.float64]
+Row = dict[str, Any]  # by the names of the columns: numbers, texts, arrays with a row for each frame, lists
+
+_NEAR = 3.0  # metres
+
+
+def row_of(
+    number: int, drawn: "Draw", fps: int, humanoid: Humanoid, scene: Scene, steps: Sequence[tuple[Command, Frame]]
+) -> Row:
+    """The row of walk `number`, every so many of its frames, 60 a second, that `fps` a second are left."""
+    from elbowroom.dataset.columns import SMPL_BONES
+
+    kept = steps[:: round(1.0 / (DT * fps))]
+    frames = [frame for _, frame in kept]
+    q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
+    times = np.array([frame.time for frame in frames])
+    rotations, hips = posed_frames(humanoid, q, roots)
+    places = np.stack([roots[:, 0], np.zeros(len(roots)), roots[:, 1]], axis=1)
+    body = Animation("", fps, humanoid.skeleton, rotations, hips, places, roots[:, 2])
+    known = [_present(humanoid.skeleton, bone) for bone in SMPL_BONES]
+    present = np.array([humanoid.skeleton.has(bone) for bone in SMPL_BONES])
+    local = np.where(present[:, None], rotations[:, known], [0.0, 0.0, 0.0, 1.0])
+    return {
+        "walk": number,
+        "place": _named(drawn.place),
+        "avatar": _named(drawn.avatar),
+        "steering": drawn.steering,
+        "seed": drawn.seed,
+        "fps": fps,
+        "frames": len(frames),
+        "reached": scene.finished(RootState(*steps[-1][1].root.tolist())),
+        "stuck_frames": sum(frame.stuck for _, frame in steps),
+        "scene": json.dumps(scene.to_dict(), separators=(",", ":"), sort_keys=True),
+        "obstacles": list(scene.obstacles.names),
+        "time": times,
+        "command": np.array([_wish(command) for command, _ in kept]),
+        "root": roots,
+        "q": q,
+        "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
+        "rotations": local.reshape(len(frames), -1),
+        "contacts": feet_standing(body_model(humanoid).gait.scale, roots),
+        "clearance": np.array([frame.clearance for frame in frames]),
+        "nearest": _nearest(humanoid, scene, q, roots, times),
+        "near": [_near(scene, root) for root in roots],
+    }
+
+
+def _wish(command: Command) -> tuple[float, float, float, float]:
+    direction = np.nan if command.direction is None else command.direction
+    return command.forward, command.strafe, command.turn, direction
+
+
+def _nearest(humanoid: Humanoid, scene: Scene, q: Floats, roots: Floats, times: Floats) -> NDArray[np.int32]:
+    capsules = posture_capsules(body_model(humanoid), q, roots)
+    found = np.full(len(q), -1, np.int32)
+    for n, (root, time) in enumerate(zip(roots, times.tolist(), strict=True)):
+        own = capsules[:, :, n].astype(np.float64) - np.tile([root[0], 0.0, root[1]], 2)
+        nearest = scene.obstacles.nearest(own, humanoid.capsules.radii, root[:2], time)
+        found[n] = -1 if nearest is None else nearest.obstacle
+    return found
+
+
+def _near(scene: Scene, root: Floats) -> list[int]:
+    standing = scene.obstacles.numbers_near(root[:2] - _NEAR, root[:2] + _NEAR).tolist()
+    names = len(scene.obstacles.names)
+    return [*standing, *range(names - len(scene.obstacles.moving), names)]
+
+
+def _present(skeleton: Skeleton, bone: str) -> int:
+    """The joint of a bone, or of the nearest one above it that the avatar has."""
+    from elbowroom.body.bones import PARENTS
+
+    name: str | None = bone
+    while name is not None and not skeleton.has(name):
+        name = PARENTS[name]
+    return skeleton.index(name or "hips")
+
+
+def _named(name: str) -> str:
+    """A file's name without its folder: rows tell nothing of a machine."""
+    return Path(name).name if "." in name else name

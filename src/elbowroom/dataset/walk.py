@@ -1,0 +1,126 @@
+"""One walk of a dataset: drawn by its number, walked, judged."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.dataset.hands import HANDS, Way
+from elbowroom.dataset.row import Row, row_of
+from elbowroom.dataset.spec import STOCK, DatasetSpec, level
+from elbowroom.experiment.crossing import DT, start_for
+from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.verdict import judge
+from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+
+_STEP = 0.1  # metres between the points of a course's route
+
+
+class Draw(NamedTuple):
+    """What the seed draws for one walk."""
+
+    place: str
+    avatar: str
+    steering: str
+    seed: int
+
+
+class Setting(NamedTuple):
+    """Who walks where, from where, and where to."""
+
+    humanoid: Humanoid
+    scene: Scene
+    way: Way
+
+
+def draw(spec: DatasetSpec, number: int) -> Draw:
+    """What walk `number` is: the same whatever other walks there are."""
+    rng = np.random.default_rng([spec.seed, number])
+    lists = (spec.places, spec.avatars, spec.steering)
+    place, avatar, steering = (choices[int(rng.integers(len(choices)))] for choices in lists)
+    return Draw(place, avatar, steering, int(rng.integers(2**31)))
+
+
+@dataclass(frozen=True)
+class WalkTask:
+    """A walk as a task for a process of its own: its row, or why there is none."""
+
+    spec: DatasetSpec
+    number: int
+
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """Avatar, and the scene unless it is made by a seed."""
+        drawn = draw(self.spec, self.number)
+        scene = () if level(drawn.place) is not None else (NamedScene(drawn.place),)
+        return (_avatar(drawn.avatar), *scene)
+
+    def run(self) -> Row | str:
+        """Walk and judge."""
+        drawn = draw(self.spec, self.number)
+        try:
+            setting = setting_of(drawn)
+        except NoCourseError:
+            return "the seed gives no course for this body"
+        steps = list(steps_of(self.spec, drawn, setting))
+        frames = [frame for _, frame in steps]
+        q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
+        verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), setting.humanoid, setting.scene)
+        if not verdict.clean or verdict.itself.touching:
+            bodies = [verdict.capsules, verdict.itself, *([] if verdict.mesh is None else [verdict.mesh])]
+            deepest = max(body.deepest for body in bodies)
+            return f"touches in {max(body.touching for body in bodies)} poses, {1e3 * deepest:.1f} mm deep"
+        return row_of(self.number, drawn, self.spec.fps, setting.humanoid, setting.scene, steps)
+
+
+def setting_of(drawn: Draw) -> Setting:
+    """Avatar and place of a walk; raises `NoCourseError` where a seed gives this body no course."""
+    avatar, wanted = _avatar(drawn.avatar), level(drawn.place)
+    humanoid = opened(avatar)
+    if wanted is None:
+        scene = opened(NamedScene(drawn.place))
+        finish = scene.finish.position
+        return Setting(humanoid, scene, Way(np.array([(scene.start.x, scene.start.z), finish])))
+    course = _maker(avatar).course(wanted, drawn.seed)
+    route = course.line.points(np.arange(0.0, course.line.length, _STEP))
+    return Setting(humanoid, course.scene, Way(route, course.line))
+
+
+def controller_of(spec: DatasetSpec, drawn: Draw, setting: Setting) -> Controller:
+    """The controller at the start of a walk."""
+    start = setting.scene.start if setting.way.line is not None else start_for(setting.scene, drawn.seed)
+    return Controller(setting.humanoid, setting.scene, planner=spec.planner, seed=drawn.seed, start=start)
+
+
+def steps_of(
+    spec: DatasetSpec, drawn: Draw, setting: Setting, controller: Controller | None = None
+) -> Iterator[tuple[Command, Frame]]:
+    """The walk, 60 frames a second: until the finish, or its time is over."""
+    controller = controller_of(spec, drawn, setting) if controller is None else controller
+    hand = HANDS[drawn.steering](setting.way, np.random.default_rng([drawn.seed, 1]), DT)
+    frame = None
+    for number in range(round(spec.seconds / DT)):
+        command = hand(number * DT, controller.root, frame is not None and frame.stuck)
+        frame = controller.step(command, DT)
+        yield command, frame
+        if setting.scene.finished(controller.root):
+            return
+
+
+def _avatar(name: str) -> AvatarFile:
+    return AvatarFile(None if name == STOCK else Path(name))
+
+
+@lru_cache(maxsize=8)
+def _maker(avatar: AvatarFile) -> CourseMaker:
+    return CourseMaker.of(opened(avatar))
