@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import logging
 import os
 import random
 import socket
@@ -85,6 +86,7 @@ class _Yard:
 
 def soak(minutes: float, tell: Callable[[str], object] = lambda _: None) -> Soak:
     """Run a server and its clients for so long; `tell` hears how it goes. Raises `InputError` if there is no server."""
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)  # clients that are cut off are what is wanted
     with started_server("a", dict(os.environ)) as url:
         wait_until_warm(url)
         yard = _Yard(url, time.monotonic() + 60.0 * minutes)
