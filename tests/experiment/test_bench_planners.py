@@ -9,8 +9,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.general import GeneralPlan, plan_generally
 from elbowroom.experiment.bench.general_problem import CrossingProblem, crossing_problem
-from elbowroom.experiment.bench.planners import PlannersSettings, amount
+from elbowroom.experiment.bench.planners import PlannersSettings, amount, run
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.parallel import Processes
+from elbowroom.planning.planner import PLANNERS
 from elbowroom.world.scene import Scene
 
 
@@ -77,3 +79,14 @@ def test_settings_say_how_many_runs_there_are_and_refuse_nonsense() -> None:
     assert amount(PlannersSettings(scenes=("a", "b"), levels=(1,), trials=2)) == 18
     with pytest.raises(InputError, match="trials"):
         PlannersSettings(trials=0)
+
+
+def test_runs_are_tasks_in_the_order_of_the_crossings() -> None:
+    pytest.importorskip("ompl", reason="OMPL is not installed")
+    told: list[int] = []
+    report = run(PlannersSettings(("b",), (1,), trials=1, limit=8.0), told.append, Processes(2))
+    assert [(where, planner) for where, planner, _ in report.cells()] == [
+        (where, planner) for where in ("scene b", "level 1") for planner in (*PLANNERS, "rrt-connect")
+    ]
+    assert told == [1, 2, 3, 4, 5, 6]
+    assert [run.touching for run in report.runs if run.planner == "exact"] == [0, 0]

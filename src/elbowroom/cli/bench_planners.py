@@ -6,6 +6,7 @@ import typer
 
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
+from elbowroom.cli.workers import Cluster, check_cluster, chosen_workers
 
 if TYPE_CHECKING:
     from elbowroom.experiment.bench.planners import PlannersReport
@@ -24,6 +25,8 @@ def planners(
     level: Annotated[list[int] | None, typer.Option(help="Gauntlet levels; again for more (1 2 3).")] = None,
     trials: Annotated[int, typer.Option(help="Seeds in a scene, straight courses of a level.")] = 3,
     limit: Annotated[float, typer.Option(help="Seconds to cross, and for the general planner to plan.")] = 30.0,
+    jobs: Annotated[int, typer.Option(help="Crossings at once; 1 gives the truest times.")] = 1,
+    cluster: Cluster = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
@@ -38,9 +41,10 @@ def planners(
     chosen = PlannersSettings(trials=trials, limit=limit)
     if scene is not None or level is not None:
         chosen = PlannersSettings(tuple(scene or ()), tuple(level or ()), trials, limit)
+    check_cluster(cluster)
     compile_first(quiet=quiet)
-    with progress_bar("Crossing", amount(chosen), quiet) as bar:
-        report = run(chosen, bar.move)
+    with chosen_workers(cluster, jobs) as workers, progress_bar("Crossing", amount(chosen), quiet) as bar:
+        report = run(chosen, bar.move, workers)
     if json:
         print_json({"machine": machine_kind()} | as_dict(report))
     else:

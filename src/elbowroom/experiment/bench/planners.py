@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from elbowroom.experiment.crossing import DT, CrossingSettings, controller_for, 
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.parallel import Workers
+from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
 from elbowroom.planning.command import Command
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.planner import PLANNERS
@@ -80,18 +84,60 @@ class PlannersReport:
             yield where, planner, [run for run in self.runs if (run.where, run.planner) == (where, planner)]
 
 
-def run(settings: PlannersSettings, tick: Callable[[int], None] = lambda _: None) -> PlannersReport:
-    """Every planner on every crossing, one after another. Raises `InputError` where OMPL or coal is missing."""
+@dataclass(frozen=True)
+class StraightCourse:
+    """A random course whose line is straight."""
+
+    level: int
+    seed: int
+
+    def open(self) -> Scene:
+        """Make it."""
+        return make_course(self.level, self.seed).scene
+
+
+@dataclass(frozen=True)
+class PlannerTask:
+    """One planner on one crossing, as a task for a process of its own."""
+
+    where: str
+    place: NamedScene | StraightCourse
+    planner: str  # ours by name, or `GENERAL`
+    seed: int
+    limit: float  # seconds
+
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """Avatar and scene."""
+        return AvatarFile(None), self.place
+
+    def run(self) -> Run:
+        """Cross, and be judged."""
+        humanoid, scene = opened(AvatarFile(None)), opened(self.place)
+        if self.planner == GENERAL:
+            return _general(humanoid, scene, self.where, self.seed, self.limit)
+        return _ours(humanoid, scene, self.where, self.planner, self.seed, self.limit)
+
+
+def run(
+    settings: PlannersSettings, tick: Callable[[int], None] = lambda _: None, workers: Workers | None = None
+) -> PlannersReport:
+    """Every planner on every crossing: here one after another, or by `workers`.
+
+    Raises `InputError` where OMPL or coal is missing.
+    """
     check_installed()
-    humanoid = Humanoid.default()
-    runs: list[Run] = []
-    for where, scene, seed in _crossings(settings):
-        for planner in PLANNERS:
-            runs.append(_ours(humanoid, scene, where, planner, seed, settings.limit))
-            tick(len(runs))
-        runs.append(_general(humanoid, scene, where, seed, settings.limit))
-        tick(len(runs))
-    return PlannersReport(settings, tuple(runs))
+    tasks = [
+        PlannerTask(where, place, planner, seed, settings.limit)
+        for where, place, seed in _crossings(settings)
+        for planner in (*PLANNERS, GENERAL)
+    ]
+    done: dict[int, Run] = {}
+    results = ((k, task.run()) for k, task in enumerate(tasks)) if workers is None else workers.run(tasks)
+    for place, result in results:
+        done[place] = result
+        tick(len(done))
+    return PlannersReport(settings, tuple(done[k] for k in range(len(tasks))))
 
 
 def amount(settings: PlannersSettings) -> int:
@@ -104,20 +150,18 @@ def as_dict(report: PlannersReport) -> dict[str, object]:
     return {"settings": asdict(report.settings), "runs": [asdict(run) for run in report.runs]}
 
 
-def _crossings(settings: PlannersSettings) -> Iterator[tuple[str, Scene, int]]:
+def _crossings(settings: PlannersSettings) -> Iterator[tuple[str, NamedScene | StraightCourse, int]]:
     for name in settings.scenes:
-        scene = Scene.load(name)
-        for seed in range(settings.trials):
-            yield f"scene {name}", scene, seed
+        yield from ((f"scene {name}", NamedScene(name), seed) for seed in range(settings.trials))
     for level in settings.levels:
-        yield from ((f"level {level}", scene, seed) for scene, seed in _straight_courses(level, settings.trials))
+        seeds = _straight_courses(level, settings.trials)
+        yield from ((f"level {level}", StraightCourse(level, seed), seed) for seed in seeds)
 
 
-def _straight_courses(level: int, count: int) -> Iterator[tuple[Scene, int]]:
+def _straight_courses(level: int, count: int) -> Iterator[int]:
     for seed in range(_COURSES):
-        course = make_course(level, seed)
-        if course.line.straight:
-            yield course.scene, seed
+        if make_course(level, seed).line.straight:
+            yield seed
             count -= 1
         if count == 0:
             return
