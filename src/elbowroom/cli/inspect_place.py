@@ -77,4 +77,6 @@ def _about(floor: "FloorFacts") -> str:
     regions = [f"{size:.1f}" for size in floor.regions if size >= 0.5]
     parts = f" in {len(regions)} regions" if len(regions) > 1 else ""
     narrow = ", ".join(f"{p.width:.2f} m at {p.x:.1f}, {p.z:.1f}" for p in floor.passages[:_SHOWN])
-    return f"{floor.walkable:.1f} m² to walk on{parts}; narrowest passages: {narrow or 'none under 1.4 m'}"
+    leads = ", ".join(f"{height:+.2f} m" for height in floor.leads_to)
+    stairs = f"; steps, stairs or ramps lead to {leads}" if leads else ""
+    return f"{floor.walkable:.1f} m² to walk on{parts}; narrowest passages: {narrow or 'none under 1.4 m'}{stairs}"

@@ -42,6 +42,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.solids import inner_boxes
 from elbowroom.world.places.columns import surface_keys
+from elbowroom.world.places.layers import link_surfaces
 from elbowroom.world.scene import Scene
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
@@ -114,6 +115,8 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
 def rehearse_place() -> None:
     """Look a triangle over as if it were a place."""
     surface_keys(np.eye(3)[None], 1.0, (2, 2))
+    cell = np.zeros(1, np.int64)
+    link_surfaces(cell, np.zeros(1), np.array([0, 1]), 1, 1, 0.1)
 
 
 def rehearse_way(humanoid: Humanoid) -> None:

@@ -78,7 +78,7 @@ def ground_floor(floors: tuple[Floor, ...]) -> Floor | None:
 
 def _levels(columns: Columns) -> Iterator[float]:
     """Heights at which there is room to stand, the most spacious first."""
-    stood = _with_headroom(columns)
+    stood = standing_surfaces(columns)
     cells, steps = columns.cells[stood], np.round(columns.low[stood] / 0.01).astype(np.int64)
     if not len(steps):
         return
@@ -99,14 +99,14 @@ def _levels(columns: Columns) -> Iterator[float]:
         left[max(best - apart, 0) : best + apart + 1] = False
 
 
-def _with_headroom(columns: Columns) -> Flags:
-    """The level surfaces with room to stand above: nothing from a little above them to head height."""
+def standing_surfaces(columns: Columns, headroom: float = HEADROOM) -> Flags:
+    """The level surfaces with so much room above, metres: nothing from a little above them up to that."""
     cells, low, high = columns.cells, columns.low, columns.high
     tall = float(np.max(high, initial=0.0) - np.min(low, initial=0.0)) + 1.0
     reached = np.maximum.accumulate(np.append(-np.inf, high + cells * tall))[:-1] - cells * tall  # from below, by now
     free: Flags = columns.level & (reached <= low + _SAME)
     for ahead in range(1, len(cells)):
-        near = (cells[ahead:] == cells[:-ahead]) & (low[ahead:] - low[:-ahead] < HEADROOM)
+        near = (cells[ahead:] == cells[:-ahead]) & (low[ahead:] - low[:-ahead] < headroom)
         if not near.any():
             break
         free[:-ahead] &= ~(near & (high[ahead:] - low[:-ahead] > _SAME))

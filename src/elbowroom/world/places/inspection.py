@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from elbowroom.world.places.layers import layers_of, linked_floors
 from elbowroom.world.places.passages import Passage, passages_of
 from elbowroom.world.places.survey import Survey
 
@@ -18,6 +19,7 @@ class FloorFacts:
     walkable: float  # m² that a slim body can be on
     regions: tuple[float, ...]  # m² that its middle can be on, of each region that hangs together, the largest first
     passages: tuple[Passage, ...]  # the narrowest between regions
+    leads_to: tuple[float, ...]  # heights of other floors that steps, stairs or ramps lead to from here, metres
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ def facts_of(survey: Survey) -> PlaceFacts:
     names = place.model.gltf.root.at("nodes").items()
     dropped = sorted(name for node in place.dropped if (name := names[node].at("name").text()))
     x, y, z = np.round(most - least, 3).tolist()
+    links = linked_floors(layers_of(survey.columns), [floor.height for floor in survey.floors])
     return PlaceFacts(
         name=place.name,
         format=place.model.kind.value,
@@ -66,8 +69,9 @@ def facts_of(survey: Survey) -> PlaceFacts:
                 round(floor.area, 2),
                 tuple(round(size, 2) for size in sorted(floor.regions()[1], reverse=True)[:8]),
                 tuple(passages_of(floor)),
+                tuple(round(survey.floors[other].height, 3) for other in links[number]),
             )
-            for floor in survey.floors
+            for number, floor in enumerate(survey.floors)
         ),
         cell=survey.columns.cell,
         ground=survey.ground.height,
