@@ -1,6 +1,6 @@
 """Forward kinematics: where a configuration and a root state put the joints and the collision body.
 
-A posture is `q` (14,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
+A posture is `q` (DOF,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
 along the heading; the pelvis frame has the same axes, and its origin is the hips joint as the stride has it, before the
 waist lowers it; the chest frame is that of the last spine joint. Capsule arrays have shape (C, 6, N): end points ax,
 ay, az, bx, by, bz.
@@ -218,7 +218,7 @@ def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Fl
 
 
 def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
-    """Normalised local rotations (J, 4) of every joint for `q` (14,) and a root state (7,).
+    """Normalised local rotations (J, 4) of every joint for `q` (DOF,) and a root state (7,).
 
     The hips' rotation is the identity: the root's heading turns the whole body.
     """
@@ -228,7 +228,7 @@ def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
 
 
 def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
-    """The hips joint (3,) in the root frame for `q` (14,) and a root state (7,).
+    """The hips joint (3,) in the root frame for `q` (DOF,) and a root state (7,).
 
     It is where T-pose has it, less what the gait and the waist's lowering take.
     """
@@ -239,7 +239,7 @@ def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
 
 
 def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segments:
-    """All capsules (C, 6, N) in the world for postures (N, 14) and root states (N, 7).
+    """All capsules (C, 6, N) in the world for postures (N, DOF) and root states (N, 7).
 
     The first three components of `q` are ignored: the root states say where the body stands.
     """

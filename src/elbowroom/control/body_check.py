@@ -25,7 +25,7 @@ _BOTH = np.array([0.0, 1.0])  # the frames themselves
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
-    """The configuration `q` (14,) of a root state (7,) and an upper body (11,)."""
+    """The configuration `q` (DOF,) of a root state (7,) and an upper body (LOCAL,)."""
     return np.concatenate([root[:3], upper])
 
 
@@ -33,7 +33,7 @@ class Frames(NamedTuple):
     """Two frames that are shown one after the other."""
 
     roots: tuple[Floats, Floats]  # (7,)
-    uppers: tuple[Floats, Floats]  # (11,)
+    uppers: tuple[Floats, Floats]  # (LOCAL,)
     times: tuple[float, float]  # seconds
 
 
@@ -61,7 +61,7 @@ class BodyCheck:
         return bool(len(self._obstacles.moving) or self.others)
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
-        """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (11,).
+        """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """

@@ -45,7 +45,7 @@ class Frame:
     """A pose that may be shown: with assistance on it touches nothing."""
 
     time: float  # seconds since the start, by the sum of all dt
-    q: Floats  # (14,) the configuration, see `body.dof`
+    q: Floats  # (DOF,) the configuration, see `body.dof`
     root: Floats  # (7,) the root state, see `body.root`
     phase: Phase  # the flow that the last turn took
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
@@ -53,6 +53,6 @@ class Frame:
     touching: bool  # part of the body is in an obstacle: with assistance off, or hit by what moves and leaves no way
     fill: int  # unplayed key frames in the queue
     key_frames: KeyFrames  # the unplayed key frames
-    goal: Floats  # (11,) what the goal functions would show now: waist, left arm, right arm
+    goal: Floats  # (LOCAL,) what the goal functions would show now
     plan: PlanReport | None  # the last planning call
     command: Command = STANDING  # what was obeyed: the user's, or that of a walk to a place

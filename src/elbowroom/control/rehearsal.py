@@ -67,7 +67,7 @@ def standing_path(path: RootPath, root: Floats) -> RootPath:
 
 
 def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
-    """The motion (n+1, 11), and the same with some groups kept as in `upper`: one limb frees itself before another."""
+    """The motion (n+1, LOCAL), and with some groups kept as in `upper`: one limb frees itself before another."""
     columns = {group: columns_of(group) for group in LOCAL_GROUPS}
     found = []
     for count in range(len(LOCAL_GROUPS)):
@@ -81,5 +81,5 @@ def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
 
 
 def frozen_motion(path: RootPath, upper: Floats) -> Floats:
-    """The upper body (11,) kept as it is along a path: (n+1, 11)."""
+    """The upper body (LOCAL,) kept as it is along a path: (n+1, LOCAL)."""
     return np.tile(upper, (len(path.states), 1))

@@ -40,8 +40,8 @@ class MotionQuery(NamedTuple):
 
     time: float  # seconds, of the first key frame
     root: RootState  # there
-    upper: Floats  # (11,) there, radians
-    velocity: Floats  # (11,) of the upper body there, rad/s
+    upper: Floats  # (LOCAL,) there, radians
+    velocity: Floats  # (LOCAL,) of the upper body there, rad/s
     command: Command
     horizon: int  # key frames that the queue holds
     interval: float  # seconds between key frames

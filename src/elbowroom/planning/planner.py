@@ -27,7 +27,7 @@ class Planner(Protocol):
         """Forget all plans made: equal calls from here on give equal plans."""
 
     def plan(self, path: RootPath, start: NDArray[np.float64], rng: np.random.Generator) -> LocalPlan:
-        """Motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians.
+        """Motion along `path` that begins at `start` (LOCAL,), radians.
 
         It is free at the key times and between them as far as the planner looks; the controller checks every pose once
         more before it is shown, and holds the avatar where one would touch. `rng` is the only source of chance.

@@ -81,12 +81,12 @@ class LocalPlan(NamedTuple):
     """Upper-body motion for a root path, or the status of the first group that found none."""
 
     status: PlanStatus  # how the search ended
-    configurations: NDArray[np.float64]  # (n+1, 11) waist, left arm, right arm at the key times; (0, 11) unless FOUND
-    goals: NDArray[np.float64]  # (n+1, 11) what the goal functions asked for
+    configurations: NDArray[np.float64]  # (n+1, LOCAL) at the key times; (0, LOCAL) unless FOUND
+    goals: NDArray[np.float64]  # (n+1, LOCAL) what the goal functions asked for
     evidence: tuple[GroupEvidence, ...]  # of the groups that were searched, in order
     joint: JointEvidence | None = None  # of the groups together, where one after the other led nowhere
     blockade: Blockade | None = None  # why this is not the whole way that was asked for, if the planner can say it
-    velocities: NDArray[np.float64] | None = None  # (n+1, 11) of the curve at the key times, if the planner chose them
+    velocities: NDArray[np.float64] | None = None  # (n+1, LOCAL) of the curve there, if the planner chose them
 
     @property
     def checks(self) -> int:

@@ -31,7 +31,7 @@ class Poser:
         self._hips, self._hips_rest = _hips_map(humanoid.rig)
 
     def node_pose(self, q: Floats, root: Floats) -> NodePose:
-        """What the nodes get for a configuration (14,) and a root state (7,)."""
+        """What the nodes get for a configuration (DOF,) and a root state (7,)."""
         return self.full_pose(local_rotations(self.model, q, root), hips_position(self.model, q, root))
 
     def full_pose(self, local: Floats, hips: Floats) -> NodePose:
@@ -40,7 +40,7 @@ class Poser:
         return NodePose(self._hips @ hips + self._hips_rest, rotations.astype(np.float32))
 
     def segments(self, q: Floats, roots: Floats) -> NDArray[np.float32]:
-        """End points of all capsules in the world, (N, C, 6), for configurations (N, 14) and root states (N, 7)."""
+        """End points of all capsules in the world, (N, C, 6), for configurations (N, DOF) and root states (N, 7)."""
         return np.ascontiguousarray(np.moveaxis(posture_capsules(self.model, q, roots), -1, 0))
 
 

@@ -26,11 +26,11 @@ class Certificate:
     times: Floats  # (K,) seconds, `RATE` a second
     way: Floats  # (K,) metres along the course's line
     roots: Floats  # (K, 7) root states
-    uppers: Floats  # (K, 11) waist, left arm, right arm, radians
+    uppers: Floats  # (K, LOCAL) radians
 
     @property
     def configurations(self) -> Floats:
-        """The configurations `q` (K, 14)."""
+        """The configurations `q` (K, DOF)."""
         return np.concatenate([self.roots[:, :3], self.uppers], axis=1)
 
 

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 ArmRanges = tuple[Range, Range, Range, Range]
 
 _MOVED = DofGroup.WAIST, *ARMS
-WAIST, LEFT, RIGHT = (columns_of(group) for group in _MOVED)  # columns of an upper body (11,)
+WAIST, LEFT, RIGHT = (columns_of(group) for group in _MOVED)  # columns of an upper body (LOCAL,)
 _BEND, _TWIST, _ABDUCTIONS = WAIST.start, WAIST.start + 1, [LEFT.start + 1, RIGHT.start + 1]
 # What is drawn of it: a certificate's pelvis is never lowered, and what else there is follows the waist.
 DRAWN = np.array([j for j in np.r_[WAIST, LEFT, RIGHT] if j != WAIST.start + LOWERING - DofGroup.WAIST.at.start])
@@ -74,10 +74,10 @@ class BodyMotion:
     """Upper bodies as a function of the way: through key postures, resting at each, C1."""
 
     way: Floats  # (K,) metres along the line, increasing
-    postures: Floats  # (K, 11) waist, left arm, right arm, radians
+    postures: Floats  # (K, LOCAL) radians
 
     def at(self, s: ArrayLike) -> Floats:
-        """Upper bodies (N, 11) at ways (N,)."""
+        """Upper bodies (N, LOCAL) at ways (N,)."""
         place = np.asarray(s, np.float64)
         k = np.clip(np.searchsorted(self.way, place, side="right") - 1, 0, len(self.way) - 2)
         part = smoothstep((place - self.way[k]) / (self.way[k + 1] - self.way[k]))[:, None]

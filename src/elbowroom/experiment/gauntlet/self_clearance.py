@@ -35,7 +35,7 @@ class SelfClearance:
         self._allowed = np.minimum(touching, self._distances(*_natural_walk()).min(axis=0)) - _SKIN
 
     def clear(self, roots: Floats, uppers: Floats) -> NDArray[np.bool_]:
-        """Whether root states (N, 7) with upper bodies (N, 11) are clear of themselves, shape (N,)."""
+        """Whether root states (N, 7) with upper bodies (N, LOCAL) are clear of themselves, shape (N,)."""
         free: NDArray[np.bool_] = (self._distances(roots, uppers) >= self._allowed).all(axis=1)
         return free
 

@@ -39,7 +39,7 @@ class ShownMotion:
     """Frames in the order in which they were shown."""
 
     times: Floats  # (F,) seconds; not decreasing
-    q: Floats  # (F, 14) see `body.dof`
+    q: Floats  # (F, DOF) see `body.dof`
     roots: Floats  # (F, 7) see `body.root`
     jumps: NDArray[np.bool_]  # (F,) the frame does not follow from the one before it: nothing is shown between them
     assisted: NDArray[np.bool_]  # (F,) the planner was at work
@@ -50,7 +50,7 @@ class ShownMotion:
 
     @classmethod
     def at_rate(cls, q: Floats, roots: Floats, rate: float = 60.0) -> "ShownMotion":
-        """Frames (F, 14), (F, 7) at an even rate, without a jump."""
+        """Frames (F, DOF), (F, 7) at an even rate, without a jump."""
         frames = len(q)
         return cls(np.arange(frames) / rate, q, roots, np.arange(frames) == 0, np.ones(frames, bool))
 

@@ -45,7 +45,7 @@ class Poser:
         self._relaxed = relaxed_rotations(self.skeleton)
 
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
-        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, 14), `roots` (N, 7)."""
+        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7)."""
         feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
         bend, twist, lowering = q[:, DofGroup.WAIST.at].T

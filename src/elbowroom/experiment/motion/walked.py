@@ -57,7 +57,7 @@ def walk(humanoid: Humanoid, script: Script) -> Walked:
 
 
 def posed(humanoid: Humanoid, q: Floats, roots: Floats) -> Posed:
-    """Every joint in the world for configurations (N, 14) and root states (N, 7)."""
+    """Every joint in the world for configurations (N, DOF) and root states (N, 7)."""
     poser = Poser(humanoid)
     local, hips = poser.local(q, roots)
     return poser.world(local, hips, roots[:, :3])

@@ -55,7 +55,7 @@ class ExactPlanner:
             self._body.reset(interval)
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
-        """Motion along `path` that begins at rest at `start` (11,); nothing is left to chance."""
+        """Motion along `path` that begins at rest at `start` (LOCAL,); nothing is left to chance."""
         del rng
         self._use(path.interval)
         return self._body.plan(path, StartState(start, np.zeros_like(start))).plan

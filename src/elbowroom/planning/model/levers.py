@@ -112,7 +112,7 @@ class BodyLevers:
         return levers
 
     def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> float:
-        """No point moves farther, metres, while root states (7,) and upper bodies (11,) change evenly."""
+        """No point moves farther, metres, while root states (7,) and upper bodies (LOCAL,) change evenly."""
         root, upper = roots[1] - roots[0], uppers[1] - uppers[0]
         moves = np.zeros(len(self.bob))
         for group in LOCAL_GROUPS:

@@ -94,7 +94,7 @@ class LocalPlanner:
         return self._posed[group].graph
 
     def plan(self, path: RootPath, start: Floats, rng: np.random.Generator) -> LocalPlan:
-        """Find motion along `path` that begins at `start` (11,): waist, left arm, right arm, radians.
+        """Find motion along `path` that begins at `start` (LOCAL,), radians.
 
         `start` is taken as it is; every later key frame of the result keeps `margins(path)` from all obstacles.
         """

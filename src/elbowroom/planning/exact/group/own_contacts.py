@@ -20,7 +20,7 @@ class Contact(NamedTuple):
 
     group: DofGroup
     depth: int  # the key time
-    around: Floats  # (11,) the groups that were posed before it, zero elsewhere
+    around: Floats  # (LOCAL,) the groups that were posed before it, zero elsewhere
     posture: Floats  # (d,) of the group
 
     def happens(self, around: Floats) -> bool:

@@ -24,9 +24,9 @@ class PathProblem(NamedTuple):
     """What the upper body is asked for along one root path."""
 
     path: RootPath
-    goals: Floats  # (n+1, 11)
+    goals: Floats  # (n+1, LOCAL)
     last: PreviousPlan | None  # the last plan
-    previous: Floats  # (n+1, 11) what it had, its end where it did not reach; the goals if there was none
+    previous: Floats  # (n+1, LOCAL) what it had, its end where it did not reach; the goals if there was none
     begins: StartState
     roots: Longs  # (n,) cache entries of the root's sweeps
     near: Along  # the obstacles

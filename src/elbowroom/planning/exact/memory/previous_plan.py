@@ -59,8 +59,8 @@ class RequiredMargins(NamedTuple):
 class StartState(NamedTuple):
     """Where a motion begins: now, or so many key intervals ahead on a plan that is kept until there."""
 
-    upper: Floats  # (11,)
-    velocity: Floats  # (11,)
+    upper: Floats  # (LOCAL,)
+    velocity: Floats  # (LOCAL,)
     ahead: int = 0
     harsh: bool = False  # whether it may exceed the limits of speed and acceleration at first, if need be
 
@@ -68,13 +68,13 @@ class StartState(NamedTuple):
 class PreviousPlan(NamedTuple):
     """The last plan at the key times of a path."""
 
-    keys: Floats  # (n+1, 11) upper bodies; the last one known is repeated
+    keys: Floats  # (n+1, LOCAL) upper bodies; the last one known is repeated
     known: int  # of these key times, those that the last plan reached
     required: RequiredMargins  # infinite elsewhere
 
     @staticmethod
     def freely(keys: Floats) -> "PreviousPlan":
-        """Upper bodies (n+1, 11) of a plan that asked for all clearances."""
+        """Upper bodies (n+1, LOCAL) of a plan that asked for all clearances."""
         return PreviousPlan(
             keys,
             len(keys),
@@ -93,7 +93,7 @@ def required_margins(settings: ExactSettings, interval: float, count: int) -> Re
 def jolts(keys: Floats, last: Floats, known: int) -> bool:
     """Whether the waist has left the last plan's way, and some joint by more than a little.
 
-    The last plan had `last` (n+1, 11) where these are the `keys` (n+1, 11), at the first `known` key times.
+    The last plan had `last` (n+1, LOCAL) where these are the `keys` (n+1, LOCAL), at the first `known` key times.
     """
     left, farthest = False, 0.0
     for t in range(min(known, keys.shape[0])):

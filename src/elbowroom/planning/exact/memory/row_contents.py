@@ -35,7 +35,7 @@ def set_bits(values: Floats, out: Longs) -> None:
 
 @exact_kernel
 def is_natural(upper: Floats, goals: Floats) -> bool:
-    """Whether groups side by side (K,) are as their goals have them, the first of `goals` (11,)."""
+    """Whether groups side by side (K,) are as their goals have them, the first of `goals` (LOCAL,)."""
     farthest = 0.0
     for j in range(upper.shape[0]):
         farthest = max(farthest, abs(upper[j] - goals[j]))

@@ -28,8 +28,8 @@ class GroupPaths(NamedTuple):
     paths: tuple[GroupPath, ...]
     failed: GroupPath | None
     reached: int  # the key time that all groups reached
-    keys: Floats = _NO_KEYS  # (n+1, 11) the upper body's key postures if none failed, and
-    velocities: Floats = _NO_KEYS  # (n+1, 11) its velocities there
+    keys: Floats = _NO_KEYS  # (n+1, LOCAL) the upper body's key postures if none failed, and
+    velocities: Floats = _NO_KEYS  # (n+1, LOCAL) its velocities there
 
     @staticmethod
     def joined(paths: list[GroupPath], reached: int) -> "GroupPaths":
@@ -113,7 +113,7 @@ class ChildSearch:
         return costs
 
     def _around(self, paths: list[GroupPath]) -> Floats:
-        """The upper body (n+1, 11) of the groups that have a path, zero elsewhere."""
+        """The upper body (n+1, LOCAL) of the groups that have a path, zero elsewhere."""
         around = np.zeros_like(self._problem.goals)
         for group, path in zip(SEARCH_ORDER, paths, strict=False):
             around[:, columns_of(group)] = path.keys

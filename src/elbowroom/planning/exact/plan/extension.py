@@ -28,9 +28,9 @@ class Settled(NamedTuple):
     """The first part of the last plan, from now on, that the next one has too."""
 
     at: int  # key intervals
-    configurations: Floats  # (at+1, 11)
-    velocities: Floats  # (at+1, 11)
-    goals: Floats  # (at+1, 11)
+    configurations: Floats  # (at+1, LOCAL)
+    velocities: Floats  # (at+1, LOCAL)
+    goals: Floats  # (at+1, LOCAL)
     margins: RequiredMargins  # over more than these intervals
 
     @property

@@ -117,7 +117,7 @@ def stands(whole: FullPlan, query: MotionQuery) -> bool:
 
 @exact_kernel
 def _stays(states: Floats, uppers: Floats, upper: Floats, velocity: Floats) -> bool:
-    """Whether root states (n+1, 7) are at rest, and `uppers` (n+1, 11) where an `upper` body is at rest already."""
+    """Whether root states (n+1, 7) are at rest, and `uppers` (n+1, LOCAL) where an `upper` body is at rest already."""
     fastest, farthest = 0.0, 0.0
     for t in range(states.shape[0]):
         for i in range(3, 6):

@@ -36,9 +36,9 @@ class OngoingPlan(NamedTuple):
 def leads_to(
     states: Floats, uppers: Floats, rates: Floats, at: int, state: Floats, upper: Floats, rate: Floats
 ) -> bool:
-    """Whether a motion has the root `state` (7,), the `upper` body (11,) and its `rate` (11,) at its key time `at`.
+    """Whether a motion has the root `state` (7,), the `upper` body (LOCAL,) and its `rate` (LOCAL,) at key time `at`.
 
-    It leads through root states (n+1, 7) and `uppers` (n+1, 11) with `rates` (n+1, 11).
+    It leads through root states (n+1, 7) and `uppers` (n+1, LOCAL) with `rates` (n+1, LOCAL).
     """
     apart = 0.0
     for i in range(state.shape[0]):

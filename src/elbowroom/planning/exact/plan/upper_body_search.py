@@ -84,7 +84,7 @@ class UpperBodySearch:
 
     @property
     def goals(self) -> Floats:
-        """The goals (n+1, 11)."""
+        """The goals (n+1, LOCAL)."""
         return self.problem.goals
 
     def motion(self, rounds: int) -> LocalPlan | None:

@@ -53,7 +53,7 @@ class OwnBody:
         self._goals = goals
 
     def parts(self, group: DofGroup, others: tuple[DofGroup, ...], uppers: Floats, states: Floats) -> Parts:
-        """What a group must keep away from of `others`, for N upper bodies (N, 11) and root states (N, 7)."""
+        """What a group must keep away from of `others`, for N upper bodies (N, LOCAL) and root states (N, 7)."""
         capsules, allowed = self.pairs.beside(group, others)
         axes = seen_from_chest(self.model, capsules, uppers, states).transpose(2, 0, 1)
         return Parts(np.ascontiguousarray(axes), np.ascontiguousarray(allowed))

@@ -45,8 +45,8 @@ class OwnBodyTask(NamedTuple):
     previous: Floats  # (n+1, d) what the last plan had
     start: Floats  # (d,)
     settled: bool  # whether it goes on from a path that is proven
-    walk: Floats  # (n+1, 11) the goals of all groups, zero where a group is not posed yet
-    uppers: Floats  # (n+1, 11) the groups that are posed already, zero elsewhere
+    walk: Floats  # (n+1, LOCAL) the goals of all groups, zero where a group is not posed yet
+    uppers: Floats  # (n+1, LOCAL) the groups that are posed already, zero elsewhere
     states: Floats  # (n+1, 7) of the root
 
 

@@ -80,9 +80,9 @@ class OwnMotion:
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
         """The group, by its number in `SEARCH_ORDER`, that is not clear of the body in each interval (n,), or -1.
 
-        `keys` (n+1, 11) and `rates` (n+1, 11) are the upper body and its velocity at the key times, the first of which
-        is `ahead` key intervals from now. Where both ends of an interval are as the `goals` (n+1, 11) have them, it
-        does not touch. Farther ahead more is asked for.
+        `keys` (n+1, LOCAL) and `rates` (n+1, LOCAL) are the upper body and its velocity at the key times, the first of
+        which is `ahead` key intervals from now. Where both ends of an interval are as the `goals` (n+1, LOCAL) have
+        them, it does not touch. Farther ahead more is asked for.
         """
         gaps, groups = self.proven(path, keys, rates, goals)
         wanted = np.where(ahead + np.arange(len(gaps)) < _SOON, ENOUGH, _AFAR)
@@ -130,7 +130,7 @@ def _proven(
 
 @exact_kernel
 def _beside(keys: Floats, goals: Floats) -> Indices:
-    """The intervals (K,) at whose ends the upper body (n+1, 11) is not as the goals (n+1, 11) have it."""
+    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) is not as the goals (n+1, LOCAL) have it."""
     chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0])
     for k in range(chosen.shape[0]):
         before, natural = natural, is_natural(keys[k + 1], goals[k + 1])
@@ -153,7 +153,7 @@ def _prove(
 ) -> None:
     """Set the proven gaps `least` (n,) in chosen intervals (K,), and whose they are.
 
-    Upper bodies lead through `keys` (n+1, 11) with `rates` (n+1, 11), roots through `states` (n+1, 7).
+    Upper bodies lead through `keys` (n+1, LOCAL) with `rates` (n+1, LOCAL), roots through `states` (n+1, 7).
     """
     count, looks = chosen.shape[0], _PARTS + 1
     intervals, moments = np.empty(count * looks, np.int64), np.empty(count * looks)
