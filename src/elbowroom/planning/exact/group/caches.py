@@ -5,6 +5,7 @@ scene and the model belong to the walker and never change; what moves is part of
 """
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -42,10 +43,25 @@ class GroupCache(NamedTuple):
     chain: KinematicChain
 
 
+class TrunkCache:
+    """The trunk as one limb, with the waist's postures: made when it is asked for, as few plans need it."""
+
+    def __init__(self, model: UpperBodyModel, waist: PostureSet, cache: GroupCache, horizon: int) -> None:
+        self._made_of = model, waist, cache, horizon
+
+    @cached_property
+    def cache(self) -> GroupCache:
+        """As a group's."""
+        model, waist, cache, horizon = self._made_of
+        made = model.trunk_set(waist)
+        return cache._replace(group=_group(made, _new_tables(made, horizon), _new_sweeps(horizon, DofGroup.WAIST)))
+
+
 class PlanCaches(NamedTuple):
     """All results, of plans over at most `horizon` key intervals."""
 
     groups: Mapping[DofGroup, GroupCache]
+    trunk: TrunkCache  # the waist with all that follows it
     own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the groups that hang on the waist
     own_motion: OwnMotion
     own_trunk: OwnMotion  # of the waist's parts alone
@@ -68,13 +84,15 @@ class PlanCaches(NamedTuple):
 
 def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horizon: int) -> PlanCaches:
     """Nothing computed yet, for these posture sets of a model."""
-    roots, sweeps = new_root_sweeps(_CACHED * (horizon + 1)), _new_sweeps(horizon)
+    roots = new_root_sweeps(_CACHED * (horizon + 1))
+    sweeps = {group: _new_sweeps(horizon, group) for group in LOCAL_GROUPS}
     waists = sweeps[DofGroup.WAIST]
     made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
     groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
+    trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST], horizon)
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
-    trunk = parts_of(model.own_parts, DofGroup.WAIST)
-    return PlanCaches(groups, own_nodes, OwnMotion(model.own_parts), OwnMotion(trunk, _CACHED * horizon), horizon)
+    own_motion, own_trunk = OwnMotion(model.own_parts), parts_of(model.own_parts, DofGroup.WAIST)
+    return PlanCaches(groups, trunk, own_nodes, own_motion, OwnMotion(own_trunk, _CACHED * horizon), horizon)
 
 
 def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:
@@ -84,7 +102,8 @@ def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: P
     own_nodes = dict(caches.own_nodes)
     if group in own_nodes:
         own_nodes[group] = _own_nodes(model, group, made)
-    return caches._replace(groups={**caches.groups, group: cache}, own_nodes=own_nodes)
+    trunk = TrunkCache(model, made, cache, caches.horizon) if group is DofGroup.WAIST else caches.trunk
+    return caches._replace(groups={**caches.groups, group: cache}, trunk=trunk, own_nodes=own_nodes)
 
 
 def _group(made: PostureSet, tables: NodeClearances, sweeps: LimbSweeps) -> Group:
@@ -95,9 +114,8 @@ def _new_tables(made: PostureSet, horizon: int) -> NodeClearances:
     return new_node_clearances(_CACHED * (horizon + 1), len(made.limits), made.postures.moves.shape[1])
 
 
-def _new_sweeps(horizon: int) -> Mapping[DofGroup, LimbSweeps]:
-    count = _CACHED * (horizon + 1)
-    return {group: new_limb_sweeps(count, group.size, carries=group is DofGroup.WAIST) for group in LOCAL_GROUPS}
+def _new_sweeps(horizon: int, group: DofGroup) -> LimbSweeps:
+    return new_limb_sweeps(_CACHED * (horizon + 1), group.size, carries=group is DofGroup.WAIST)
 
 
 def _own_nodes(model: UpperBodyModel, group: DofGroup, made: PostureSet) -> OwnBodyNodes:

@@ -5,6 +5,7 @@ It depends on the avatar, on its clips, on the settings and on the seconds betwe
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnParts, own_parts
 from elbowroom.planning.goal import GoalFunction, natural_walk
 from elbowroom.planning.model.levers import body_levers, levers_of
-from elbowroom.planning.model.limb import Limb, limb_of, pose
+from elbowroom.planning.model.limb import Limb, limb_of, pose, trunk_limb
 from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.shared import Shared
@@ -57,6 +58,8 @@ class UpperBodyModel:
     points: Mapping[DofGroup, Floats]  # (V, d) the postures of the clips that keep clear of the trunk, radians
     reaches: Mapping[DofGroup, float]  # farther from a limb's frame than any posture within the limits gets, metres
     sets: Mapping[DofGroup, PostureSet]  # of the clips' postures
+    trunk: Limb  # the waist's with all that follows the waist where nobody plans it, and
+    trunk_reach: float  # as `reaches`
     chain: KinematicChain
     own_body: OwnBody
     own_parts: OwnParts
@@ -72,7 +75,11 @@ class UpperBodyModel:
         chain = chain_of(body, limbs[DofGroup.WAIST], max(reaches[group] for group in CHILDREN))
         sets: dict[DofGroup, PostureSet] = {}
         parts = own_parts(body, own_body.pairs, body_levers(humanoid))
-        made = UpperBodyModel(settings, interval, body, goals, limbs, points, reaches, sets, chain, own_body, parts)
+        trunk = trunk_limb(body)
+        reach = _reach(DofGroup.WAIST, trunk)
+        made = UpperBodyModel(
+            settings, interval, body, goals, limbs, points, reaches, sets, trunk, reach, chain, own_body, parts
+        )
         sets |= {group: made.set_of(group, points[group]) for group in LOCAL_GROUPS}
         return made
 
@@ -86,6 +93,21 @@ class UpperBodyModel:
             resting = self.own_body.resting(group, postures)
         speed, acceleration = settings.speed_of(group), settings.acceleration_of(group)
         return PostureSet(postures, levers_of(self.body, limb), limits(group), speed, acceleration, resting)
+
+    def trunk_set(self, waist: PostureSet) -> PostureSet:
+        """The same postures of the waist, in the same order, with all that follows it as one limb."""
+        return self._clips_trunk if waist is self.sets[DofGroup.WAIST] else self._trunk_set(waist)
+
+    @cached_property
+    def _clips_trunk(self) -> PostureSet:
+        return self._trunk_set(self.sets[DofGroup.WAIST])
+
+    def _trunk_set(self, waist: PostureSet) -> PostureSet:
+        known = waist.postures
+        postures = postures_of(self.trunk, known.configurations, known.step, ordered=True)
+        return waist._replace(
+            postures=postures._replace(reach=self.trunk_reach), levers=levers_of(self.body, self.trunk)
+        )
 
 
 _MODELS: Shared[UpperBodyModel] = Shared()

@@ -43,10 +43,13 @@ class Postures(NamedTuple):
     reach: float  # metres: no capsule gets farther from the limb's frame
 
 
-def postures_of(limb: Limb, configurations: Floats, step: float) -> Postures:
-    """Join `configurations` (V, d) that are at most `step` apart, unless the edge leads through the trunk."""
+def postures_of(limb: Limb, configurations: Floats, step: float, *, ordered: bool = False) -> Postures:
+    """Join `configurations` (V, d) that are at most `step` apart, unless the edge leads through the trunk.
+
+    They come in another order, in which neighbours share a block, unless they are `ordered`.
+    """
     known = np.ascontiguousarray(configurations, np.float64)
-    points = known[_neighbourly(pose(limb, known))]
+    points = known if ordered else known[_neighbourly(pose(limb, known))]
     segments = pose(limb, points)
     ends = segments.transpose(0, 2, 1).reshape(-1, 3)
     reach = float(np.linalg.norm(ends, axis=1).max()) + float(limb.radii.max()) + _SPARE

@@ -21,11 +21,12 @@ class EvidenceLog:
         self._rows: list[GroupEvidence] = []
         self.joint: JointEvidence | None = None
 
-    def search(self, group: DofGroup, task: GroupTask) -> GroupPath:
-        """`search_group`, entered under `group`."""
+    def search(self, group: DofGroup, task: GroupTask, *, trunk: bool = False) -> GroupPath:
+        """`search_group`, entered under `group`; of the whole trunk, if told so, as one limb."""
         self.go_on()
         began = perf_counter_ns()
-        way: GroupPath = search_group(self._caches.groups[group], task, self._weights)
+        cache = self._caches.trunk.cache if trunk else self._caches.groups[group]
+        way: GroupPath = search_group(cache, task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
         self._rows.append(GroupEvidence(group, status, way.checks, way.nodes, 0, spent))

@@ -129,7 +129,10 @@ class UpperBodyPlanner:
         return bool(changed)
 
     def _reaching(self, search: UpperBodySearch) -> Iterator[tuple[DofGroup, Floats]]:
-        """Postures for the slices from the blocked one on: of the waist, and of the child that was blocked."""
+        """Postures for the slices from the blocked one on: of the waist, and of the child that was blocked.
+
+        Of the waist those are taken under which what follows it is free too.
+        """
         blocked, failed, model = search.blocked_slice(), search.blocked[0], self.model
         last = min(blocked.depth + self._refinement.slices, search.path.horizon + 1)
         for depth in range(blocked.depth, last):
@@ -138,6 +141,7 @@ class UpperBodyPlanner:
                 here = blocked._replace(depth=depth, goal=search.goals[depth, columns_of(group)])
                 known = Known(group, model.limbs[group], model.reaches[group], self.memory.known(group))
                 if number == 0:
-                    yield group, waists_for(model.own_body, known, here, self._refinement)
+                    trunk = known._replace(limb=model.trunk, reach=model.trunk_reach)
+                    yield group, waists_for(model.own_body, trunk, here, self._refinement)
                 else:
                     yield group, children_for(model.own_body, known, here, self._refinement)
