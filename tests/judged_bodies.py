@@ -68,13 +68,15 @@ def gliding(posture: Floats, frames: int, speed: float, z: float = 0.0) -> tuple
 def write_recording(
     path: Path, header: dict[str, Any], q: Floats, roots: Floats, flags: NDArray[np.int_] | int = ASSIST
 ) -> None:
-    """A recording by hand, one chunk for each 60 frames; of the format 2, which has no end mark."""
+    """A recording by hand, one chunk for each 60 frames."""
     steps = np.zeros(len(q), STEP)
     steps["q"], steps["root"], steps["dt"], steps["flags"], steps["direction"] = q, roots, 1 / 60, flags, np.nan
     text = json.dumps(header).encode()
-    data = MAGIC.replace(b"3", b"2") + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text))
+    crc, data = 0, MAGIC + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text))
     for first in range(0, len(steps), 60):
         chunk = zlib.compress(steps[first : first + 60].tobytes())
         count = len(steps[first : first + 60])
         data += struct.pack("<4sIII", b"CHNK", count, len(chunk), zlib.crc32(chunk)) + chunk
+        crc = zlib.crc32(chunk, crc)
+    data += struct.pack("<4sIII", b"DONE", len(steps), 0, crc)
     path.write_bytes(data)

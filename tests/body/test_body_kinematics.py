@@ -4,7 +4,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body import kinematics
 from elbowroom.body.bones import PARENTS
-from elbowroom.body.dof import CHILDREN, DOF, LOCAL, LOCAL_GROUPS, DofGroup, limits
+from elbowroom.body.dof import CHILDREN, DOF, LOCAL, LOCAL_GROUPS, DofGroup, followed, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
@@ -78,6 +78,8 @@ def test_waist_and_arms_follow_the_conventions(humanoid: Humanoid, model: BodyMo
         still = np.zeros(7)
         _, rotations = joint_frames(skeleton, local, kinematics.hips_position(model, q, root), still)
         assert same_rotation(rotations[chest], chest_rotation(q[3:6])) < 1e-9
+        since_chest = quaternion.multiply(quaternion.conjugate(rotations[chest]), rotations[skeleton.index("head")])
+        assert same_rotation(since_chest, chest_rotation(q[14:16])) < 1e-9
         for side, arm in (("left", q[6:10]), ("right", q[10:14])):
             upper, lower = arm_rotations(arm, side == "left")
             assert same_rotation(local[skeleton.index(f"{side}UpperArm")], upper) < 1e-9
@@ -111,7 +113,7 @@ def test_mirrored_configuration_gives_the_mirrored_body() -> None:
     humanoid = proportional_humanoid()
     model, names = body_model(humanoid), humanoid.capsules.names
     q, roots = random_postures(30, 4)
-    mirrored_q = np.concatenate([q[:, :4], -q[:, 4:5], q[:, 5:6], q[:, 10:14], q[:, 6:10]], axis=1)
+    mirrored_q = np.concatenate([q[:, :4], -q[:, 4:5], q[:, 5:6], q[:, 10:14], q[:, 6:10], q[:, 14:] * [1, -1]], axis=1)
     mirrored_roots = roots * [-1, 1, -1, 1, -1, -1, 1] + [0, 0, 0, 0, 0, 0, 0.5]
     a = kinematics.posture_capsules(model, q, roots).reshape(len(names), 2, 3, -1)
     b = kinematics.posture_capsules(model, mirrored_q, mirrored_roots).reshape(len(names), 2, 3, -1)
@@ -189,12 +191,13 @@ def test_t_pose_is_a_right_angle_of_abduction() -> None:
     np.testing.assert_allclose(local[arms], [quaternion.IDENTITY] * 2, atol=1e-12)
 
 
-def test_the_gaze_stays_roughly_forward() -> None:
+def test_where_nobody_plans_the_head_the_gaze_stays_roughly_forward() -> None:
     humanoid = proportional_humanoid()
     model, head = body_model(humanoid), humanoid.skeleton.index("head")
     for bend, twist in [(1.2, 0.0), (-0.4, 0.0), (0.0, 0.7), (0.9, -0.6)]:
         q = np.zeros(DOF)
         q[3:5] = bend, twist
+        q[3:] = followed(q[3:])
         local = kinematics.local_rotations(model, q, np.zeros(7))
         _, rotations = joint_frames(humanoid.skeleton, local, model.offsets[0], np.zeros(7))
         turned = np.linalg.norm(quaternion.to_rotation_vector(rotations[head]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import ARMS, LOCAL_GROUPS, DofGroup, clamp, columns_of, followed, side_by_side
 from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.clips.dodge import dodge_clips
 from elbowroom.clips.files import parse_motion
@@ -35,7 +35,7 @@ def motion() -> PlanningMotion:
 
 def test_without_clips_it_is_the_stock_walk() -> None:
     phases, speeds = np.linspace(0, 2, 30), np.linspace(-1, 2, 30)
-    for group in LOCAL_GROUPS[1:]:
+    for group in ARMS:
         np.testing.assert_array_equal(STOCK.goal(group, phases, speeds), arm_swing_goal(group, phases, speeds))
         assert STOCK.clips(group)[: len(stock_clips(group))] == stock_clips(group)
     assert not STOCK.goal(DofGroup.WAIST, phases, speeds).any()
@@ -62,6 +62,16 @@ def test_a_set_survives_json_to_the_last_bit() -> None:
         for one, other in zip(again.clips(group), motions.clips(group), strict=True):
             np.testing.assert_array_equal(one.configurations, other.configurations)
             np.testing.assert_array_equal(one.times, other.times)
+
+
+def test_a_swing_from_before_the_head_was_planned_has_it_follow() -> None:
+    written = json.loads(json.dumps(learnt().to_dict()))
+    del written["swing"]["keys"]["HEAD"]
+    swing = MotionSet.from_dict(written, "test").swing
+    assert swing is not None
+    uppers = side_by_side(swing.keys)
+    np.testing.assert_array_equal(followed(uppers), uppers)
+    assert np.ptp(uppers[:, columns_of(DofGroup.HEAD)]) > 0.1
 
 
 def test_the_upright_set_lowers_nothing() -> None:

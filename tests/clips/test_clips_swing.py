@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bvh_builder import BONES
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import ARMS, LOCAL_GROUPS, DofGroup, clamp
 from elbowroom.body.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
@@ -24,7 +24,7 @@ FPS, PACE, SPEED = 60.0, 0.9, 1.1  # frames a second, strides a second, m/s
 
 
 def upper_at(phases: np.ndarray) -> np.ndarray:
-    """A made-up upper body (n, 11) in time with the stride."""
+    """A made-up upper body (n, 13) in time with the stride."""
     angle = 2.0 * np.pi * phases
     waves = [0.1 + 0.05 * np.cos(angle), 0.1 * np.sin(angle), 0.0 * angle]
     for shift in (0.0, np.pi):
@@ -34,6 +34,7 @@ def upper_at(phases: np.ndarray) -> np.ndarray:
             0.1 * np.cos(angle),
             0.5 + 0.2 * np.sin(angle),
         ]
+    waves += [0.1 + 0.1 * np.sin(angle), 0.2 * np.cos(angle)]
     return np.stack(waves, axis=1)
 
 
@@ -87,6 +88,7 @@ def test_the_swing_is_the_stride_at_its_speed_and_rest_at_none() -> None:
     swing = swing_of(planning_motion(made_walk()), "made")
     phases = np.linspace(0.0, 2.0, 41)
     columns = {DofGroup.WAIST: slice(0, 3), DofGroup.LEFT_ARM: slice(3, 7), DofGroup.RIGHT_ARM: slice(7, 11)}
+    columns[DofGroup.HEAD] = slice(11, 13)
     for group, at in columns.items():
         recorded = swing.goal(group, phases, np.full(41, swing.speed))
         assert (
@@ -127,7 +129,7 @@ def test_recorded_walks_give_a_swing(name: str) -> None:
     low, high, on_the_spot = WALKS[name]
     assert low <= clip.swing.speed <= high
     assert clip.planning.track.strides.on_the_spot is on_the_spot
-    left, right = (clip.swing.keys[group] for group in LOCAL_GROUPS[1:])
+    left, right = (clip.swing.keys[group] for group in ARMS)
     if "Crouch" not in name:  # arms swing opposite to their leg: back at their own side's heel strike
         assert left[0, 0] < left[16, 0]
         assert right[16, 0] < right[0, 0]

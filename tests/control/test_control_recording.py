@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
-from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, clamp
+from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, followed
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.clips.clip import motions_of
 from elbowroom.clips.files import parse_motion
@@ -144,12 +144,50 @@ def test_a_file_that_lacks_a_chunk_or_has_one_of_another_run_is_told(run: tuple[
         assert told in str(recording.note)
 
 
-def test_a_file_of_format_2_has_no_end(run: tuple[Path, object], tmp_path: Path) -> None:
-    old = tmp_path / "old.elbow"
-    old.write_bytes(run[0].read_bytes().replace(MAGIC, MAGIC.replace(b"3", b"2"), 1)[:-16])
-    recording = Recording(old)
-    assert len(recording.steps()) == STEPS
-    assert recording.note is None
+def written_as(recording: Recording, number: int, places: np.ndarray, path: Path) -> np.ndarray:
+    """A recording as an older version wrote it, with the numbers of `q` at these places; its steps."""
+    steps = recording.steps()
+    fields = [(name, "<f8", len(places)) if name == "q" else (name, STEP[name]) for name in STEP.names or ()]
+    old = np.zeros(len(steps), np.dtype(fields))
+    for name, *_ in fields:
+        old[name] = steps[name][:, places] if name == "q" else steps[name]
+    header, data = recording.header.to_json(), zlib.compress(old.tobytes())
+    end = struct.pack("<4sIII", b"DONE", len(old), 0, zlib.crc32(data)) if number > 2 else b""
+    path.write_bytes(
+        b"ELBOWROOM RECORDING %d\n" % number
+        + struct.pack("<I", len(header)) + header + struct.pack("<I", zlib.crc32(header))
+        + struct.pack("<4sIII", b"CHNK", len(old), len(data), zlib.crc32(data)) + data + end
+    )  # fmt: skip
+    return old
+
+
+@pytest.mark.parametrize(("number", "places", "size"), [
+    (1, np.delete(np.arange(14), LOWERING), 202),
+    (2, np.arange(14), 210),
+    (3, np.arange(14), 210),
+])  # fmt: skip
+def test_recordings_of_every_older_format_are_read(
+    run: tuple[Path, object], tmp_path: Path, number: int, places: np.ndarray, size: int
+) -> None:
+    """Before the head was planned it followed the waist; before there was a lowering nobody was lowered."""
+    recording = Recording(run[0])
+    old = written_as(recording, number, places, tmp_path / "old.elbow")
+    assert old.dtype.itemsize == size
+    read = Recording(tmp_path / "old.elbow")
+    steps, whole = read.steps(), recording.steps()
+    assert read.note is None
+    np.testing.assert_array_equal(steps["q"][:, places], whole["q"][:, places])
+    np.testing.assert_array_equal(steps["q"][:, DofGroup.HEAD.at], followed(steps["q"][:, 3:])[:, 11:])
+    assert not steps["q"][:, LOWERING].any()
+    assert steps["root"].tobytes() == whole["root"].tobytes()
+
+
+def test_an_old_recording_replays_but_for_the_head(run: tuple[Path, object], tmp_path: Path) -> None:
+    """Nothing of the walk has changed with the head where nothing is near; what it shows now differs, and is told."""
+    written_as(Recording(run[0]), 3, np.arange(14), tmp_path / "old.elbow")
+    again = replay(Recording(tmp_path / "old.elbow"), HUMANOID)
+    assert not again.identical
+    assert len(Recording(tmp_path / "old.elbow").steps()) == STEPS
 
 
 def test_steps_are_on_disk_before_the_recorder_is_closed(tmp_path: Path) -> None:
@@ -239,28 +277,13 @@ def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> Non
 
 
 def test_the_step_record_is_fixed() -> None:
-    assert STEP.itemsize == 210
+    assert STEP.itemsize == 226
 
 
-def test_a_recording_without_a_lowering_is_read_and_replays(run: tuple[Path, object], tmp_path: Path) -> None:
-    """Format 1, as it was written before the waist had a third freedom: the 13 numbers of `q` lack the lowering."""
-    recording = Recording(run[0])
-    steps = recording.steps()
-    fields = [(name, "<f8", 13) if name == "q" else (name, STEP[name]) for name in STEP.names or ()]
-    old = np.zeros(len(steps), np.dtype(fields))
-    for name, *_ in fields:
-        old[name] = np.delete(steps[name], LOWERING, axis=1) if name == "q" else steps[name]
-    header, data = recording.header.to_json(), zlib.compress(old.tobytes())
+def test_an_old_recording_may_be_replaced(run: tuple[Path, object], tmp_path: Path) -> None:
     path = tmp_path / "old.elbow"
-    path.write_bytes(
-        b"ELBOWROOM RECORDING 1\n"
-        + struct.pack("<I", len(header)) + header + struct.pack("<I", zlib.crc32(header))
-        + struct.pack("<4sIII", b"CHNK", len(old), len(data), zlib.crc32(data)) + data
-    )  # fmt: skip
-    assert old.dtype.itemsize == 202
-    assert Recording(path).steps().tobytes() == steps.tobytes()
-    assert replay(Recording(path), HUMANOID).identical
-    record(path, 3)  # it is a recording, so it may be replaced
+    written_as(Recording(run[0]), 1, np.delete(np.arange(14), LOWERING), path)
+    record(path, 3)
     assert Recording(path).path.read_bytes().startswith(MAGIC)
 
 

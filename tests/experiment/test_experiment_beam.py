@@ -18,10 +18,23 @@ from elbowroom.world.scene import Scene
 HUMANOID = Humanoid.default()
 
 
-def cross(seed: int, limit: float, humanoid: Humanoid = HUMANOID) -> tuple[CrossingResult, list[Frame]]:
+BEAM = Scene.load("beam")
+
+
+def lower(scene: Scene, by: float) -> Scene:
+    """The same with all obstacles lower, metres."""
+    document = scene.to_dict()
+    for obstacle in document["obstacles"]:
+        obstacle["center"][1] -= by
+    return Scene.from_dict(document)
+
+
+def cross(
+    seed: int, limit: float, humanoid: Humanoid = HUMANOID, scene: Scene = BEAM
+) -> tuple[CrossingResult, list[Frame]]:
     settings = CrossingSettings(planner="exact", seed=seed, limit=limit)
     frames: list[Frame] = []
-    controller = controller_for(humanoid, Scene.load("beam"), settings)
+    controller = controller_for(humanoid, scene, settings)
     return run_crossing(controller, settings, lambda command, dt, frame: frames.append(frame)), frames
 
 
@@ -37,13 +50,19 @@ def test_the_beam_is_passed_straight_with_bent_knees_and_touches_nothing(seed: i
     assert verdict.mesh is None or verdict.mesh.touching == 0
 
 
+def test_lower_than_a_bent_back_it_is_passed_by_who_can_crouch() -> None:
+    result, frames = cross(0, 20.0, scene=lower(BEAM, 0.12))
+    assert result.passed
+    assert min(frame.clearance for frame in frames) >= 0.0
+
+
 def test_a_body_that_cannot_crouch_stops_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     assert any(clip.configurations[:, 2].any() for clip in stock_clips(DofGroup.WAIST))
     stiff = limits(DofGroup.WAIST)
     stiff[LOWERING - DofGroup.WAIST.at.start] = 0.0
     monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, stiff)
     assert not limits(DofGroup.WAIST)[2].any()
-    result, frames = cross(0, 7.0, replace(HUMANOID))
+    result, frames = cross(0, 7.0, replace(HUMANOID), lower(BEAM, 0.12))
     assert not result.passed
     assert 1.0 < frames[-1].q[1] < 2.0
     assert min(frame.clearance for frame in frames) >= 0.0

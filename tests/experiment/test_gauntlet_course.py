@@ -22,16 +22,16 @@ from odd_bodies import Body, box_body, ring_body
 # A body of average proportions: these change only with the generator itself, and then the gauntlet is another one.
 PINNED = {
     (1, 0): "af0881faaef583ae4d54bc355d8b4fa06b9cfb07c45ad007aa6f6aed2bb02512",
-    (2, 7): "4a72cc1284c6762c99f97d015331b3a57c40ff46e46ac899520818b8db1dcd49",
-    (3, 1): "96f29e225d1ef2ebc459ac995e4aa31691b4df10b97636a8375bf50a91ce0d46",
-    (4, 3): "77cdca11def614866f9c81d3156c69d0cdacdb699ae880d05de02459b01755a9",
-    (5, 2): "be838c0c3cf2535933dca49dba783f8c1b3a1821503af7cc2a75e2b0cc78236d",
+    (2, 7): "9da3c271133133310a6680e2c69d9806cf9012f929fe08b078c5921a61523c40",
+    (3, 1): "d01bf1813e2154b1fdc1844a69e8a1a5985d8cdaf8c34dae1572f0894efa03b0",
+    (4, 3): "d2ead42e9084d71a4d67cd10f56520877e2e59223e8386b4e9ebf77fc3dfc0b6",
+    (5, 2): "a1c70a367da16fa691643fdca9fffe0b1672dde566c28b43026f7de6bad2a94c",
 }
 # The stock avatar: these change with its collision body too.
 PINNED_STOCK = {
     (1, 0): "622eb4a145b0419dbf2a90630839477528cdce9be439a9ee84837ad03a92c4ce",
-    (3, 1): "ff87b97b2e0f85512d0a408682b478a0f227633fbb3537f2f293d4ef9bac521d",
-    (5, 2): "0a24e7975e41867d1a3653a4c79163a8f430b998406ad7c37acc58936fc51565",
+    (3, 1): "bc0e80f92a6f1aefcecc1ba4230551913b85ec622c951c56311304ae8e9f7a32",
+    (5, 2): "e70c7a74a6d4849a533f7fee20da4f6994aeaea1da32bd4f5124ac15203f7a84",
 }
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import DOF
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -91,7 +92,7 @@ def test_a_trunk_that_sways_and_turns_is_told_as_it_does() -> None:
     humanoid, n = proportional_humanoid(), 400
     roots = np.zeros((n, 7))
     roots[:, 2], roots[:, 6] = 0.7, np.linspace(0.0, 3.0, n)
-    rest = posed(humanoid, np.zeros((n, 14)), roots)
+    rest = posed(humanoid, np.zeros((n, DOF)), roots)
     wave, twice = np.sin(2.0 * np.pi * roots[:, 6]), np.sin(4.0 * np.pi * roots[:, 6])
     places = rest.positions + np.array([np.cos(0.7), 0.0, -np.sin(0.7)]) * 0.025 * wave[:, None, None]
     places[:, :, 1] += 0.02 * twice[:, None]
@@ -206,7 +207,7 @@ def test_a_figure_that_could_not_be_measured_is_not_inside() -> None:
 @pytest.mark.parametrize("humanoid", [Humanoid.default(), proportional_humanoid(1.2)], ids=["stock", "without a mesh"])
 def test_soles_stand_on_the_ground_and_reach_from_heel_to_toe(humanoid: Humanoid) -> None:
     roots = np.zeros((1, 7))
-    joints = posed(humanoid, np.zeros((1, 14)), roots)
+    joints = posed(humanoid, np.zeros((1, DOF)), roots)
     for side, sole in zip(("left", "right"), soles_of(humanoid), strict=True):
         points, ankle = sole.points(joints)[0], joints.positions[0, humanoid.skeleton.index(f"{side}Foot")]
         assert abs(points[:, 1].min()) < 0.006

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of, limits
+from elbowroom.body import dof
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
@@ -120,9 +121,18 @@ def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> 
             assert all(np.all((value >= low - 1e-6) & (value <= high + 1e-6)) for value, _ in curve)
 
 
-def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoid: Humanoid) -> None:
+@pytest.fixture
+def stiff(humanoid: Humanoid, monkeypatch: pytest.MonkeyPatch) -> Humanoid:
+    """One who cannot crouch: the others bend, nod and go into the knees below what is no lower than the hips."""
+    lowered = limits(DofGroup.WAIST)
+    lowered[LOWERING - DofGroup.WAIST.at.start] = 0.0
+    monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, lowered)
+    return replace(humanoid)
+
+
+def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(stiff: Humanoid) -> None:
     wall = scene_of([[0.0, 1.25, 1.6]], [[3.0, 0.1, 0.6]])  # legs pass, nobody else does
-    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    planner, roots = ExactPlanner(stiff, wall), RootPlanner(stiff, wall)
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     checks = []
@@ -148,10 +158,10 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(humanoi
     assert back.local.blockade is None
 
 
-def test_a_reset_leaves_no_trace(humanoid: Humanoid) -> None:
+def test_a_reset_leaves_no_trace(stiff: Humanoid) -> None:
     """Also of what was thought through: after it, a blocked way is planned as it was the first time."""
     wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
-    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    planner, roots = ExactPlanner(stiff, wall), RootPlanner(stiff, wall)
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     first = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
 
@@ -254,9 +264,9 @@ def test_a_plan_in_a_hurry_takes_what_the_groups_find_one_after_the_other(humano
     assert any(plan.joint is not None for plan in patient)
 
 
-def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_trace(humanoid: Humanoid) -> None:
+def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_trace(stiff: Humanoid) -> None:
     wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
-    planner, roots = ExactPlanner(humanoid, wall), RootPlanner(humanoid, wall)
+    planner, roots = ExactPlanner(stiff, wall), RootPlanner(stiff, wall)
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     asked: list[None] = []
 

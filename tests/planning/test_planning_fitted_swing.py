@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.dof import ARMS, LOCAL_GROUPS, clamp
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
@@ -17,8 +17,8 @@ PHASES = np.arange(KEYS + 1) / KEYS
 
 def swing(abduction: float, internal: float, elbow: float) -> Swing:
     """A plain swing with the arms held so, degrees."""
-    keys = {DofGroup.WAIST: np.zeros((KEYS + 1, DofGroup.WAIST.size))}
-    for group, shift in zip(LOCAL_GROUPS[1:], (0.0, np.pi), strict=True):
+    keys = {group: np.zeros((KEYS + 1, group.size)) for group in LOCAL_GROUPS}
+    for group, shift in zip(ARMS, (0.0, np.pi), strict=True):
         flexion = 20.0 * np.sin(2.0 * np.pi * PHASES + shift)
         held = np.tile([abduction, internal, elbow], (KEYS + 1, 1))
         keys[group] = clamp(group, np.deg2rad(np.column_stack([flexion, held])))
@@ -27,7 +27,7 @@ def swing(abduction: float, internal: float, elbow: float) -> Swing:
 
 
 def clearances(worn: MotionSet, speed: float = 1.1) -> np.ndarray:
-    """Of left arm, right arm and between them over a stride, (3, KEYS)."""
+    """Of each group on the waist and what it keeps clear of over a stride, (3, KEYS)."""
     roots = np.zeros((KEYS, 7))
     roots[:, 3], roots[:, 6] = speed, PHASES[:-1]
     uppers = np.concatenate([worn.goal(g, roots[:, 6], roots[:, 3]) for g in LOCAL_GROUPS], axis=1)
@@ -52,7 +52,7 @@ def test_arms_are_kept_out_of_the_body(held: tuple[float, float, float]) -> None
     worn = fitted(motions, HUMANOID)
     assert clearances(worn).min() >= -0.005
     assert worn.swing is not None
-    for group in LOCAL_GROUPS[1:]:
+    for group in ARMS:
         keys = worn.swing.keys[group]
         np.testing.assert_array_equal(clamp(group, keys), keys)
         np.testing.assert_allclose(keys[-1], keys[0], atol=1e-12)

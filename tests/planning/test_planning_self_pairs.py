@@ -7,10 +7,22 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import ARMS, CHILDREN, DOF, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, clamp, columns_of, limits
+from elbowroom.body.dof import (
+    ARMS,
+    CHILDREN,
+    DOF,
+    LOCAL,
+    LOCAL_GROUPS,
+    SEARCH_ORDER,
+    DofGroup,
+    clamp,
+    columns_of,
+    limits,
+)
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, group_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.stock_clips import HANGING
 from elbowroom.geometry import quaternion
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.axis_distances import arm_clearances, clear_pairs, lower_to_body
@@ -142,6 +154,21 @@ def test_arms_through_body_and_through_each_other_are_found() -> None:
     assert found[0] < 0.0
     assert found[1] < 0.0
     assert found[2] > 0.0
+
+
+def test_an_arm_beside_the_face_is_free_or_not_by_where_the_head_turns() -> None:
+    model, rng = body_model(proportional_humanoid(1.72)), np.random.default_rng(3)
+    uppers = np.zeros((2000, LOCAL))
+    arm, head = columns_of(DofGroup.LEFT_ARM), columns_of(DofGroup.HEAD)
+    low, high = limits(DofGroup.LEFT_ARM).T
+    uppers[:, arm] = clamp(DofGroup.LEFT_ARM, rng.uniform(low, high, (2000, 4)))
+    uppers[:, columns_of(DofGroup.RIGHT_ARM)] = HANGING
+    free = []
+    for nod, turn in ((0.0, 0.0), (0.7, 0.9)):
+        uppers[:, head] = nod, turn
+        free.append(self_clearances(model, self_pairs(model), np.zeros((2000, 7)), uppers).min(axis=0) >= 0.0)
+    assert np.sum(free[0] & ~free[1]) > 5
+    assert np.sum(free[1] & ~free[0]) > 5
 
 
 @pytest.mark.parametrize("forward", [0.0, 0.5, 1.1, -0.7])

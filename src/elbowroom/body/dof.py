@@ -1,13 +1,15 @@
 """The table of groups: which degrees of freedom a body has, what they move, how far and how fast.
 
 The groups are a tree: each hangs on its parent's last joint. The paper's (section 3.1) are here with their own
-components, and with the lowering of the pelvis. A configuration `q` has shape (14,), metres and radians:
+components, and with the lowering of the pelvis; the head, which goes with the waist there, has a group of its own. A
+configuration `q` has shape (DOF,), metres and radians:
 
     index  group      component
     0-2    ROOT       x, z on the ground; heading about +Y, 0 faces +Z, positive turns left (towards +X)
     3-5    WAIST      bend (positive forward), twist (positive to the left), lowering (0 stands, positive crouches)
     6-9    LEFT_ARM   shoulder flexion, abduction, internal rotation; elbow flexion
     10-13  RIGHT_ARM  the same, mirrored: equal values on both sides make a symmetric gesture
+    14-15  HEAD       nod (positive forward), turn (positive to the left), both since the chest
 
 Lowering is counted in half leg lengths (`GaitShape.half_leg`; some 0.42 m on an adult), not in metres: so a crouch is
 the same posture on every build, and a change of it moves the trunk about as far as an equal angle of bend moves the
@@ -63,8 +65,6 @@ class GroupSpec(NamedTuple):
     acceleration: float = np.inf  # rad/s^2
     clear_of: tuple[str, ...] = ()  # groups whose parts it must not run into; they are searched before it
     shares: tuple[float, ...] = ()  # of a column's rotation that its joints take; shared out anew where some are absent
-    turned_back: tuple[str, ...] = ()  # joints on a column that undo part of its rotation, and
-    undone: float = 0.0  # the part that they undo together
     undoes: float = 0.0  # what it undoes of its parent's first components where nobody plans it: then it follows
 
 
@@ -75,7 +75,9 @@ def _degrees(**ranges: tuple[float, float]) -> tuple[Component, ...]:
 # Ranges of motion: American Academy of Orthopaedic Surgeons, "Joint Motion: Method of Measuring and Recording" (1965):
 # thoracolumbar flexion 80, extension 25, rotation 45; shoulder flexion 180, extension 60, abduction 180,
 # internal rotation 70, external 90; elbow flexion 150 degrees. Adduction across the body (the swing's lateral part)
-# is limited to 45 degrees, after Boone & Azen, J. Bone Joint Surg. 61-A (1979).
+# is limited to 45 degrees, after Boone & Azen, J. Bone Joint Surg. 61-A (1979). The neck's are those of the first book,
+# quoted from memory: flexion 45, extension 45, rotation 60 degrees. People get farther: the Academy's later tables have
+# 75 degrees of extension at 20 to 29 years (as E. M. Kosmahl quotes them, "Goniometry", University of Scranton, 1999).
 _FREE = (-np.inf, np.inf)
 _ARM = _degrees(
     flexion=(-60.0, 175.0), abduction=(-45.0, 175.0), rotation=(-90.0, 70.0), elbow=(0.0, 150.0)
@@ -125,12 +127,24 @@ class DofGroup(Enum):
         speed=3.4,  # a bend, turn or crouch by half a radian in 0.28 s
         acceleration=60.0,  # half a radian in 0.22 s
         shares=(0.40, 0.35, 0.25),
-        turned_back=("neck", "head"),
         clear_of=("ROOT",),
-        undone=0.65,  # so that the gaze stays ahead
     )
-    LEFT_ARM = _arm("left", ("ROOT", "WAIST"))
-    RIGHT_ARM = _arm("right", ("ROOT", "WAIST", "LEFT_ARM"))
+    LEFT_ARM = _arm("left", ("ROOT", "WAIST", "HEAD"))
+    RIGHT_ARM = _arm("right", ("ROOT", "WAIST", "HEAD", "LEFT_ARM"))
+    HEAD = GroupSpec(
+        label="head",
+        parent="WAIST",
+        turning=Turning.COLUMN,
+        bones=("neck", "head"),
+        components=_degrees(nod=(-45.0, 45.0), turn=(-60.0, 60.0)),
+        clips="head",
+        samples=5,
+        speed=4.7,  # half a radian in 0.2 s
+        acceleration=75.0,  # the same
+        clear_of=("ROOT",),
+        shares=(0.5, 0.5),
+        undoes=0.65,  # so that the gaze stays nearly ahead
+    )
 
     def __repr__(self) -> str:
         return f"DofGroup.{self.name}"
@@ -175,7 +189,7 @@ _PLACES = _places()
 # J*, the groups of the local motion, in the order of `q`.
 LOCAL_GROUPS = tuple(group for group in DofGroup if group.parent is not None)
 DOF = sum(group.size for group in DofGroup)
-LOCAL = DOF - DofGroup.ROOT.size  # components of the local groups, side by side: an upper body (11,)
+LOCAL = DOF - DofGroup.ROOT.size  # components of the local groups, side by side: an upper body (LOCAL,)
 
 
 def _search_order() -> tuple[DofGroup, ...]:
@@ -206,19 +220,19 @@ def group_of_bone(bone: str) -> DofGroup:
     at: str | None = bone
     while at is not None:
         for group in LOCAL_GROUPS:
-            if at in (*group.value.bones, *group.value.turned_back):
+            if at in group.value.bones:
                 return group
         at = PARENTS.get(at)
     return DofGroup.ROOT
 
 
 def columns_of(group: DofGroup) -> slice:
-    """A local group's columns of an upper body (11,), a configuration without the root."""
+    """A local group's columns of an upper body (LOCAL,), a configuration without the root."""
     return _COLUMNS[group]
 
 
 def side_by_side(parts: Mapping[DofGroup, Floats]) -> Floats:
-    """Upper bodies (N, 11) of the configurations (N, size) of every local group."""
+    """Upper bodies (N, LOCAL) of the configurations (N, size) of every local group."""
     return np.concatenate([parts[group] for group in LOCAL_GROUPS], axis=1)
 
 
@@ -256,7 +270,7 @@ def followed(uppers: Floats) -> Floats:
 
 
 def within_limits(q: ArrayLike, tolerance: float = 1e-9) -> bool:
-    """Whether every one of the configurations (..., 14) respects the limits of all groups, within `tolerance` rad."""
+    """Whether every one of the configurations (..., DOF) respects the limits of all groups, within `tolerance` rad."""
     posture = np.asarray(q, np.float64)
     groups = ((group, posture[..., group.at]) for group in LOCAL_GROUPS)
     return all(bool(np.all(np.abs(clamp(group, part) - part) <= tolerance)) for group, part in groups)

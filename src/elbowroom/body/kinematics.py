@@ -123,13 +123,8 @@ def _end(skeleton: Skeleton, group: DofGroup) -> int:
 def _column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
     spec = group.value
     present = [(bone, share) for bone, share in zip(spec.bones, spec.shares, strict=True) if skeleton.has(bone)]
-    back = [bone for bone in spec.turned_back if skeleton.has(bone)]
     shares = np.array([share for _, share in present])
-    return posing.Column(
-        _joints(skeleton, [bone for bone, _ in present] + back),
-        np.concatenate([shares / shares.sum(), np.full(len(back), -spec.undone / max(len(back), 1))]),
-        group.at.start,
-    )
+    return posing.Column(_joints(skeleton, [bone for bone, _ in present]), shares / shares.sum(), group.at.start)
 
 
 def _following_column(skeleton: Skeleton, group: DofGroup) -> posing.Column:

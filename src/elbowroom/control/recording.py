@@ -1,11 +1,11 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 3`, a header, chunks and an end. Header: its length (uint32), UTF-8
+A `.elbow` file is the line `ELBOWROOM RECORDING 4`, a header, chunks and an end. Header: its length (uint32), UTF-8
 JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
 data (uint32 each), the data: `STEP` records. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All
 numbers are little-endian. A file is only ever appended to, so one that was cut off is good up to its last whole chunk.
-Files of the format 2 have no end; those of the format 1, from before there was a lowering of the pelvis, are read as if
-nobody had lowered it.
+Older files are read too: in those of the format 3, 14 numbers of `q` wide, the head followed the waist; those of the
+format 2 have no end; and in those of the format 1, 13 wide, nobody lowered the pelvis.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom import __version__
-from elbowroom.body.dof import DOF, LOWERING
+from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
@@ -33,7 +33,8 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 
-MAGIC = b"ELBOWROOM RECORDING 3\n"
+MAGIC = b"ELBOWROOM RECORDING 4\n"
+_MAGIC_3 = b"ELBOWROOM RECORDING 3\n"
 _MAGIC_2 = b"ELBOWROOM RECORDING 2\n"
 _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
@@ -56,7 +57,9 @@ STEP = np.dtype(
         ("flags", "u1"),
     ]
 )
-_STEP_1 = np.dtype([(name, "<f8", DOF - 1) if name == "q" else (name, STEP[name]) for name in STEP.names or ()])
+_Q_3 = np.arange(DofGroup.HEAD.at.start)  # the places of older files' numbers in `q`
+_Q_1 = np.delete(_Q_3, LOWERING)
+_PLACES = {MAGIC: np.arange(DOF), _MAGIC_3: _Q_3, _MAGIC_2: _Q_3, _MAGIC_1: _Q_1}
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 _PHASES = tuple(Phase)
 _SAID = 200  # characters of what a header says that are repeated in a message
@@ -184,7 +187,7 @@ class Recorder:
 def is_recording(path: Path) -> bool:
     """Whether the file begins as a recording does; an empty file may become one."""
     with path.open("rb") as file:
-        return file.read(len(MAGIC)) in (MAGIC, _MAGIC_2, _MAGIC_1, b"")
+        return file.read(len(MAGIC)) in (*_PLACES, b"")
 
 
 class Recording:
@@ -205,9 +208,9 @@ class Recording:
 
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
         magic = file.read(len(MAGIC))
-        self._stored = {MAGIC: STEP, _MAGIC_2: STEP, _MAGIC_1: _STEP_1}.get(magic)
-        self._has_end = magic == MAGIC
-        if self._stored is None:
+        self._places = _PLACES.get(magic, np.arange(0))
+        self._has_end = magic in (MAGIC, _MAGIC_3)
+        if not len(self._places):
             raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
         size = file.read(_COUNT.size)
         length = _COUNT.unpack(size)[0] if len(size) == _COUNT.size else 0
@@ -225,7 +228,7 @@ class Recording:
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
         self.note = None
-        stored = self._stored or STEP
+        stored = _stored(len(self._places))
         count, crc = 0, 0
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
@@ -239,7 +242,7 @@ class Recording:
                     return
                 steps, data = found
                 count, crc = count + len(steps), zlib.crc32(data, crc)
-                yield steps if stored is STEP else _with_lowering(steps)
+                yield steps if stored == STEP else _completed(steps, self._places)
         if self._has_end:
             self.note = f"the file ends without its end mark: what follows step {count} is missing"
 
@@ -248,11 +251,19 @@ class Recording:
         return np.concatenate([np.empty(0, STEP), *self.chunks()])
 
 
-def _with_lowering(old: Steps) -> Steps:
-    """Steps of the format 1 as `STEP` records."""
-    steps = np.empty(len(old), STEP)
+def _stored(width: int) -> np.dtype[np.void]:
+    """`STEP` with so many numbers of `q`."""
+    return np.dtype([(name, "<f8", width) if name == "q" else (name, STEP[name]) for name in STEP.names or ()])
+
+
+def _completed(old: Steps, places: NDArray[np.intp]) -> Steps:
+    """Steps of an older format as `STEP` records; `places` are those of their numbers in `q`."""
+    steps, first = np.zeros(len(old), STEP), DofGroup.ROOT.size
     for name in old.dtype.names or ():
-        steps[name] = np.insert(old[name], LOWERING, 0.0, axis=1) if name == "q" else old[name]
+        if name != "q":
+            steps[name] = old[name]
+    steps["q"][:, places] = old["q"]
+    steps["q"][:, first:] = followed(steps["q"][:, first:])
     return steps
 
 

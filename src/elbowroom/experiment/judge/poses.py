@@ -5,12 +5,12 @@ kernels. Only the tables of the gait (where the feet are at a root state, `body.
 are taken from there: they say what the walk is, not where the body gets to.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.bones import SPINE
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.hands import relaxed_rotations
@@ -22,7 +22,7 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 _SPINE_PARTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
-_GAZE = 0.65  # the part of the waist's rotation that neck and head turn back
+_NECK_PARTS = {"neck": 0.5, "head": 0.5}
 _RIGHT, _UP, _AHEAD = 0, 1, 2  # axes
 _SETBACK = 0.5  # how far lowered hips go back, against how far they go down
 _SPLAY = 1.2  # radians that the knees open for each leg length that the hips go back
@@ -48,8 +48,9 @@ class Poser:
         """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7)."""
         feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
-        bend, twist, lowering = q[:, DofGroup.WAIST.at].T
-        _pose_trunk(self.skeleton, bend, twist, rotations)
+        (bend, twist, lowering), (nod, turn) = q[:, DofGroup.WAIST.at].T, q[:, DofGroup.HEAD.at].T
+        _pose_column(self.skeleton, _SPINE_PARTS, bend, twist, rotations)
+        _pose_column(self.skeleton, _NECK_PARTS, nod, turn, rotations)
         _pose_arm(self.skeleton, "left", 1.0, q[:, DofGroup.LEFT_ARM.at], rotations)
         _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
         lowered = 0.25 * self._gait.legs[:, -2:].sum() * lowering[:, None]
@@ -90,17 +91,14 @@ class Poser:
         )
 
 
-def _pose_trunk(skeleton: Skeleton, bend: Floats, twist: Floats, out: Floats) -> None:
-    """The rotation vector of Ry(twist) Rx(bend), spread over the spine; neck and head turn back."""
-    chest = quaternion.multiply(quaternion.about_axis(_UP, twist), quaternion.about_axis(_RIGHT, bend))
-    vector = quaternion.to_rotation_vector(chest)
-    spine = [bone for bone in SPINE if skeleton.has(bone)]
-    whole = sum(_SPINE_PARTS[bone] for bone in spine)
-    for bone in spine:
-        out[:, skeleton.index(bone)] = quaternion.from_rotation_vector(_SPINE_PARTS[bone] / whole * vector)
-    gaze = [bone for bone in ("neck", "head") if skeleton.has(bone)]
-    for bone in gaze:
-        out[:, skeleton.index(bone)] = quaternion.from_rotation_vector(-_GAZE / len(gaze) * vector)
+def _pose_column(skeleton: Skeleton, parts: Mapping[str, float], bend: Floats, twist: Floats, out: Floats) -> None:
+    """The rotation vector of Ry(twist) Rx(bend), spread over those of a column's bones that the avatar has."""
+    end = quaternion.multiply(quaternion.about_axis(_UP, twist), quaternion.about_axis(_RIGHT, bend))
+    vector = quaternion.to_rotation_vector(end)
+    present = {bone: part for bone, part in parts.items() if skeleton.has(bone)}
+    for bone, part in present.items():
+        share = part / sum(present.values())
+        out[:, skeleton.index(bone)] = quaternion.from_rotation_vector(share * vector)
 
 
 def _pose_arm(skeleton: Skeleton, side: str, mirror: float, arm: Floats, out: Floats) -> None:

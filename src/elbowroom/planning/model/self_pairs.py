@@ -87,9 +87,7 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
     if group not in CHILDREN:
         least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
     elif other not in CHILDREN:
-        column = model.chains[DofGroup.WAIST].column
-        turned_back = column.joints[column.shares < 0.0]
-        least[0, ~np.isin(two.joints, turned_back)] = EXEMPT  # its joint is rooted there
+        least[0] = EXEMPT  # its joint is rooted there
     return least
 
 

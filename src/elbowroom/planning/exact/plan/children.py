@@ -14,6 +14,7 @@ from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, 
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
+from elbowroom.planning.gaze import keeping_gaze
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -30,13 +31,14 @@ class GroupPaths(NamedTuple):
     reached: int  # the key time that all groups reached
     keys: Floats = _NO_KEYS  # (n+1, LOCAL) the upper body's key postures if none failed, and
     velocities: Floats = _NO_KEYS  # (n+1, LOCAL) its velocities there
+    goals: Floats = _NO_KEYS  # (n+1, LOCAL) what was asked for under this waist
 
     @staticmethod
-    def joined(paths: list[GroupPath], reached: int) -> "GroupPaths":
+    def joined(paths: list[GroupPath], reached: int, goals: Floats) -> "GroupPaths":
         """The paths of all groups."""
         keys = side_by_side({group: path.keys for group, path in zip(SEARCH_ORDER, paths, strict=True)})
         velocities = side_by_side({group: path.velocities for group, path in zip(SEARCH_ORDER, paths, strict=True)})
-        return GroupPaths(tuple(paths), None, reached, keys, velocities)
+        return GroupPaths(tuple(paths), None, reached, keys, velocities, goals)
 
 
 class ChildSearch:
@@ -44,7 +46,9 @@ class ChildSearch:
 
     def __init__(self, caches: PlanCaches, problem: PathProblem, rounds: int) -> None:
         """At most `rounds` motions may turn out to run into the body."""
-        self._caches, self._problem, self._rounds = caches, problem, rounds
+        self._caches, self._rounds = caches, rounds
+        self._given = problem
+        self._problem = problem  # with the goals under the waist's path
         self._contacts: list[Contact] = []  # of all motions along this path
 
     def under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
@@ -52,6 +56,7 @@ class ChildSearch:
         horizon = self._problem.path.horizon
         if waist.reached < horizon:
             return GroupPaths((), waist, waist.reached)
+        self._problem = self._given._replace(goals=keeping_gaze(self._given.goals, waist.keys))
         paths, first, whole, touching = [waist], 0, bool(self._contacts), 0
         for _ in range(self._rounds):
             del paths[1 + first :]
@@ -60,7 +65,7 @@ class ChildSearch:
                 if path.reached < horizon:
                     return GroupPaths(tuple(paths), path, path.reached)
                 paths.append(path)
-            found = GroupPaths.joined(paths, horizon)
+            found = GroupPaths.joined(paths, horizon, self._problem.goals)
             contact = self._self_contact(found)
             if contact is None:
                 return found
@@ -81,6 +86,7 @@ class ChildSearch:
         whole: bool,
     ) -> GroupPath:
         """The path of one group among those of the groups before it; if `whole`, the body is where these have it."""
+        whole = whole and bool(group.clear_of)
         resting = None if whole else self._resting(group)
         task = self._problem.task(group, paths[0].entries, resting, follow)
         if whole:

@@ -1,8 +1,9 @@
 """One plan of the upper body along one root path: group after group, and all together where that fails.
 
-The groups are searched in the order of the paper, each arm under the waist's way and clear of the body, the right arm
-of the left one too. Where an arm has no way, the waist's last way is tried, under which the arms had theirs; then the
-joint step decides.
+The groups are searched in the order of the paper, head and arms under the waist's way, each arm clear of the body, the
+right one of the left one too. So the head ducks first. Where it has no room, or none to look ahead, the trunk is
+searched again as one limb with a head that follows the waist, and the head by itself under that. Where an arm has no
+way, the waist's last way is tried, under which the arms had theirs; then the joint step decides.
 """
 
 from collections.abc import Mapping
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import CHILDREN, SEARCH_ORDER, DofGroup, columns_of
+from elbowroom.body.dof import CHILDREN, SEARCH_ORDER, DofGroup, columns_of, followed, followers_of
 from elbowroom.planning.exact.certificate.blockade import blockade
 from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.path_problem import PathProblem, no_costs
@@ -29,6 +30,7 @@ from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
+from elbowroom.planning.gaze import keeping_gaze
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -41,6 +43,7 @@ Bools = NDArray[np.bool_]
 Longs = NDArray[np.int64]
 
 _DEARER = np.float32(0.5)  # squared radians: what leaving the last plan's way costs the waist that is held to it
+_PRESSED = 0.6  # radians from its goal: so far the head goes by itself before the whole trunk is searched as one limb
 _JOLT = 0.5  # squared radians that another motion must be better than one under the last plan's waist
 
 
@@ -105,7 +108,7 @@ class UpperBodySearch:
             return None
         self.margins = self._margins(found)
         evidence, joint = self.evidence_log.evidence(), self.evidence_log.joint
-        return LocalPlan(PlanStatus.FOUND, found.keys, self.goals, evidence, joint, velocities=found.velocities)
+        return LocalPlan(PlanStatus.FOUND, found.keys, found.goals, evidence, joint, velocities=found.velocities)
 
     def _margins(self, found: GroupPaths) -> RequiredMargins:
         """The clearances that were asked for: less where the start has less."""
@@ -115,15 +118,69 @@ class UpperBodySearch:
 
     def _cost(self, found: GroupPaths) -> float:
         """What ways cost that are free: distance from the goals and its changes, squared radians."""
-        away = found.keys - self.goals
+        away = found.keys - found.goals
         return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
 
     def apart(self) -> GroupPaths:
         """Each group by itself."""
         self._waist = self._waist_path(self._crouching)
         found = self._under(self._waist)
+        if self._is_pressed(found):
+            found = self._with_followers(found)
         self.blocked = len(found.paths), min(found.reached + 1, self.path.horizon)
         return found
+
+    def _is_pressed(self, found: GroupPaths) -> bool:
+        """Whether a group that could follow the waist finds no path under it, or only one far from its goals."""
+        for group in followers_of(DofGroup.WAIST):
+            number, at = SEARCH_ORDER.index(group), columns_of(group)
+            if number == len(found.paths):
+                return True
+            if number < len(found.paths):
+                away = found.paths[number].keys - keeping_gaze(self.goals, found.paths[0].keys)[:, at]
+                if np.linalg.norm(away, axis=1).max() > _PRESSED:
+                    return True
+        return False
+
+    def _with_followers(self, other: GroupPaths) -> GroupPaths:
+        """The path of the whole trunk as one limb, and its followers guided by it; another one, if that is better."""
+        trunk = self._waist_path(self._crouching, trunk=True)
+        if trunk.reached < self.path.horizon:
+            return other
+        waist = self._waist_path(self._crouching, self._only(trunk.keys))
+        found = self._under(waist, self._following(trunk.keys))
+        if not self._is_better(found, other):
+            return other
+        self._waist = trunk._replace(velocities=waist.velocities, entries=waist.entries)
+        return found
+
+    def _only(self, keys: Floats) -> Guide:
+        """A guide of the waist that leaves it no other path than through `keys` (n+1, d)."""
+        group, added = self.caches.group(DofGroup.WAIST), np.full_like(self._crouching, np.inf)
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots, follow=Guide(keys, added))
+        added[np.arange(len(added)), extras_of(group, task).previous] = 0.0
+        added[0] = 0.0
+        return Guide(keys, added)
+
+    def _following(self, waists: Floats) -> Mapping[DofGroup, Guide]:
+        """What the followers of a waist on a path (n+1, d) would do if nobody planned them: they may do that too."""
+        uppers = np.zeros_like(self.goals)
+        uppers[:, columns_of(DofGroup.WAIST)] = waists
+        keys, horizon = followed(uppers), self.path.horizon
+        return {
+            group: Guide(np.ascontiguousarray(keys[:, columns_of(group)]), no_costs(self.caches, group, horizon))
+            for group in followers_of(DofGroup.WAIST)
+        }
+
+    def _is_better(self, found: GroupPaths, other: GroupPaths) -> bool:
+        """Whether paths lead farther than others, or both to the end and cost less."""
+        if found.failed is None and other.failed is None:
+            return self._cost(found) < self._cost(other)
+        return (found.failed is None, len(found.paths), found.reached) > (
+            other.failed is None,
+            len(other.paths),
+            other.reached,
+        )
 
     def _under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide] | None = None) -> GroupPaths:
         """The arms under a way of the waist."""
@@ -160,6 +217,8 @@ class UpperBodySearch:
                 SEARCH_ORDER[g]: guide(step.nodes[g], answer.nodes[:, column]) for column, g in enumerate(PRODUCT)
             }
             way = self._waist_path(self._crouching, guides[DofGroup.WAIST])
+            if way.reached == self.path.horizon:
+                guides |= self._following(way.keys)
             ways = self._under(way, guides)
             if len(ways.paths) == len(SEARCH_ORDER):
                 break
@@ -215,8 +274,8 @@ class UpperBodySearch:
         problem = self.problem
         return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.moments)
 
-    def _waist_path(self, costs: Floats32, follow: Guide | None = None) -> GroupPath:
-        """The waist's way on which the legs have room to crouch as it does."""
+    def _waist_path(self, costs: Floats32, follow: Guide | None = None, *, trunk: bool = False) -> GroupPath:
+        """The way of the waist, or of the `trunk` as one limb, on which the legs have room to crouch as it does."""
         at, postures = columns_of(DofGroup.WAIST), self.caches.group(DofGroup.WAIST).postures
         previous, closed = self.problem.previous[:, at], costs.copy()
         if follow is not None:
@@ -236,7 +295,7 @@ class UpperBodySearch:
 
         crouch = Crouch(self.legs, self.path, lowerings, folds)
         for attempt in range(ROUNDS):
-            way = self._search(closed, follow)
+            way = self._search(closed, follow, trunk=trunk)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
                 if follow is None and attempt > 0:
                     self._crouching[np.isinf(closed)] = np.inf
@@ -256,10 +315,10 @@ class UpperBodySearch:
         clearance, _ = held_clearance(postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
-    def _search(self, extra: Floats32, follow: Guide | None) -> GroupPath:
+    def _search(self, extra: Floats32, follow: Guide | None, *, trunk: bool) -> GroupPath:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
         task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
-        return self.evidence_log.search(DofGroup.WAIST, task)
+        return self.evidence_log.search(DofGroup.WAIST, task, trunk=trunk)
 
 
 class UpperPlan(NamedTuple):
