@@ -3,7 +3,8 @@
 In this order: who stands as before gets the same answer; who walks as planned goes on, and gets a new end when the plan
 gets short; for everybody else a new plan is made (`plan/new_plan.py`): along the commanded root path, group by group
 (`plan/upper_body_search.py`: decoupled, then under the previous waist, then all together), with more postures where it
-is blocked; along other root paths; and if nothing helps the root walks on as far as it can, and comes to a stand.
+is blocked; along other root paths; and if nothing helps the root walks on as far as it can, and comes to a stand. Who
+has stood until all was tried steps to where the command leads on, if there is such a place near by.
 """
 
 import numpy as np
@@ -94,7 +95,8 @@ class ExactPlanner:
         moves = not is_still(query.root.as_array()[3:6])
         hurry = query.hurry or (moves and memory.command != query.command)
         memory.command = query.command
-        whole = NewPlan(self._body, root_planner, query, self._horizon(query), hurry).made(left)
+        at_last = again and stand is not None and stand.left == 1
+        whole = NewPlan(self._body, root_planner, query, self._horizon(query), hurry, at_last).made(left)
         turns = stand.left - 1 if again and stand is not None else memory.attempts.left
         known = alone and not hurry and memory.version == before and stands(whole, query)
         memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None

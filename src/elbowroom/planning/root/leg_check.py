@@ -51,7 +51,7 @@ class FreeLegs:
         if self._near.empty:
             return False
         shown, _ = dense_states(states, self._interval, self._check.spacing, np.ones(len(states) - 1, np.bool_))
-        return bool(np.any(self._clearance(shown) < 0.0))
+        return bool(np.any(self.rooms(shown) < 0.0))
 
     @property
     def close(self) -> bool:
@@ -61,7 +61,7 @@ class FreeLegs:
 
     def leaves(self, states: Floats) -> bool:
         """Whether a path ends no nearer to what stands than it begins."""
-        first, last = self._clearance(states[[0, -1]])
+        first, last = self.rooms(states[[0, -1]])
         return bool(last > first - _GRAZE)
 
     @cached_property
@@ -70,9 +70,10 @@ class FreeLegs:
         full, standing = self._check.skin, np.array([self._start, self._start])
         if self._near.empty or not self._to_check(standing, 2.0 * full)[0].any():
             return full
-        return min(full, max(0.5 * float(self._clearance(standing[:1])[0]), 0.0))
+        return min(full, max(0.5 * float(self.rooms(standing[:1])[0]), 0.0))
 
-    def _clearance(self, states: Floats) -> Floats32:
+    def rooms(self, states: Floats) -> Floats32:
+        """The clearance (N,) of legs and pelvis from what stands, in states (N, 7)."""
         if not len(states):
             return np.empty(0, np.float32)
         self.checks += len(states)
@@ -121,7 +122,7 @@ class FreeLegs:
             else:
                 shown, owner = dense_states(states, self._interval, spacing, fresh)
             near = states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground)
-            np.minimum.at(found, owner[near] - 1, self._clearance(shown[near]))
+            np.minimum.at(found, owner[near] - 1, self.rooms(shown[near]))
             self._check.known.learn(names, fresh, found)
         touching = np.flatnonzero(found < self._skin)
         return int(touching[0]) if len(touching) else len(wanted)

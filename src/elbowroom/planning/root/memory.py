@@ -11,6 +11,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.line import TravelLine, asked_direction, new_line
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.profile import Profile
+from elbowroom.planning.root.way_out import WayOut
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ class RootMemory(NamedTuple):
     line: TravelLine | None = None  # of the command that is being held
     last: Floats | None = None  # (n+1, 7) states of the last path
     evading: Evading = None
+    way_out: WayOut | None = None  # the last one along the line
 
     def travel_line(self, start: RootState, command: Command, motion: RootMotionSettings, widest: float) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed.

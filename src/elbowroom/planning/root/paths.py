@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from time import perf_counter_ns
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.gait import quickness
@@ -28,6 +29,8 @@ from elbowroom.planning.root.query import Answer, Asked, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
 
 _NEAR = 1.0  # metres
 
@@ -146,6 +149,19 @@ class RootPaths:
         place = asked.start.x, asked.start.z
         for states in self._query(asked).steps_aside():
             yield _plan(asked, Answer(states, RootPlanKind.EVASION, place, False), 0, perf_counter_ns())
+
+    def short_steps(self, asked: Asked, velocities: Floats, moving: int) -> Floats:
+        """Steps (k, n+1, 7), free or not, that hold `velocities` (k, 3) for so many key intervals, and then brake."""
+        query = self._query(asked)
+        return np.stack([query.short_step(wanted, moving) for wanted in velocities])
+
+    def is_free(self, asked: Asked, states: Floats) -> bool:
+        """Whether legs and pelvis are free along a path (n+1, 7) from the start, and could stop on the way."""
+        return self._query(asked).is_free(states)
+
+    def rooms(self, asked: Asked, states: Floats) -> NDArray[np.float32]:
+        """The clearance (N,) of legs and pelvis from what stands, in states (N, 7) within reach of the start."""
+        return self._query(asked).rooms(states)
 
     def is_faced(self, asked: Asked) -> bool:
         """Whether something that could move stands near: to wait for it would be to wait for ever."""

@@ -7,6 +7,7 @@ A path is accepted if the posed legs and the pelvis are free at dense samples of
 show, and if from each of its key frames a stop would be free too. So the next plan always has a way out: to brake.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -18,13 +19,25 @@ from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.line import TravelLine, wanted_speed
 from elbowroom.planning.root.memory import Evading, RootMemory
 from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked
+from elbowroom.planning.root.way_out import WayOut, WayOutFinder, WayOutSettings
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
-_Candidate = tuple[RootPlan, Evading]
+_SLOW = 0.1  # m/s: who walks faster has somewhere to go
+_TRIES = 2  # ways out that are taken one after the other, without getting farther
+_FARTHER = 0.15  # metres along a line that are worth another
+
+
+class _Candidate(NamedTuple):
+    """A path, and what is remembered if it is taken."""
+
+    plan: RootPlan
+    evading: Evading
+    way_out: WayOut | None = None
 
 
 class _Offer(NamedTuple):
@@ -44,6 +57,7 @@ class RootPlanner:
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings | None = None) -> None:
         self.settings = settings or RootPlannerSettings()
         self._paths = RootPaths(humanoid, scene, self.settings)
+        self._ways_out = WayOutFinder(WayOutSettings(), self._paths)
         self.reset()
 
     def reset(self) -> None:
@@ -95,7 +109,8 @@ class RootPlanner:
         else:
             line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
             plan = self._paths.travelled(asked, line, pace)
-        self.memory = RootMemory(line, plan.path.states, evading)
+        out = memory.way_out if memory.way_out is not None and memory.way_out.line == line else None
+        self.memory = RootMemory(line, plan.path.states, evading, out)
         return plan
 
     def candidates(
@@ -115,24 +130,41 @@ class RootPlanner:
         """
         self._offered.clear()
         for plan in self._candidates(Asked(start, command, horizon, interval, start_time), paces):
-            self._offered.append((plan, self.memory.evading))
-            yield plan
+            self._offered.append(plan)
+            yield plan.plan
+
+    def ways_out(
+        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> Iterator[RootPlan]:
+        """Paths that step to where the command leads on, the cheapest first; arguments and duties as for `candidates`.
+
+        They are for who has asked for those, and can follow none.
+        """
+        line, before = self.memory.line, self.memory.way_out
+        if line is None:
+            return
+        for candidate in self._out(Asked(start, command, horizon, interval, start_time), line, None, before):
+            self._offered.append(candidate)
+            yield candidate.plan
 
     def follow(self, plan: RootPlan) -> None:
         """Take one of the paths that `candidates` gave last."""
-        for offered, evading in self._offered:
-            if offered is plan:
-                self._taken(offered, evading)
+        for offered in self._offered:
+            if offered.plan is plan:
+                self._taken(offered)
 
-    def _candidates(self, asked: Asked, paces: Sequence[float]) -> Iterator[RootPlan]:
+    def _candidates(self, asked: Asked, paces: Sequence[float]) -> Iterator[_Candidate]:
+        before = self.memory.way_out
         commanded = self._commanded(asked, 1.0)
         known, line = self.memory.evading, self.memory.line
         direct = known if self.memory.still_turned(asked.start, self.settings.widest_detour) else None
+        if (left := self._left_of(self.memory.way_out, asked)) is not None:
+            yield self._taken(_Candidate(left, direct, before))
         offers: list[_Offer] = []
         if commanded.lost < self.settings.untroubled:
-            yield self._taken(commanded, direct)
+            yield self._taken(_Candidate(commanded, direct, before))
         else:
-            offers.append(_Offer(commanded.lost, (commanded, direct)))
+            offers.append(_Offer(commanded.lost, _Candidate(commanded, direct, before)))
         duration = asked.horizon * asked.interval
         offers += [_Offer(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
         if wanted_speed(asked.command, self.settings.motion) < SLOW:
@@ -147,27 +179,51 @@ class RootPlanner:
                 continue
             what = offers.pop(0).what
             if isinstance(what, float):
-                self.memory = self.memory._replace(evading=direct)
-                yield self._commanded(asked, what)
-            else:
-                yield self._taken(*what)
+                self.memory = self.memory._replace(evading=direct, way_out=before)
+                yield _Candidate(self._commanded(asked, what), direct, before)
+                continue
+            if line is not None and what.plan.kind is RootPlanKind.STOPPED:
+                yield from self._out(asked, line, direct, before)
+                line = None
+            yield self._taken(what)
         if len(self.moving):
             yield from self._steps_aside(asked, direct)
 
-    def _steps_aside(self, asked: Asked, evading: Evading) -> Iterator[RootPlan]:
+    def _steps_aside(self, asked: Asked, evading: Evading) -> Iterator[_Candidate]:
         """Short steps out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
-            yield self._taken(plan, evading)
+            yield self._taken(_Candidate(plan, evading))
 
-    def _taken(self, plan: RootPlan, evading: Evading) -> RootPlan:
-        self.memory = RootMemory(self.memory.line, plan.path.states, evading)
-        return plan
+    def _out(self, asked: Asked, line: TravelLine, evading: Evading, before: WayOut | None) -> Iterator[_Candidate]:
+        """Ways out for who stands, where nothing moves; not again and again without getting farther."""
+        if len(self.moving) or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
+            return
+        tries, ahead = 1, line.coordinates(asked.start.x, asked.start.z)[0]
+        if before is not None and before.line == line and ahead < before.ahead + _FARTHER:
+            tries, ahead = before.tries + 1, before.ahead
+        if tries <= _TRIES:
+            for plan, path, length in self._ways_out.ways(asked, line):
+                yield self._taken(_Candidate(plan, evading, WayOut(line, path, length, ahead, tries)))
+
+    def _left_of(self, way_out: WayOut | None, asked: Asked) -> RootPlan | None:
+        """What is left of a way out that is being followed, if it is still free."""
+        states = None if way_out is None or len(self.moving) else way_out.left(asked)
+        if states is None or not self._paths.is_free(asked, states):
+            return None
+        path, (x, z) = RootPath(asked.start_time, asked.interval, states), states[-1, :2].tolist()
+        return RootPlan(path, RootPlanKind.EVASION, (x, z), 0, 0, asked.horizon * asked.interval)
+
+    def _taken(self, candidate: _Candidate) -> _Candidate:
+        plan, evading, way_out = candidate
+        self.memory = RootMemory(self.memory.line, plan.path.states, evading, way_out)
+        return candidate
 
     def _evaded(self, asked: Asked, line: TravelLine, known: Evading, finder: EvasionFinder) -> list[_Offer]:
         """Evasions from the line of travel."""
+        before = self.memory.way_out
         kept = known[0] if known is not None and known[1] == line else None
         found = self._paths.evaded(asked, line, finder, kept)
-        return [_Offer(plan.lost, (plan, (profile, line))) for plan, profile in found]
+        return [_Offer(plan.lost, _Candidate(plan, (profile, line), before)) for plan, profile in found]
 
 
 def _dearer(offers: list[_Offer], lost: float) -> bool:

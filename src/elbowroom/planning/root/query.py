@@ -138,6 +138,21 @@ class RootQuery:
             steer(states, wanted, self.interval, self.bounds)
             yield states
 
+    def short_step(self, wanted: Floats, moving: int) -> Floats:
+        """Hold the wanted velocities (3,), as for `steered`, for so many key intervals, and then brake."""
+        states = self._blank()
+        steer(states[: moving + 1], wanted, self.interval, self.bounds)
+        brake(states, moving, self.interval, self.bounds)
+        return states
+
+    def is_free(self, states: Floats) -> bool:
+        """Whether a path (n+1, 7) over the whole horizon is free."""
+        return self._legs.kept(states) == self.horizon
+
+    def rooms(self, states: Floats) -> NDArray[np.float32]:
+        """The clearance (N,) of legs and pelvis from what stands, in states (N, 7)."""
+        return self._legs.rooms(states)
+
     def stop(self) -> Floats:
         """Stand, or step out of the way of what comes."""
         return self._given_way() if self.around else self._stopped()

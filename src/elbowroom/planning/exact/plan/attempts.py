@@ -29,8 +29,8 @@ class AttemptOrder:
 
     @property
     def left(self) -> int:
-        """Paths that have yet to have their turn after the last plan."""
-        return max(self._paths - 1, 0)
+        """Turns to come after the last plan: one for each path that had none yet, the last for steps to elsewhere."""
+        return self._paths
 
     def begin(self, *, hurry: bool) -> None:
         """Begin a plan."""

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from elbowroom.body.root import RootState
+from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.attempts import same_place
 from elbowroom.planning.exact.plan.extension import prolonged
@@ -45,15 +47,18 @@ class NewPlan:
     query: MotionQuery
     horizon: int  # key intervals that it leads over
     hurry: bool  # something else is wanted than before: what is found soon now, what is better in the next plan
+    at_last: bool = False  # all else has been tried from here, in the plans before
 
     def made(self, left: FullPlan | None) -> FullPlan:
         """The first of these that there is: a root path on which each group finds a path, the commanded one first;
-        one on which all groups together find one; to walk on as far as possible, and stand.
+        one on which all groups together find one; to walk on as far as possible, and stand. At last, before these, a
+        few steps to where the command leads on.
 
         `left` is what is left of a walk that has no new end at first sight: that is searched more closely too.
         """
         tried: list[_Tried] = []
-        found = self._group_by_group(left, tried)
+        self.body.memory.attempts.begin(hurry=self.hurry)
+        found = (self._way_out() if self.at_last else None) or self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
         return found or self._stop(tried)
@@ -64,9 +69,7 @@ class NewPlan:
         The paths that were of no use are added to `tried`.
         """
         query, attempts, blocked_at = self.query, self.body.memory.attempts, 0.0
-        attempts.begin(hurry=self.hurry)
-        at = query.root, query.command, self.horizon, query.interval, query.time, self.body.settings.paces
-        for root in self.root_planner.candidates(*at):
+        for root in self.root_planner.candidates(*self._asked, self.body.settings.paces):
             attempts.enter_root(root.checks)
             if tried and self.hurry and attempts.spent:
                 break
@@ -93,6 +96,34 @@ class NewPlan:
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
         return None
+
+    @property
+    def _asked(self) -> tuple[RootState, Command, int, float, float]:
+        """What a root path is asked for."""
+        query = self.query
+        return query.root, query.command, self.horizon, query.interval, query.time
+
+    def _way_out(self) -> FullPlan | None:
+        """A plan over a few steps to where the command leads on, or over as many of them as there is a path for.
+
+        None if none of them can be taken.
+        """
+        before, part = self.root_planner.memory, None
+        for root in self.root_planner.ways_out(*self._asked):
+            self.body.memory.attempts.enter_root(root.checks)
+            if self.body.memory.attempts.spent:
+                break
+            upper = self._upper_body(root.path, Effort.QUICK)
+            if upper.reached == self.horizon:
+                return FullPlan(root, upper.plan, upper.margins)
+            if part is None or upper.reached > part.upper.reached:
+                part = _Tried(root, upper)
+        stepped = None if part is None else self._braked(part.root, part.upper.reached)
+        if part is None or stepped is None or stepped.root.kind is RootPlanKind.STOPPED:
+            self.root_planner.memory = before
+            return None
+        self.root_planner.follow(part.root)
+        return stepped
 
     def _can_wait(self, upper: UpperPlan) -> bool:
         """Whether it is early enough to think a path through in the next plan, if it is blocked then too."""

@@ -1,0 +1,156 @@
+"""Out of where there is no way on: a few short steps back, aside or round, to where the command leads on.
+
+Hard by an obstacle a stride or a turn may have no room though there is plenty of it a step farther off. So places that
+short steps lead to are looked at, the cheapest first as in Dijkstra's search, each reached by steps that are free with
+a stop after each, until the commanded path from one, or an evasion, leads beyond where the avatar stands. How many are
+looked at is bounded; who finds nothing stands.
+"""
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import count
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.paths import RootPaths
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.query import Asked
+
+Floats = NDArray[np.float64]
+
+_ASTRAY = 0.02  # metres, radians, and these by second: who is farther from a way out does not follow it
+
+
+@dataclass(frozen=True)
+class WayOutSettings:
+    """Which steps are tried, and how many. Metres, radians, seconds."""
+
+    # Velocities forward and to the left, and heading rates, of the steps.
+    steps: tuple[tuple[float, float, float], ...] = (
+        *((-0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, -0.4, 0.0), (0.4, 0.0, 0.0)),
+        *((-0.3, 0.3, 0.0), (-0.3, -0.3, 0.0), (0.3, 0.3, 0.0), (0.3, -0.3, 0.0)),
+        *((-0.15, 0.0, 0.0), (0.0, 0.15, 0.0), (0.0, -0.15, 0.0), (0.15, 0.0, 0.0)),
+        *((-0.05, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, -0.05, 0.0)),
+        *((0.0, 0.0, 0.9), (0.0, 0.0, -0.9)),
+    )
+    moving: int = 4  # key intervals until a step is braked
+    length: int = 5  # key intervals until it has come to a stand
+    roomy: float = 0.12  # clearance of the legs beyond which a place is as good as any
+    crowded: float = 6.0  # seconds that each metre less counts for
+    gain: float = 0.15  # metres by which the path from a place must lead beyond where the avatar stands
+    most: int = 18  # places that are looked at
+    grids: int = 5  # of them, those from which an evasion is sought
+    same: tuple[float, float] = (0.02, 0.2)  # metres and radians within which places are one
+
+
+class WayOut(NamedTuple):
+    """A way out that is being followed."""
+
+    line: TravelLine  # that the command leads along
+    path: RootPath  # the steps, and the way on from there
+    length: int  # key intervals of the steps
+    ahead: float  # metres along the line, where there was no way on
+    tries: int  # ways out that have been taken from about there
+
+    def left(self, asked: Asked) -> Floats | None:
+        """The states (n+1, 7) that are left for who is on its steps; None for everybody else."""
+        moments = self.path.start_time + self.path.interval * np.arange(0.0, self.length, 0.25)
+        apart = np.abs(self.path.sample(moments) - asked.start.as_array())[:, :6].max(axis=1)
+        nearest = int(apart.argmin())
+        if apart[nearest] > _ASTRAY:
+            return None
+        states = self.path.sample(moments[nearest] + asked.interval * np.arange(asked.horizon + 1.0))
+        states[:, 6] += asked.start.phase - states[0, 6]
+        states[0] = asked.start.as_array()
+        return states
+
+
+class _Place(NamedTuple):
+    """Where some steps end, the best first."""
+
+    cost: float  # seconds
+    number: int
+    states: Floats  # (m+1, 7) of the steps
+
+    @property
+    def end(self) -> RootState:
+        """The state that they end in."""
+        return _state(self.states[-1])
+
+
+class WayOutFinder:
+    """Finds ways out for one humanoid in one scene; remembers nothing."""
+
+    def __init__(self, settings: WayOutSettings, paths: RootPaths) -> None:
+        self.settings, self._paths = settings, paths
+
+    def ways(self, asked: Asked, line: TravelLine) -> Iterator[tuple[RootPlan, RootPath, int]]:
+        """Ways out from where `asked` stands, to where its command leads on along `line`; the cheapest first.
+
+        With each the whole path over the steps and on, and how many key intervals the steps take.
+        """
+        beyond = line.coordinates(asked.start.x, asked.start.z)[0] + self.settings.gain
+        for number, place in enumerate(self._places(asked)):
+            at = asked._replace(start=place.end)
+            for plan in self._onward(at, line, evading=number < self.settings.grids):
+                x, z = plan.path.states[-1, :2].tolist()
+                if plan.kind is not RootPlanKind.STOPPED and line.coordinates(x, z)[0] > beyond:
+                    yield _joined(asked, place, plan)
+                    break
+
+    def _places(self, asked: Asked) -> Iterator[_Place]:
+        """Places that free steps lead to, the cheapest first; those beyond one are looked for when it was given."""
+        s, here = self.settings, _Place(0.0, 0, asked.start.as_array()[None])
+        numbers, seen, waiting = count(1), {self._name(here.states[-1])}, [here]
+        for _ in range(s.most):
+            if not waiting:
+                return
+            place = heapq.heappop(waiting)
+            if place is not here:
+                step = place.states[-s.length - 1 :]
+                if not self._paths.is_free(asked._replace(start=_state(step[0]), horizon=s.length), step):
+                    continue
+                yield place
+            for reached in self._beside(asked, place, numbers):
+                name = self._name(reached.states[-1])
+                if name not in seen:
+                    seen.add(name)
+                    heapq.heappush(waiting, reached)
+
+    def _beside(self, asked: Asked, place: _Place, numbers: Iterator[int]) -> Iterator[_Place]:
+        """The places that one step leads to from another, free or not."""
+        s, at = self.settings, asked._replace(start=place.end, horizon=self.settings.length)
+        steps = self._paths.short_steps(at, np.array(s.steps), s.moving)
+        rooms = self._paths.rooms(at, steps[:, -1])
+        walked = asked.interval * (len(place.states) - 1 + s.length)
+        for number, step, room in zip(numbers, steps, rooms.tolist(), strict=False):
+            cost = walked + s.crowded * max(s.roomy - room, 0.0)
+            yield _Place(cost, number, np.vstack([place.states, step[1:]]))
+
+    def _name(self, state: Floats) -> tuple[int, ...]:
+        near, turned = self.settings.same
+        return tuple(np.round(state[:3] / (near, near, turned)).astype(int).tolist())
+
+    def _onward(self, at: Asked, line: TravelLine, *, evading: bool) -> Iterator[RootPlan]:
+        """The commanded path from a place, and evasions from it."""
+        yield self._paths.travelled(at, line, 1.0)
+        if evading:
+            yield from (plan for plan, _ in self._paths.evaded(at, line, self._paths.evasions[0], None))
+
+
+def _joined(asked: Asked, place: _Place, onward: RootPlan) -> tuple[RootPlan, RootPath, int]:
+    """A plan over the steps to a place and then on, with the whole path and the length of the steps."""
+    path = RootPath(asked.start_time, asked.interval, np.vstack([place.states, onward.path.states[1:]]))
+    lost = asked.horizon * asked.interval
+    plan = onward._replace(path=path.until(asked.horizon), kind=RootPlanKind.EVASION, lost=lost)
+    return plan, path, len(place.states) - 1
+
+
+def _state(row: Floats) -> RootState:
+    return RootState(*row.tolist())
