@@ -1,12 +1,12 @@
 """Playing a motion in advance: how clear of everything it stays."""
 
-from itertools import combinations
+from itertools import chain, combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, columns_of
+from elbowroom.body.dof import LOCAL_GROUPS, columns_of, followers_of
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.root.path import RootPath
@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 _SPACING = 1 / 60  # seconds between rehearsed poses
 _CLOSER = 0.002  # metres: the hips' bob brings a kept pose closer for a moment
 _MOVES = 0.02  # radians: less is no motion
+_FOLLOWERS = frozenset(chain.from_iterable(map(followers_of, LOCAL_GROUPS)))
 _HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 
 
@@ -67,14 +68,17 @@ def standing_path(path: RootPath, root: Floats) -> RootPath:
 
 
 def partial_motions(motion: Floats, upper: Floats) -> list[Floats]:
-    """The motion (n+1, LOCAL), and with some groups kept as in `upper`: one limb frees itself before another."""
-    columns = {group: columns_of(group) for group in LOCAL_GROUPS}
+    """The motion (n+1, LOCAL), and with some groups kept as in `upper`: one limb frees itself before another.
+
+    What follows a group is kept with it: a head that moves alone frees nothing.
+    """
+    limbs = [(group, *followers_of(group)) for group in LOCAL_GROUPS if group not in _FOLLOWERS]
     found = []
-    for count in range(len(LOCAL_GROUPS)):
-        for kept in combinations(LOCAL_GROUPS, count):
+    for count in range(len(limbs)):
+        for kept in combinations(limbs, count):
             part = motion.copy()
-            for group in kept:
-                part[:, columns[group]] = upper[columns[group]]
+            for group in chain.from_iterable(kept):
+                part[:, columns_of(group)] = upper[columns_of(group)]
             if np.abs(part - upper).max() > _MOVES:
                 found.append(part)
     return found
