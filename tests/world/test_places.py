@@ -252,3 +252,10 @@ def test_the_house_has_two_floors_and_its_doors_open() -> None:
     assert sorted(found.ground.regions()[1])[-1] > 200.0
     closed = survey(read_place(file))
     assert len([size for size in closed.ground.regions()[1] if size > 2.0]) > 3
+
+
+def test_of_boards_on_boards_the_topmost_is_the_ground() -> None:
+    boards = {"Lower": ((0, 0.005, 0), (9.0, 0.01, 9.0)), "Upper": ((0, 0.025, 0), (9.0, 0.01, 9.0))}
+    found = survey(place(boards, PlaceOptions()))
+    assert [round(floor.height, 2) for floor in found.floors] == [0.03]
+    assert found.ground.height == pytest.approx(0.03, abs=0.006)

@@ -78,7 +78,7 @@ def ground_floor(floors: tuple[Floor, ...]) -> Floor | None:
 
 def _levels(columns: Columns) -> Iterator[float]:
     """Heights at which there is room to stand, the most spacious first."""
-    stood = standing_surfaces(columns)
+    stood = standing_surfaces(columns) & _uncovered(columns)
     cells, steps = columns.cells[stood], np.round(columns.low[stood] / 0.01).astype(np.int64)
     if not len(steps):
         return
@@ -97,6 +97,12 @@ def _levels(columns: Columns) -> Iterator[float]:
             return
         yield 0.01 * (first + window.start + int(np.argmax(np.where(left, counts, 0.0)[window])))
         left[max(best - apart, 0) : best + apart + 1] = False
+
+
+def _uncovered(columns: Columns) -> Flags:
+    """The surfaces (S,) that no other level one lies on, a little higher: of boards on boards the topmost is stood on."""
+    close = (columns.cells[1:] == columns.cells[:-1]) & (columns.low[1:] - columns.low[:-1] <= _SAME)
+    return np.append(~(close & columns.level[1:]), True)[: len(columns.cells)]
 
 
 def standing_surfaces(columns: Columns, headroom: float = HEADROOM) -> Flags:
