@@ -87,6 +87,7 @@ pictures: $(VENV)/developer
 	@$(BIN)/python tools/make_pictures.py
 	@$(BIN)/python tools/make_planner_pictures.py
 	@$(BIN)/elbowroom bench plan --plots docs/images
+	@$(BIN)/elbowroom tour d --targets 8 --seed 2 --no-judge --quiet --plan docs/images/tour.png
 	@if test -n "$(AVATARS)"; then $(BIN)/elbowroom inspect --quiet --pose-sheet docs/images/pose-sheet.png $(AVATARS); \
 	else echo "pose-sheet.png stays as it is: name its avatars, make pictures AVATARS='a.vrm b.glb'"; fi
 

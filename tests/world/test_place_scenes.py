@@ -73,6 +73,11 @@ def test_a_document_needs_no_file_and_is_the_same_scene(rooms: Path) -> None:
     again = Scene.from_dict(json.loads(text))
     assert json.dumps(again.to_dict()) == text
     assert again.obstacles.names == scene.obstacles.names
+    ours_floor, their_floor = (each.place.floor for each in (scene, again) if each.place is not None)
+    assert ours_floor is not None
+    assert their_floor is not None
+    assert np.array_equal(ours_floor.there, their_floor.there)
+    assert ours_floor.there.any()
     for ours, theirs in zip(scene.obstacles.shapes, again.obstacles.shapes, strict=True):
         assert isinstance(ours, Mesh)
         assert isinstance(theirs, Mesh)
@@ -137,6 +142,11 @@ def test_another_file_than_was_meant_is_refused(rooms: Path) -> None:
         Scene.load(rooms.parent / "scene.json")
 
 
+def _carried(**fields: Any) -> dict[str, Any]:
+    """A place that carries no part."""
+    return {"parts": [], "data": "eJwDAAAAAAE=", **fields}
+
+
 @pytest.mark.parametrize(
     "place",
     [
@@ -152,6 +162,11 @@ def test_another_file_than_was_meant_is_refused(rooms: Path) -> None:
         {"data": "AAAA", "parts": [["a", 3, 1]]},
         {"data": "AAAA", "parts": [["a", 6000000, 2000000, 0, 0, 0]] * 100},
         {"ground": 1e9},
+        _carried(floor={"origin": [0, 0], "cell": 0.05, "shape": [2, 2], "data": "!"}),
+        _carried(floor={"origin": [0, 0], "cell": 0.05, "shape": [200, 2], "data": "eJxjAAAAAQAB"}),
+        _carried(floor={"origin": [0, 0], "cell": 0.05, "shape": [1000000, 1000000], "data": "eJxjAAAAAQAB"}),
+        _carried(floor={"origin": [0], "cell": 0.05, "shape": [2, 2], "data": "eJxjAAAAAQAB"}),
+        _carried(floor={"cell": 0.05}),
     ],
 )
 def test_wrong_places_are_told_in_one_line(rooms: Path, place: dict[str, Any]) -> None:

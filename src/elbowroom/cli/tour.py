@@ -1,7 +1,7 @@
 """`elbowroom tour`: to many places of a scene, one after the other, and what was shown judged."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,8 +15,9 @@ from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
+    from elbowroom.control.controller import Controller
     from elbowroom.experiment.judge.verdict import Verdict
-    from elbowroom.experiment.tour.tour import Milliseconds, TourResult
+    from elbowroom.experiment.tour.tour import Milliseconds, Shown, TourResult
 
 EXAMPLES = "Examples:  elbowroom tour d  |  elbowroom tour house.glb --drop 'IfcDoor_*' --targets 20 --seed 3 --json"
 FELL_SHORT = 1
@@ -35,6 +36,7 @@ def tour(
     height: Height = None,
     include_hair: IncludeHair = False,
     record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    plan: Annotated[Path | None, typer.Option(help="Draw the tour from above into this PNG.")] = None,
     judge: Annotated[bool, typer.Option(help="Let coal judge what was shown, as `elbowroom verify` does.")] = True,
     mesh: Annotated[bool, typer.Option(help="Judge the avatar's own surface too, not only its capsules.")] = True,
     scale: Scale = None,
@@ -63,37 +65,53 @@ def tour(
         humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, CrossingSettings(planner, queue, seed), motions)
         warm_up(controller)
-    result, verdict = _walk_and_judge(controller, targets, record, (judge, mesh), quiet)
+    shown, result = _walked(controller, targets, record, quiet)
+    verdict = _judged(shown, controller, result.seconds, mesh=mesh, quiet=quiet) if judge else None
+    if plan is not None:
+        _draw(plan, controller, shown, result)
     _report(result, verdict, json)
     touched = verdict is not None and not verdict.clean
     raise typer.Exit(FELL_SHORT if touched or result.arrived < result.targets else 0)
 
 
-def _walk_and_judge(
-    controller: Any, count: int, record: Path | None, judging: tuple[bool, bool], quiet: bool
-) -> "tuple[TourResult, Verdict | None]":
+def _walked(controller: "Controller", count: int, record: Path | None, quiet: bool) -> "tuple[Shown, TourResult]":
     from contextlib import nullcontext
 
     from elbowroom.control.recording import Recorder
     from elbowroom.experiment.tour.targets import random_targets
-    from elbowroom.experiment.tour.tour import Shown, judged, run_tour
+    from elbowroom.experiment.tour.tour import Shown, run_tour
     from elbowroom.planning.command import Command
 
-    start, seed = (controller.root.x, controller.root.z), controller.settings.seed
-    places = random_targets(controller.navigator, start, count, seed)
+    start = controller.root.x, controller.root.z
+    places = random_targets(controller.navigator, start, count, controller.settings.seed)
     with (
         progress_bar(f"Touring {controller.scene.title}", float(count), quiet) as bar,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
     ):
         shown = Shown(controller.step(Command(), 0.0), None if recorder is None else recorder.append)
-        result = run_tour(
+        return shown, run_tour(
             controller, places, shown.append, lambda number, leg: bar.move(number + 1.0, f"{leg.outcome}")
         )
-    if not judging[0]:
-        return result, None
-    with progress_bar("Judging", max(result.seconds, 1.0), quiet) as bar:
-        verdict = judged(shown, controller, mesh=judging[1], progress=lambda time: bar.move(time, f"{time:.0f} s"))
-    return result, verdict
+
+
+def _judged(shown: "Shown", controller: "Controller", seconds: float, *, mesh: bool, quiet: bool) -> "Verdict":
+    from elbowroom.experiment.tour.tour import judged
+
+    with progress_bar("Judging", max(seconds, 1.0), quiet) as bar:
+        return judged(shown, controller, mesh=mesh, progress=lambda time: bar.move(time, f"{time:.0f} s"))
+
+
+def _draw(path: Path, controller: "Controller", shown: "Shown", result: "TourResult") -> None:
+    from PIL import Image
+
+    from elbowroom.experiment.tour.picture import tour_picture
+
+    navigator = controller.navigator
+    picture = tour_picture(navigator.room(), navigator.prices.slim, shown.motion().roots, result)
+    try:
+        Image.fromarray(picture).save(path, "PNG", optimize=True)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be written ({error})") from None
 
 
 def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None:

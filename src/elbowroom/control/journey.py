@@ -9,7 +9,8 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place, Way, said
 
-_FAR = 3.0  # metres along the way that are looked ahead
+_FAR = 6.0  # metres along the way that are looked ahead
+_CORNER = 0.5  # metres before a place that one walks to at which the next one is looked for
 _STRAYED = math.radians(4.0)  # by which the aim moves aside before another direction is asked for
 _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who gets no nearer
 _SLOWS, _SLOWEST = 0.8, 0.25  # metres before the goal from which on one goes slower; share of the pace
@@ -40,6 +41,7 @@ class Journey:
         self.way = way
         self._navigator, self._pace = navigator, pace
         self._closed: list[tuple[Place, float]] = []
+        self._aim: Place | None = None
         self._direction: float | None = None
         self._nearest, self._waited, self._back = math.inf, 0.0, 0.0
         self._tries, self._blocked_at = 0, way.goal
@@ -75,10 +77,7 @@ class Journey:
         return self._onward(here, away)
 
     def _onward(self, here: Place, away: float) -> Command:
-        aim = self.way.aim(here, _FAR)
-        if aim is None:
-            self._search(here)
-            aim = self.way.aim(here, _FAR) if self.walking else None
+        aim = self._next_aim(here)
         if aim is None:
             return Command()
         wanted = math.atan2(aim[0] - here[0], aim[1] - here[1])
@@ -86,6 +85,16 @@ class Journey:
             self._direction = wanted
         share = min(max(away / _SLOWS, _SLOWEST), 1.0) if aim == self.goal else 1.0
         return replace(self._pace, forward=share * self._pace.forward, direction=self._direction)
+
+    def _next_aim(self, here: Place) -> Place | None:
+        """Where to walk straight to: the same place until one is near it, or it has gone out of sight."""
+        if self._aim is not None and math.dist(here, self._aim) > _CORNER and self.way.sees(here, self._aim):
+            return self._aim
+        self._aim = self.way.aim(here, _FAR)
+        if self._aim is None:
+            self._search(here)
+            self._aim = self.way.aim(here, _FAR) if self.walking else None
+        return self._aim
 
     def _watch(self, here: Place, away: float, dt: float, stuck: bool) -> None:
         """Notice progress, or that there is none for long."""
@@ -106,6 +115,7 @@ class Journey:
     def _get_past(self, here: Place) -> None:
         """Step back and try again, or, the next time, go round what blocks the way."""
         self._waited, self._tries, self._direction = 0.0, self._tries + 1, None
+        self._aim = None
         self._blocked_at = here
         if self._tries > _TRIES:
             self._give_up(f"the way is blocked at {said(here)}")

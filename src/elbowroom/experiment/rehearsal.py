@@ -121,7 +121,9 @@ def rehearse_place() -> None:
 
 def rehearse_way(humanoid: Humanoid) -> None:
     """Look for the way to a place."""
-    Navigator(humanoid, _scene_with(*_LOW)).find((0.0, 0.0), (1.0, 2.0)).aim((0.0, 0.0), 1.0)
+    way = Navigator(humanoid, _scene_with(*_LOW)).find((0.0, 0.0), (1.0, 2.0))
+    way.aim((0.0, 0.0), 1.0)
+    way.sees((0.0, 0.0), (1.0, 2.0))
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:

@@ -11,6 +11,7 @@ from elbowroom.errors import InputError
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, NAME
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.places.floor_area import FloorArea
 from elbowroom.world.places.options import AXES, PlaceOptions
 from elbowroom.world.places.scene_place import MOST_PARTS, ScenePlace, packed_parts, unpacked_parts
 from elbowroom.world.scene import Gate, Scene
@@ -18,18 +19,21 @@ from elbowroom.world.scene import Gate, Scene
 _LONGEST_FILE, _LONGEST_DATA = 500, 256 * 2**20  # characters
 _MOST_PATTERNS, _LONGEST_PATTERN = 100, 200
 _MOST_VERTICES, _MOST_FACES = 6_000_000, 2_000_000
+_MOST_ALONG = 1_000_000  # squares of a floor
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 _TOLD = ("scale", "up", "ground", "drop", "passable")
 
 
 def read_place_field(place: Place, folder: Path | None) -> Scene:
     """The scene of the place that a document names or carries; raises `InputError`."""
-    fields = place.fields(("file",), ("sha256", *_TOLD, "parts", "data"))
+    fields = place.fields(("file",), ("sha256", *_TOLD, "parts", "data", "floor"))
     file = fields["file"].text(_LONGEST_FILE, least=1)
     options = _read_options(fields)
     digest = fields["sha256"].text(64) if "sha256" in fields else ""
     if digest and not _SHA256.fullmatch(digest):
         fields["sha256"].fail("must be a SHA-256 in 64 hexadecimal digits")
+    if "floor" in fields and "data" not in fields:
+        fields["floor"].fail("needs the field 'data' beside it")
     if "data" in fields:
         return _carried(fields, ScenePlace(file, digest, options, 0))
     from elbowroom.world.places.place_scene import load_place_scene
@@ -43,7 +47,8 @@ def read_place_field(place: Place, folder: Path | None) -> Scene:
 def write_place(place: ScenePlace, obstacles: Obstacles) -> dict[str, Any]:
     """The field of a document that needs no file."""
     digest = {"sha256": place.sha256} if place.sha256 else {}
-    return {"file": place.file, **digest, **place.options.to_dict(), **packed_parts(obstacles, place.parts)}
+    floor = {"floor": place.floor.packed()} if place.floor else {}
+    return {"file": place.file, **digest, **place.options.to_dict(), **packed_parts(obstacles, place.parts), **floor}
 
 
 def _carried(fields: dict[str, Place], place: ScenePlace) -> Scene:
@@ -60,9 +65,18 @@ def _carried(fields: dict[str, Place], place: ScenePlace) -> Scene:
         rows.append((name.text(NAME, least=1), count, corners, middle))
     data = fields["data"]
     obstacles = unpacked_parts(rows, data.text(_LONGEST_DATA), f"{data.source}: {data.path.removesuffix('.data')}")
-    carried = ScenePlace(place.file, place.sha256, place.options, len(obstacles))
+    floor = _read_floor(fields["floor"]) if "floor" in fields else None
+    carried = ScenePlace(place.file, place.sha256, place.options, len(obstacles), floor=floor)
     whole = RootState(), Gate((0.0, 1.0))
     return Scene("", "", "", (0.0, 0.0), (1.0, 1.0), *whole, obstacles, carried)
+
+
+def _read_floor(place: Place) -> FloorArea:
+    fields = place.fields(("origin", "cell", "shape", "data"))
+    x, z = fields["origin"].vector(2, -2 * FARTHEST, 2 * FARTHEST)
+    wide, deep = (int(size) for size in fields["shape"].vector(2, 1, _MOST_ALONG))
+    cell, data = fields["cell"].number(0.0, FARTHEST, above=True), fields["data"].text(_LONGEST_DATA)
+    return FloorArea.unpacked((x, z), cell, (wide, deep), data, f"{place.source}: {place.path}")
 
 
 def _read_options(fields: dict[str, Place]) -> PlaceOptions:

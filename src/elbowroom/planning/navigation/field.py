@@ -123,13 +123,16 @@ def aim_from(
         after = onward[node]
         walked += cell * np.hypot(after // columns - node // columns, after % columns - node % columns)
         node = after
-        if _straight(room, above, cell, prices, (i, j), (node // columns, node % columns)) <= first - cost[node] + cell:
+        if (
+            straight_cost(room, above, cell, prices, (i, j), (node // columns, node % columns))
+            <= first - cost[node] + cell
+        ):
             aim = node
     return int(aim)
 
 
 @exact_kernel
-def _straight(
+def straight_cost(
     room: Floats32, above: Floats32, cell: float, prices: Prices, start: tuple[float, float], end: tuple[int, int]
 ) -> float:
     """What the straight way between two places in the grid costs."""

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.planning.navigation.field import Field, Prices, aim_from, field_to
+from elbowroom.planning.navigation.field import Field, Prices, aim_from, field_to, straight_cost
 from elbowroom.planning.navigation.room_map import RoomMap
 
 Floats = NDArray[np.float64]
 Place = tuple[float, float]  # x, z, metres
 
 _BESIDE = 0.6  # metres: who stands where a map has no room looks so far for the way
+_DEARER = 0.3  # metres by which the straight line may be dearer than the way that was found
 _NOBODY = -1  # a start that no point is: costs to all points
 _BEYOND = 4.0  # metres off the way to which costs are known
 
@@ -57,6 +58,15 @@ class Way:
         at = aim_from(self.field, self.room.room, self.room.above, self.room.cell, self.prices, row, column, far)
         found = divmod(at, self.room.room.shape[1])
         return self.goal if self.field.onward[found] < 0 else self._place(*found)
+
+    def sees(self, place: Place, aim: Place) -> bool:
+        """Whether the straight line from a place to another is still about as good as the way."""
+        row, column = self._in_grid(place)
+        end = self.room.points(np.array(aim)).tolist()
+        cost = straight_cost(
+            self.room.room, self.room.above, self.room.cell, self.prices, (row, column), (end[0], end[1])
+        )
+        return cost + self.left(aim) <= self.left(place) + _DEARER
 
     def corners(self, start: Place, far: float = 3.0) -> Floats:
         """The places (m, 2), x and z, at which the way from a start turns, both ends included."""

@@ -1,16 +1,22 @@
 """Where the ground of a place is floor: beyond its edges nobody is led, although nothing stands there."""
 
+import base64
+import binascii
+import zlib
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from elbowroom.errors import InputError
 from elbowroom.world.places.floors import Floor
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+_MOST_SQUARES = 4_000_000
 _STRIDE = 0.2  # metres: gaps that are no wider are stepped over, as at thresholds
 
 
@@ -30,6 +36,29 @@ class FloorArea:
         disc = np.hypot(*np.mgrid[-reach : reach + 1, -reach : reach + 1]) <= reach
         closed = ndimage.binary_closing(np.pad(floor.there, around), disc)[around:-around, around:-around]
         return cls(floor.columns.origin, cell, closed)
+
+    def packed(self) -> dict[str, Any]:
+        """The area as a document has it."""
+        data = base64.b64encode(zlib.compress(np.packbits(self.there).tobytes(), 6)).decode()
+        return {"origin": list(self.origin), "cell": self.cell, "shape": list(self.there.shape), "data": data}
+
+    @classmethod
+    def unpacked(
+        cls, origin: tuple[float, float], cell: float, shape: tuple[int, int], data: str, place: str
+    ) -> "FloorArea":
+        """What `packed` wrote; raises `InputError`."""
+        count = shape[0] * shape[1]
+        if count > _MOST_SQUARES:
+            raise InputError(f"{place}.shape: has {count} squares; at most {_MOST_SQUARES} are allowed")
+        size = (count + 7) // 8
+        try:
+            raw = zlib.decompressobj().decompress(base64.b64decode(data, validate=True), size + 1)
+        except (binascii.Error, ValueError, zlib.error):
+            raise InputError(f"{place}.data: is damaged: it must be as it was written") from None
+        if len(raw) != size:
+            raise InputError(f"{place}.data: holds {len(raw)} bytes; {count} squares need {size}")
+        there = np.unpackbits(np.frombuffer(raw, np.uint8), count=count).astype(bool)
+        return cls(origin, cell, there.reshape(shape))
 
     def holds(self, x: Floats, z: Floats) -> Flags:
         """Whether there is floor at places; any shape."""

@@ -100,7 +100,7 @@ def _levels(columns: Columns) -> Iterator[float]:
 
 
 def _uncovered(columns: Columns) -> Flags:
-    """The surfaces (S,) that no other level one lies on, a little higher: of boards on boards the topmost is stood on."""
+    """The surfaces (S,) that no other level one lies on: of boards on boards the topmost is stood on."""
     close = (columns.cells[1:] == columns.cells[:-1]) & (columns.low[1:] - columns.low[:-1] <= _SAME)
     return np.append(~(close & columns.level[1:]), True)[: len(columns.cells)]
 
