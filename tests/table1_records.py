@@ -44,6 +44,7 @@ def made_up_trial(
         "plan_success_rate": found,
         "plan_failed_rate": 1.0 - found,
         "collision_checks": int(rng.integers(1000, 90000)),
+        "local_checks": int(rng.integers(500, 1000)),
         "realtime": bool(rng.random() < 0.9),
         "late_frames": int(rng.integers(0, 2)),
         "frames": 40,

@@ -100,9 +100,9 @@ def test_a_picture_shows_every_obstacle_and_every_capsule(crossing: DrawnCrossin
     for svg in (above, beside):
         assert svg.count('class="obstacle"') == 2
         assert "post &lt;thin&gt;" in svg
-        for group in ("root", "waist", "leftArm", "rightArm"):
+        for group in ("root", "waist", "head", "leftArm", "rightArm"):
             assert f'class="{group}"' in svg
-        capsules = sum(svg.count(f'class="{group}"') for group in ("root", "waist", "leftArm", "rightArm"))
+        capsules = sum(svg.count(f'class="{group}"') for group in ("root", "waist", "head", "leftArm", "rightArm"))
         assert capsules == crossing.postures.shape[0] * crossing.postures.shape[1]
 
 

@@ -61,6 +61,8 @@ def test_a_cell_is_what_its_trials_say() -> None:
         checks, plans = (sum(trial[name] for trial in chosen) for name in ("collision_checks", "plans_total"))
         assert averages.checks_per_plan is not None
         assert averages.checks_per_plan.value == pytest.approx(checks / plans)
+        assert averages.local_checks_per_plan is not None
+        assert averages.local_checks_per_plan.value == pytest.approx(sum(t["local_checks"] for t in chosen) / plans)
         assert averages.time_s is not None
         times = [trial["passed_time_s"] or LIMIT for trial in chosen]
         assert averages.time_s.value == pytest.approx(np.mean(times))

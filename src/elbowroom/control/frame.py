@@ -39,6 +39,11 @@ class PlanReport:
         """Whether the path got its upper-body motion."""
         return self.local.status is PlanStatus.FOUND
 
+    @property
+    def checks(self) -> int:
+        """The collision checks of both searches."""
+        return self.root.checks + self.local.checks
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:

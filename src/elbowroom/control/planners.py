@@ -6,6 +6,7 @@ from threading import Lock
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.motion import MotionPlanner
+from elbowroom.planning.paper.local_planner import LocalPlanner
 from elbowroom.planning.planner import Planner, make_planner
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
@@ -22,7 +23,8 @@ class Planners:
     def root(self) -> RootPlanner:
         """Plans root paths."""
         _, humanoid, scene, _ = self._made_of
-        return RootPlanner(humanoid, scene)
+        above = self.upper.trunk if isinstance(self.upper, LocalPlanner) else None
+        return RootPlanner(humanoid, scene, above=above)
 
     @cached_property
     def upper(self) -> Planner:

@@ -62,7 +62,8 @@ class CrossingResult:
     plans_total: int  # local planning calls
     plan_success_rate: float
     plan_failed_rate: float
-    collision_checks: int
+    collision_checks: int  # all: for root paths, for local planning, and of each frame before it was shown
+    local_checks: int  # those of local planning
     realtime: bool  # no second showed only one frame, by the time that frames really took
     late_frames: int  # shown later than 1/60 s after they were due, by the same measure
     frames: int
@@ -162,7 +163,7 @@ class _Ledger:
         self._costs: list[float] = []  # seconds of computing, one for each frame
         self._plan_costs: list[float] = []
         self._found: list[bool] = []
-        self._checks = 0
+        self._checks = self._local_checks = 0
         self._stuck_times = 0
         self._stuck = False
         self._clearance = np.inf
@@ -171,6 +172,7 @@ class _Ledger:
     def enter(self, frame: Frame, cost: float, plan_cost: float) -> None:
         """Add a frame that took `cost` seconds to compute, and its plan, if it is new, `plan_cost`."""
         self._costs.append(cost)
+        self._checks += 1
         self._clearance = min(self._clearance, frame.clearance)
         if frame.stuck and not self._stuck:
             self._stuck_times += 1
@@ -179,7 +181,8 @@ class _Ledger:
             self._found.append(frame.plan.found)
             self._replans.enter(frame.plan)
             self._plan_costs.append(plan_cost)
-            self._checks += frame.plan.local.checks
+            self._checks += frame.plan.checks
+            self._local_checks += frame.plan.local.checks
 
     def times(self) -> CrossingTimes:
         """The cost of every frame."""
@@ -202,6 +205,7 @@ class _Ledger:
             plan_success_rate=round(success, 4),
             plan_failed_rate=round(1.0 - success, 4) if self._found else 0.0,
             collision_checks=self._checks,
+            local_checks=self._local_checks,
             realtime=is_realtime(costs, DT),
             late_frames=late_frames(costs, DT),
             frames=len(self._costs),

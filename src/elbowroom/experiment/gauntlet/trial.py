@@ -96,13 +96,14 @@ class _Ledger:
     def enter(self, frame: Frame, cost: float) -> None:
         """Add a frame that took `cost` seconds to compute."""
         self._frames += 1
+        self._checks += 1
         self._touching += frame.clearance < 0.0
         self._clearance = min(self._clearance, frame.clearance)
         self._stuck_times += frame.stuck and not self._stuck
         self._stuck = frame.stuck
         if frame.plan is not None and frame.plan.number > self._plans:
             self._plans = frame.plan.number
-            self._checks += frame.plan.local.checks
+            self._checks += frame.plan.checks
             self._plan_ms.append(round(1e3 * cost, 3))
 
     def result(self, course: Course, crossed: bool, seconds: float) -> TrialResult:

@@ -64,7 +64,8 @@ _QUANTITIES = (
     ),
     _Quantity(
         "Collision checks for each local planning call",
-        "Logarithmic. All checks over all calls of the crossings that succeeded, with the 95 % bootstrap interval.",
+        "Logarithmic. All checks, of root paths, local planning and shown frames, over all calls of the crossings that "
+        "succeeded, with the 95 % bootstrap interval.",
         lambda cell: cell.passed.checks_per_plan,
         lambda paper: paper.checks_per_plan,
         ",.0f",

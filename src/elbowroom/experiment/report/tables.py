@@ -9,7 +9,7 @@ from elbowroom.experiment.table1.columns import our_texts, paper_texts
 from elbowroom.experiment.table1.table import Table1
 
 _BESIDE = ("crossed", "straight", "stuck", "time, s", "calls", "found", "checks a call", "real time")
-_ALL = ("trials", "crossed", "straight", "times stuck", "time, s", "calls", "checks a call")
+_ALL = ("trials", "crossed", "straight", "times stuck", "time, s", "calls", "checks a call", "of these local")
 
 
 def comparison_table(table: Table1) -> str:
@@ -42,6 +42,7 @@ def everything_table(table: Table1) -> str:
             _bounded(cell.all.time_s, ".1f"),
             _bounded(cell.all.plans_total, ".0f"),
             _bounded(cell.all.checks_per_plan, ".0f"),
+            _bounded(cell.all.local_checks_per_plan, ".0f"),
         )
         rows.append(_row(table, cell, [tag("td", text) for text in texts]))
     return _table(head, rows)

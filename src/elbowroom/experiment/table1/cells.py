@@ -32,7 +32,8 @@ class Averages:
     plans_total: Estimate | None
     plan_success_rate: Estimate | None  # mean of the trials' rates
     collision_checks: Estimate | None
-    checks_per_plan: Estimate | None  # all checks over all local planning calls
+    checks_per_plan: Estimate | None  # all checks over all local planning calls, and
+    local_checks_per_plan: Estimate | None  # those of local planning alone
 
     @property
     def plan_failed_rate(self) -> float | None:
@@ -158,12 +159,13 @@ def _averages(records: Sequence[Record], limit: float) -> Averages:
         plans_total=mean(lambda record: record["plans_total"]),
         plan_success_rate=mean(lambda record: record["plan_success_rate"], 1.0),
         collision_checks=mean(lambda record: record["collision_checks"]),
-        checks_per_plan=_checks_per_plan(records),
+        checks_per_plan=_per_plan(records, "collision_checks"),
+        local_checks_per_plan=_per_plan(records, "local_checks"),
     )
 
 
-def _checks_per_plan(records: Sequence[Record]) -> Estimate | None:
-    checks = [record["collision_checks"] for record in records]
+def _per_plan(records: Sequence[Record], name: str) -> Estimate | None:
+    checks = [record[name] for record in records]
     plans = [record["plans_total"] for record in records]
     if not sum(plans):
         return None

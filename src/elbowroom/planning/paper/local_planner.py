@@ -9,6 +9,7 @@ from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import ARMS, LOWERING, DofGroup, columns_of, followed, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.frames import compose
@@ -17,6 +18,7 @@ from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.paper import figure6
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 from elbowroom.planning.paper.roadmap import PosedGraph, Roadmap
+from elbowroom.planning.paper.trunk_places import TrunkPlaces
 from elbowroom.planning.result import GroupEvidence, LocalPlan, PlanStatus, SearchResult
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.layout import Nearby, Spans
@@ -83,6 +85,17 @@ class LocalPlanner:
     def use_scene(self, scene: Scene) -> None:
         """Plan among the obstacles of another scene, with the same graphs."""
         self._obstacles = scene.obstacles
+
+    @property
+    def trunk(self) -> TrunkPlaces:
+        """Where the trunk can pass in some posture of the waist's clips; the root goes round what it cannot."""
+        limb = trunk_limb(self._model)
+        graph = self.graph(DofGroup.WAIST)
+        shown = graph.vertices[: graph.initial_size]
+        upright_first = shown[np.argsort(np.linalg.norm(shown, axis=1), kind="stable")]
+        places, _ = pelvis_frames(self._model, np.zeros((1, ROOT_STATE)))
+        segments = pose(limb, upright_first) + np.tile(places[0], 2)[:, None].astype(np.float32)
+        return TrunkPlaces(self._obstacles, segments, limb.radii)
 
     def reset(self) -> None:
         """Forget the vertices that searches have added."""

@@ -1,7 +1,8 @@
 """The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
 
 import math
-from typing import NamedTuple
+from dataclasses import replace
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from elbowroom.planning.root.route import find_route, route_points, shortened_ro
 from elbowroom.world.walkable import WalkableMap, walkable_window
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _BEHIND = 0.64  # metres behind the start that a detour may use
 _MORE = 1e-3  # metres
@@ -30,27 +32,37 @@ class Route(NamedTuple):
     checks: int  # places whose clearance was computed
 
 
+class Above(Protocol):
+    """What is carried above legs and pelvis, for whoever does not leave all of it to the upper body's planner."""
+
+    def clearance(self, places: Floats, facing: float) -> Floats32:
+        """Metres that it can keep at places (N, 2) on the ground if the body faces so, (N,)."""
+
+
 class RouteFinder:
     """Finds routes for the standing figure of one body."""
 
-    def __init__(self, settings: RootPlannerSettings, body: LowerBody) -> None:
-        self._settings, self._body = settings, body
+    def __init__(self, settings: RootPlannerSettings, body: LowerBody, above: Above | None = None) -> None:
+        """Routes also lead round what is in the way of what is carried `above`, if anything is given."""
+        self._settings, self._body, self.above = settings, body, above
         self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
     def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Route:
         """The route from a start along a line of travel among `obstacles`, `sight` metres of it."""
         straight = straight_route(float(start.x), float(start.z), line, sight)
-        if route_is_open(straight, self.half, obstacles.ground):
+        if self.above is None and route_is_open(straight, self.half, obstacles.ground):
             return Route(straight, detour=False, ends=False, checks=0)
-        free, checks = self._free_length(straight, obstacles)
+        free, checks = self._free_length(straight, line, obstacles)
         if free >= sight:
             return Route(straight, detour=False, ends=False, checks=checks)
         return self._round(straight, free, line, obstacles, sight, checks)
 
-    def _free_length(self, route: Floats, obstacles: Neighbours) -> tuple[float, int]:
+    def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
         points, along = route_points(route, _SPACING)
         clear = self._body.standing_clearance(obstacles, points)
+        if self.above is not None:
+            clear = np.minimum(clear, self.above.clearance(points, line.facing))
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
         blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
         return float(along[blocked[0]]) if len(blocked) else math.inf, len(points)
@@ -85,7 +97,15 @@ class RouteFinder:
         shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
         roomy = max(margin for margin, _ in s.searches) + s.route.roomy
-        return walkable_window(obstacles.obstacles, self._body.stance, origin, line.heading, shape, cell, roomy)
+        window = walkable_window(obstacles.obstacles, self._body.stance, origin, line.heading, shape, cell, roomy)
+        if self.above is None:
+            return window
+        cells: Floats = np.indices(shape, np.float64).reshape(2, -1) * cell
+        rows: Floats = cells[0] + ahead - behind
+        columns: Floats = cells[1] - middle
+        places: Floats = np.stack(line.point(rows, columns), axis=1)
+        above = self.above.clearance(places, line.facing).reshape(shape)
+        return replace(window, clearance=np.minimum(window.clearance, above))
 
 
 def _cells(length: float, cell: float) -> float:

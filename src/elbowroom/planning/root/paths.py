@@ -14,7 +14,7 @@ from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.planning.root.ahead import RouteFinder
+from elbowroom.planning.root.ahead import Above, RouteFinder
 from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
 from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.leg_check import LegCheck
@@ -38,7 +38,9 @@ _NEAR = 1.0  # metres
 class RootPaths:
     """Makes root paths for one humanoid in one scene. Nothing that it keeps changes a path."""
 
-    def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings) -> None:
+    def __init__(
+        self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings, above: Above | None = None
+    ) -> None:
         self.settings = settings
         body, motion = LowerBody(humanoid, scene.obstacles), settings.motion
         strides = quickness(body.model.gait.scale)
@@ -46,7 +48,7 @@ class RootPaths:
             motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
         )
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
-        self._routes = RouteFinder(settings, body)
+        self._routes = RouteFinder(settings, body, above)
         self._walker = Walker(
             self.bounds, self._routes.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
         )
@@ -110,7 +112,7 @@ class RootPaths:
         """Along a line of travel."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
-        if not self._moving.tracks:
+        if not self._moving.tracks and self._routes.above is None:
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)

@@ -1,7 +1,7 @@
 """From a command to a short, collision-free root path for what cannot bend: the legs and the pelvis.
 
 Straight where that is free, round the obstacle where it is not, a stop before it where there is no route. The upper
-body is not checked: what only it would touch diverts nobody.
+body is not checked: what only it would touch diverts nobody, unless the planner is told to mind something of it.
 
 A path is accepted if the posed legs and the pelvis are free at dense samples of exactly the motion that playback will
 show, and if from each of its key frames a stop would be free too. So the next plan always has a way out: to brake.
@@ -14,6 +14,7 @@ from typing import NamedTuple
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.root.ahead import Above
 from elbowroom.planning.root.cost import SLOW
 from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.line import TravelLine, wanted_speed
@@ -54,9 +55,16 @@ class RootPlanner:
     that left the line. `reset` forgets it; a start that does not continue the last path does so too.
     """
 
-    def __init__(self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings | None = None) -> None:
+    def __init__(
+        self,
+        humanoid: Humanoid,
+        scene: Scene,
+        settings: RootPlannerSettings | None = None,
+        above: Above | None = None,
+    ) -> None:
+        """Routes lead round what is in the way of what is carried `above` legs and pelvis, if anything is given."""
         self.settings = settings or RootPlannerSettings()
-        self._paths = RootPaths(humanoid, scene, self.settings)
+        self._paths = RootPaths(humanoid, scene, self.settings, above)
         self._ways_out = WayOutFinder(WayOutSettings(), self._paths)
         self.reset()
 
