@@ -39,7 +39,7 @@ from elbowroom.errors import InputError
 
 WRONG_CALL = 2
 INTERRUPTED = 130
-_FULL = {errno.ENOSPC, errno.EDQUOT}
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 # The base of all "wrong call" errors, which typer takes from click or carries itself, depending on its version.
 _CallError: type[Any] = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")

@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import errno
 import secrets
 from collections import Counter
 from collections.abc import Awaitable, Callable, Iterator
@@ -15,6 +14,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
 from elbowroom.errors import InputError
+from elbowroom.server.apart.answers import NO_SPACE
 from elbowroom.server.apart.jobs import PLACE
 from elbowroom.server.apart.process import ApartError, FullDiskError, run_apart
 from elbowroom.server.clip_store import SentMotions
@@ -33,7 +33,6 @@ _AT_ONCE, _EACH = 8, 4  # files that are received at once, in all and from each 
 _PAUSE = 20.0  # seconds that a sender may be silent
 _GRACE = 20.0  # seconds after which a sender has to have sent what it should by then
 _SLOWEST = 64 * 1024  # bytes a second, on the whole
-_FULL = {errno.ENOSPC, errno.EDQUOT}
 
 
 @dataclass(frozen=True)
@@ -185,7 +184,7 @@ def _told_full() -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno in _FULL:
+        if error.errno in NO_SPACE:
             raise FullDiskError from None
         raise
 

@@ -1,16 +1,14 @@
 """`python -m elbowroom.server.apart BOUNDS JOB ARGUMENT...`: one job, its answer on standard output."""
 
-import errno
 import os
 import sys
 import traceback
 
 from elbowroom.errors import InputError
-from elbowroom.server.apart.answers import Outcome, packed
+from elbowroom.server.apart.answers import NO_SPACE, Outcome, packed
 from elbowroom.server.apart.bounds import Bounds, end_with_parent, keep_to
 from elbowroom.server.apart.jobs import JOBS
 
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _TOLD = 4000  # characters of a traceback
 
 
@@ -25,7 +23,7 @@ def main(bounds: str, job: str, *arguments: str) -> tuple[Outcome, bytes]:
     except MemoryError:
         return Outcome.MEMORY, b""
     except OSError as error:
-        if error.errno in _FULL:
+        if error.errno in NO_SPACE:
             return Outcome.DISK, b""
         return Outcome.FAILED, traceback.format_exc()[-_TOLD:].encode()
     except Exception:

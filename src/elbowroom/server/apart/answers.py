@@ -6,11 +6,13 @@ taken over by the file that it reads must not be able to have its server call an
 
 import dataclasses
 import enum
+import errno
 import io
 import pickle
 from enum import Enum
 from typing import Any
 
+NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})  # a full disk, a full share of one, a bound on files
 _ROOMS = ("geometry", "formats", "body", "clips", "world")
 _ARRAYS = {
     ("numpy", "dtype"),
