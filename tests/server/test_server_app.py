@@ -22,7 +22,7 @@ from elbowroom.body.stock import stock_avatar_path
 from elbowroom.control.settings import QUEUE_SIZES
 from elbowroom.errors import InputError
 from elbowroom.server import app as app_module
-from elbowroom.server import avatar_store, uploads
+from elbowroom.server import avatar_store, reception, uploads
 from elbowroom.server.app import make_app
 from elbowroom.server.codec import plain
 from elbowroom.server.guard import Guard, host_of, is_loopback
@@ -254,7 +254,7 @@ async def twice(chunk: bytes) -> AsyncIterator[bytes]:
 
 
 def test_a_file_that_is_too_large_is_refused(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(uploads, "MAX_UPLOAD", 1000)
+    monkeypatch.setattr(reception, "MAX_UPLOAD", 1000)
     assert page.post("/api/avatars", content=b"x" * 1001).status_code == 413
     assert page.post("/api/avatars", content=twice(b"x" * 600)).status_code == 413
 
@@ -345,11 +345,12 @@ async def dripping() -> AsyncIterator[bytes]:
 
 def test_a_body_that_drips_is_ended(library: Library) -> None:
     async def ask() -> httpx.Response:
-        desk = Starlette(routes=[Route("/up", uploads.UploadDesk(library, pace).take, methods=["POST"])])
+        taken = uploads.UploadDesk(library, reception.Reception(library, pace)).take
+        desk = Starlette(routes=[Route("/up", taken, methods=["POST"])])
         async with httpx.AsyncClient(transport=httpx.ASGITransport(desk), base_url=LOCAL) as client:
             return await client.post("/up", content=dripping())
 
-    pace = uploads.Pace(pause=5.0, grace=0.3, slowest=10_000.0)
+    pace = reception.Pace(pause=5.0, grace=0.3, slowest=10_000.0)
     before = set(library.avatars.folder.iterdir())
     assert asyncio.run(ask()).status_code == 408
     assert set(library.avatars.folder.iterdir()) == before

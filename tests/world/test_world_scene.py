@@ -173,6 +173,7 @@ def test_reader_and_published_schema_agree_on_every_mutant() -> None:
     [
         (("obstacles", 2, "size", 1), -0.1, ["$.obstacles[2].size[1] is -0.1", "above 0 and at most 1000"]),
         (("obstacles", 0, "yaw"), 45, ["$.obstacles[0].yaw is 45", "radians", "0.7854"]),
+        (("obstacles", 0, "color"), "red", ["$.obstacles[0].color", "must be a colour"]),
         (("obstacles", 0, "tpye"), "box", ["unknown field", "did you mean 'type'"]),
         (("obstacles", 1, "type"), "cone", ['$.obstacles[1].type is "cone"', "one of box, sphere, capsule"]),
         (("obstacles", 1, "type"), "sphere", ["$.obstacles[1]", "lacks the field 'radius'"]),

@@ -3,6 +3,7 @@
 import { AddressLine, isPrivate, withOwnAvatar } from "./address";
 import { uploadFile } from "./avatar/upload";
 import { nextView, viewNamed, type ViewName } from "./camera/views";
+import { BuildDoor } from "./builder/door";
 import { FrameStats } from "./frame_stats";
 import { GoingSomewhere } from "./going/going";
 import { POSE_FLAGS } from "./generated/messages";
@@ -48,6 +49,7 @@ export class App implements SessionListener, MenuListener {
   readonly controls: Controls;
   readonly stats = new FrameStats();
   readonly replay: ReplayDoor;
+  readonly build: BuildDoor;
   readonly steps: Steps;
   readonly somewhere: GoingSomewhere;
   pose: ShownPose | null = null;
@@ -87,6 +89,14 @@ export class App implements SessionListener, MenuListener {
       picture: this.picture, say: (level, said) => this.notices.show(level, said), closed: () => this.goOnLive(),
       dock: (pixels) => document.documentElement.style.setProperty("--dock", `${pixels}px`),
     });
+    this.build = new BuildDoor({
+      picture: this.picture, avatar: () => this.session.settings?.avatar ?? "", say: (level, said) => this.notices.show(level, said),
+      dock: (bottom, right) => this.leaveRoom(bottom, right), closed: () => this.goOnLive(),
+      walkIn: ({ name, title }) => {
+        this.menu.addScene(name, title);
+        this.configure({ scene: name });
+      },
+    });
     this.applyTheme();
     this.dark.addEventListener("change", () => this.applyTheme());
     this.menu = new Menu(this, this.preferences);
@@ -94,7 +104,7 @@ export class App implements SessionListener, MenuListener {
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
     this.somewhere = new GoingSomewhere(this.view, {
       picture: this.picture, send: (message) => this.session.send(message),
-      say: (level, said) => this.notices.show(level, said), walks: () => !this.replay.active,
+      say: (level, said) => this.notices.show(level, said), walks: () => !this.replay.active && !this.build.active,
     });
     keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
@@ -107,6 +117,7 @@ export class App implements SessionListener, MenuListener {
     this.subscribe();
     requestAnimationFrame(() => this.frame());
     if (query.has("replay")) void this.replayRun(null);
+    void this.build.showAddress(location.hash).then((shown) => shown && this.beginBuilding());
   }
 
   // What the server says.
@@ -131,7 +142,7 @@ export class App implements SessionListener, MenuListener {
     this.sceneMessage = scene;
     this.noteLive();
     this.somewhere.forget();
-    if (!this.replay.active) this.furnish(scene);
+    if (!this.replay.active && !this.build.active) this.furnish(scene);
     this.statusLine.restart();
     this.finishCard.hide();
     this.menu.addScene(scene.name, scene.title);
@@ -265,6 +276,10 @@ export class App implements SessionListener, MenuListener {
       void this.replayRun(file);
       return;
     }
+    if (/\.json$/i.test(file.name)) {
+      void file.text().then((scene) => this.build.showText(scene)).then(() => this.beginBuilding());
+      return;
+    }
     this.lastFile = file;
     this.veil.upload(file.name);
     uploadFile(file)
@@ -296,11 +311,11 @@ export class App implements SessionListener, MenuListener {
   }
 
   menuCovers(pixels: number): void {
-    this.picture.stage.setCoveredRight(pixels);
+    if (!this.build?.active) this.picture.stage.setCoveredRight(pixels);
   }
 
   action(action: Action): void {
-    if (this.replay.answers(action)) return;
+    if (this.replay.answers(action) || this.build.answers(action)) return;
     if (action.startsWith("view:")) this.showView(viewNamed(action.slice("view:".length)));
     else this.actions[action as Deed]();
   }
@@ -328,6 +343,7 @@ export class App implements SessionListener, MenuListener {
     share: () => this.share(),
     stepBack: () => undefined,
     replay: () => void this.openReplay(),
+    build: () => void this.build.toggle(this.sceneMessage).then(() => this.beginBuilding()),
     help: () => this.help.toggle(),
     escape: () => {
       this.finishCard.hide();
@@ -346,6 +362,20 @@ export class App implements SessionListener, MenuListener {
     if (!this.replay.active) return;
     this.menu.setOpen(false);
     this.hold();
+  }
+
+  /** The live walk waits while one builds. */
+  private beginBuilding(): void {
+    if (!this.build.active) return;
+    this.menu.setOpen(false);
+    this.finishCard.hide();
+    this.hold();
+  }
+
+  /** Leaves room for a panel at the bottom or at the right. */
+  private leaveRoom(bottom: number, right: number): void {
+    document.documentElement.style.setProperty("--dock", `${bottom}px`);
+    this.picture.stage.setCoveredRight(right);
   }
 
   /** Shows a recording: a file, or the one that the server was started with. */
@@ -395,7 +425,7 @@ export class App implements SessionListener, MenuListener {
 
   private controlsHost(): ConstructorParameters<typeof Controls>[0] {
     return {
-      send: (input) => !this.replay.active && this.session.send(input),
+      send: (input) => !this.replay.active && !this.build.active && this.session.send(input),
       action: (action) => this.action(action),
       look: (yaw, pitch) => this.picture.camera.turn(yaw, pitch),
       cameraHeading: () => this.picture.camera.heading,

@@ -46,6 +46,7 @@ export interface AppState {
   readonly roundTripMs: number;
   readonly replay: unknown;
   readonly going: unknown;
+  readonly build: unknown;
   readonly steps: number;
   readonly footprints: number;
 }
@@ -106,6 +107,7 @@ function snapshot(app: App): AppState {
     roundTripMs: session.roundTripMs,
     replay: app.replay.state,
     going: app.somewhere.last,
+    build: app.build.state,
     steps: app.steps.count,
     footprints: app.steps.printed,
   };

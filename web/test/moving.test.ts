@@ -3,7 +3,7 @@ import type { MovingObstacle } from "../src/generated/messages";
 import { boxAt } from "../src/stage/moving";
 
 const box = (repeat: MovingObstacle["repeat"]): MovingObstacle => ({
-  name: "box", form: { shape: "box", size: [1, 2, 3], corners: [], triangles: [] }, times: [0, 2, 3], centers: [[0, 1, 0], [2, 1, 0], [2, 1, 1]], yaws: [0, 0.4, -0.3], repeat,
+  name: "box", form: { shape: "box", size: [1, 2, 3], corners: [], triangles: [] }, times: [0, 2, 3], centers: [[0, 1, 0], [2, 1, 0], [2, 1, 1]], yaws: [0, 0.4, -0.3], repeat, color: "",
 });
 
 describe("boxAt", () => {

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -24,13 +25,16 @@ from elbowroom.server.courses import BusyError
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.heap import hand_back
 from elbowroom.server.library import Library
+from elbowroom.server.reception import Reception
 from elbowroom.server.reports import scene_message
 from elbowroom.server.runs import run_response, shown_run
+from elbowroom.server.scene_desk import SceneDesk
 from elbowroom.server.schema.progress import Notice
 from elbowroom.server.session import Session
 from elbowroom.server.uploads import UploadDesk
 from elbowroom.server.usage import process_usage
 from elbowroom.server.while_there import while_there
+from elbowroom.world.scene import Scene
 
 LOG = logging.getLogger("elbowroom.server")
 
@@ -55,11 +59,15 @@ def client_is_built() -> bool:
 
 def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") -> Starlette:
     """The application for one server; `bound_host` is the address that it listens on, `name` the name asked for."""
-    handlers, desk = _Handlers(library), UploadDesk(library)
+    handlers, reception = _Handlers(library), Reception(library)
+    desk, scenes = UploadDesk(library, reception), SceneDesk(library, reception)
     routes: list[BaseRoute] = [
         Route("/api/health", handlers.health),
         Route("/api/catalog", handlers.catalog),
+        Route("/api/scenes", scenes.take, methods=["POST"]),
+        Route("/api/walks", scenes.walk, methods=["POST"]),
         Route("/api/scenes/{name}", handlers.scene),
+        Route("/api/scenes/{name}/document", handlers.document),
         Route("/api/avatars", desk.take, methods=["POST"]),
         Route("/api/runs", desk.show, methods=["POST"]),
         Route("/api/run", handlers.run),
@@ -100,10 +108,18 @@ class _Handlers:
         return JSONResponse(plain(self._library.catalog()))
 
     async def scene(self, request: Request) -> Response:
+        """The scene as a client draws it."""
+        return await self._with_scene(request, lambda scene: JSONResponse(plain(scene_message(scene))))
+
+    async def document(self, request: Request) -> Response:
+        """The scene as the JSON document that build mode edits."""
+        return await self._with_scene(request, _document)
+
+    async def _with_scene(self, request: Request, answer: Callable[[Scene], Response]) -> Response:
         client = request.client.host if request.client else ""
         try:
             found = self._library.find_scene(request.path_params["name"], client)
-            return JSONResponse(plain(scene_message(await while_there(request, found))))
+            return answer(await while_there(request, found))
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
         except ClientDisconnect:
@@ -157,6 +173,12 @@ class _Handlers:
             self._sessions -= 1
             if self._sessions == 0:
                 await asyncio.to_thread(hand_back)
+
+
+def _document(scene: Scene) -> Response:
+    if scene.place is not None:
+        return JSONResponse({"error": f"{scene.title} is the model of a place: build mode edits no models"}, 422)
+    return JSONResponse(scene.to_dict())
 
 
 def _has_the_file(request: Request, avatar: StoredAvatar) -> bool:

@@ -16,6 +16,7 @@ from elbowroom.experiment.gauntlet.names import NAMED, PREFIX, parse_name
 from elbowroom.experiment.gauntlet.scenes import load_scene, random_names
 from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
+from elbowroom.server.built_scenes import BuiltScenes
 from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.courses import Courses
 from elbowroom.server.place_files import PlaceFiles
@@ -54,6 +55,7 @@ class Library:
     run: Path | None = None  # a recording that the page opens with
     vmc: VmcStream | None = None  # where what is shown is sent too
     sent_places: dict[str, Scene] = field(default_factory=dict)  # by name, the oldest first
+    built: BuiltScenes = field(default_factory=BuiltScenes)  # on pages
     places: PlaceFiles = field(default_factory=lambda: PlaceFiles(Path()))
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
@@ -95,7 +97,7 @@ class Library:
     async def find_scene(self, name: str, client: Hashable) -> Scene:
         """A scene of this server, or a random course for a client. Raises as `check_scene` and `Courses.find`."""
         self.check_scene(name)
-        known = self.scenes.get(name) or self.sent_places.get(name)
+        known = self.scenes.get(name) or self.sent_places.get(name) or self.built.get(name)
         return known if known is not None else await self.courses.find(name, client)
 
     def hold(self, user: Hashable, *shown: "Wanted") -> None:
@@ -120,7 +122,7 @@ class Library:
 
     def check_scene(self, name: str) -> None:
         """Raises `InputError` if there is no scene and no course of this name."""
-        if name in self.scenes or name in self.sent_places:
+        if name in self.scenes or name in self.sent_places or self.built.get(name) is not None:
             return
         if name.startswith(_SENT):
             raise InputError("that place is not here any more; drop its file on the page again")

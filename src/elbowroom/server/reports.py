@@ -62,8 +62,8 @@ def scene_message(scene: Scene) -> SceneMessage:
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
         model=model,
-        obstacles=[_obstacle(*obstacle) for obstacle in list(scene.obstacles)[shown:]],
-        moving=[_moving(track) for track in scene.obstacles.moving.tracks],
+        obstacles=[_obstacle(scene, *obstacle) for obstacle in list(scene.obstacles)[shown:]],
+        moving=[_moving(scene, track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
     )
@@ -75,14 +75,21 @@ def model_of(scene: Scene) -> Model | None:
     return Model(f"places/{place.glb.stem}.glb", place.file) if place and place.glb else None
 
 
-def _obstacle(name: str, shape: Shape, center: Floats, turn: Floats) -> Obstacle:
-    return Obstacle(name, _form(shape), tuple(center.tolist()), tuple(turn.tolist()))
+def _obstacle(scene: Scene, name: str, shape: Shape, center: Floats, turn: Floats) -> Obstacle:
+    return Obstacle(name, _form(shape), tuple(center.tolist()), tuple(turn.tolist()), scene.colors.get(name, ""))
 
 
-def _moving(track: Track) -> MovingObstacle:
+def _moving(scene: Scene, track: Track) -> MovingObstacle:
     centers = [(a, b, c) for a, b, c in track.centers.tolist()]
-    form = _form(track.shape)
-    return MovingObstacle(track.name, form, track.times.tolist(), centers, track.yaws.tolist(), track.repeat.value)
+    return MovingObstacle(
+        name=track.name,
+        form=_form(track.shape),
+        times=track.times.tolist(),
+        centers=centers,
+        yaws=track.yaws.tolist(),
+        repeat=track.repeat.value,
+        color=scene.colors.get(track.name, ""),
+    )
 
 
 def _form(shape: Shape) -> Form:

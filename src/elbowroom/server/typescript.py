@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from elbowroom.server import pose_frame
 from elbowroom.server.codec import camel, tag
 from elbowroom.server.messages import ClientMessage, ServerMessage
-from elbowroom.server.schema import bounds, commands, menus, picture, progress, runs
+from elbowroom.server.schema import bounds, commands, menus, picture, progress, runs, scenes
 from elbowroom.server.schema.bounds import Length, Range
 
 _SCALARS = {float: "number", int: "number", str: "string", bool: "boolean", types.NoneType: "null"}
@@ -65,6 +65,7 @@ def _constants() -> str:
     lines = [
         f"PROTOCOL = {bounds.PROTOCOL}",
         f"MAX_MESSAGE = {bounds.MAX_MESSAGE}",
+        f"MAX_SCENE = {bounds.MAX_SCENE}",
         f"MAX_UPLOAD = {bounds.MAX_UPLOAD}",
         f"INPUT_TIMEOUT = {bounds.INPUT_TIMEOUT:g}",
         f"POSE_KIND = {pose_frame.KIND}",
@@ -78,7 +79,7 @@ def _constants() -> str:
 
 def _schema_classes() -> list[type]:
     """The dataclasses of the schema, in the order of the source."""
-    modules = (commands, menus, picture, progress, runs)
+    modules = (commands, menus, picture, progress, runs, scenes)
     return [kind for module in modules for kind in vars(module).values() if _is_defined_in(module, kind)]
 
 

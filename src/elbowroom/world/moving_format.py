@@ -30,7 +30,7 @@ def read_moving(place: Place) -> Moving:
 
 def _read_track(place: Place, index: int) -> Track:
     kind = type_of(place)
-    fields = place.fields(("type", *FIELDS[kind], "track"), ("name", "repeat"))
+    fields = place.fields(("type", *FIELDS[kind], "track"), ("name", "color", "repeat"))
     name = fields["name"].text(NAME, least=1) if "name" in fields else f"moving {kind} {index + 1}"
     repeat = _read_repeat(fields["repeat"]) if "repeat" in fields else Repeat.LOOP
     shape = read_shape(kind, fields)

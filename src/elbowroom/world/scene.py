@@ -48,6 +48,7 @@ class Scene:
     finish: Gate  # the line that ends the walk
     obstacles: Obstacles = field(default_factory=Obstacles)  # all that stands or moves in the way
     place: ScenePlace | None = None  # the model that the scene shows; its parts are the first of the obstacles
+    colors: Mapping[str, str] = field(default_factory=dict)  # "#rrggbb" by the name of an obstacle, where it has one
 
     @classmethod
     def load(

@@ -16,7 +16,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.json_place import Place
-from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle
+from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle, read_color
 from elbowroom.world.moving_format import read_moving, write_moving
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -56,6 +56,7 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
     name = fields["name"].text(NAME, least=1)
     found = read_place_field(fields["place"], folder) if placed else _EMPTY
     standing = _read_obstacles(fields["obstacles"]) if "obstacles" in fields else Obstacles()
+    colors = _read_colors(fields.get("obstacles"), standing.names)
     standing = replace(standing, moving=read_moving(fields["moving"]) if "moving" in fields else Moving())
     center, size = _read_ground(fields["ground"]) if "ground" in fields else (found.ground_center, found.ground_size)
     scene = Scene(
@@ -67,6 +68,7 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
         start=_read_start(fields["start"]) if "start" in fields else found.start,
         finish=_read_gate(fields["finish"]) if "finish" in fields else found.finish,
         obstacles=with_more(found.obstacles, standing) if placed else standing,
+        colors=colors | _read_colors(fields.get("moving"), standing.moving.names),
         place=found.place,
     )
     _refuse_off_the_ground(scene, fields)
@@ -115,10 +117,21 @@ def _read_obstacles(place: Place) -> Obstacles:
     return Obstacles(shapes, np.array(centers), np.array(rotations), names)
 
 
+def _read_colors(place: Place | None, names: Sequence[str]) -> dict[str, str]:
+    """The colours in a list of obstacles that have been read, by their names."""
+    if place is None:
+        return {}
+    colored = [(i, name) for i, name in enumerate(names) if "color" in place.value[i]]
+    return {
+        name: read_color(Place(place.source, f"{place.path}[{i}].color", place.value[i]["color"]))
+        for i, name in colored
+    }
+
+
 def _read_obstacle(place: Place, index: int) -> tuple[str, Shape, list[float], NDArray[np.float64]]:
     """One obstacle: name, shape, centre, rotation. Its type decides which fields it has."""
     kind = type_of(place)
-    fields = place.fields(("type", "center", *FIELDS[kind]), ("name", *(_TURNS if kind != "sphere" else ())))
+    fields = place.fields(("type", "center", *FIELDS[kind]), ("name", "color", *(_TURNS if kind != "sphere" else ())))
     name = fields["name"].text(NAME, least=1) if "name" in fields else f"{kind} {index + 1}"
     center = fields["center"].vector(3, -FARTHEST, FARTHEST)
     rotation = _read_rotation(place, fields)
@@ -227,11 +240,19 @@ def write_scene(scene: Scene) -> dict[str, Any]:
             "heading": scene.finish.heading,
             "width": scene.finish.width,
         },
-        "obstacles": [_written(*row) for row in list(scene.obstacles)[scene.place.parts if scene.place else 0 :]],
+        "obstacles": [
+            _written(*row) | _color(scene, row[0])
+            for row in list(scene.obstacles)[scene.place.parts if scene.place else 0 :]
+        ],
     }
     moving = scene.obstacles.moving
     placed = {"place": write_place(scene.place, scene.obstacles)} if scene.place else {}
-    return document | placed | ({"moving": write_moving(moving)} if len(moving) else {})
+    tracks = [track | _color(scene, track["name"]) for track in write_moving(moving)]
+    return document | placed | ({"moving": tracks} if tracks else {})
+
+
+def _color(scene: Scene, name: str) -> dict[str, str]:
+    return {"color": scene.colors[name]} if name in scene.colors else {}
 
 
 def _written(name: str, shape: Shape, center: NDArray[np.float64], rotation: NDArray[np.float64]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 
 export const PROTOCOL = 2;
 export const MAX_MESSAGE = 65536;
+export const MAX_SCENE = 524288;
 export const MAX_UPLOAD = 67108864;
 export const INPUT_TIMEOUT = 1;
 export const POSE_KIND = 1;
@@ -200,6 +201,8 @@ export interface Obstacle {
   /** of its origin */
   center: [number, number, number];
   rotation: [number, number, number, number];
+  /** "#rrggbb"; "" where the client chooses */
+  color: string;
 }
 
 /** The finish: passed when the avatar crosses its line. */
@@ -230,6 +233,8 @@ export interface MovingObstacle {
   yaws: number[];
   /** then: it stays, begins anew, goes back the same way */
   repeat: "once" | "loop" | "pingpong";
+  /** as of an obstacle that stands */
+  color: string;
 }
 
 /** The model of a place, to be shown as it is: in the scene's metres and axes. */
@@ -451,6 +456,21 @@ export interface Run {
   note: string;
   frames: number;
   frameBytes: number;
+}
+
+/** The answer to a scene that was posted to /api/walks: how an avatar fared that walked it with nobody looking. */
+export interface UnseenWalk {
+  /** false where the time for it was over before */
+  decided: boolean;
+  /** through the finish */
+  passed: boolean;
+  /** times */
+  stuck: number;
+  /** of simulated time until the finish, or until it was given up */
+  seconds: number;
+  /** where the avatar was then */
+  x: number;
+  z: number;
 }
 
 export type ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Overlays | Ping;

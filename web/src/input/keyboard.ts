@@ -6,13 +6,13 @@ import type { Intent } from "./steering";
 /** Something that one key press does once. */
 export type Action =
   | "reset" | "pause" | "step" | "slow" | "cameraMode" | "overlays" | "hideUi" | "assist" | "help" | "recenter"
-  | "pointerLock" | "escape" | "menu" | "nextView" | "inset" | "share" | "stepBack" | "replay" | `view:${ViewName}`;
+  | "pointerLock" | "escape" | "menu" | "nextView" | "inset" | "share" | "stepBack" | "replay" | "build" | `view:${ViewName}`;
 
 /** What each key does, by `event.code`. */
 export const KEY_ACTIONS: Readonly<Record<string, Action>> = {
   KeyR: "reset", KeyP: "pause", Space: "pause", Period: "step", KeyM: "slow", KeyV: "cameraMode", KeyO: "overlays",
   KeyH: "hideUi", KeyT: "assist", F1: "help", KeyC: "recenter", KeyL: "pointerLock", Escape: "escape", KeyN: "menu",
-  KeyB: "nextView", KeyI: "inset", KeyK: "replay", Comma: "stepBack", ...Object.fromEntries(VIEW_NAMES.map((name, i) => [`Digit${i + 1}`, `view:${name}` as const])),
+  KeyB: "nextView", KeyI: "inset", KeyK: "replay", KeyU: "build", Comma: "stepBack", ...Object.fromEntries(VIEW_NAMES.map((name, i) => [`Digit${i + 1}`, `view:${name}` as const])),
 };
 
 /** Keys that steer while they are held. */

@@ -31,6 +31,21 @@ export function motionUrl(avatar: string, format: string): string {
   return `api/motions?${new URLSearchParams({ avatar, format, key: pageKey() })}`;
 }
 
+/** The address that takes a scene that was built. */
+export function scenesUrl(): string {
+  return `api/scenes?${new URLSearchParams({ key: pageKey() })}`;
+}
+
+/** The address of a scene's document. */
+export function sceneDocumentUrl(name: string): string {
+  return `api/scenes/${encodeURIComponent(name)}/document`;
+}
+
+/** The address where an avatar walks a scene unseen. */
+export function walksUrl(avatar: string): string {
+  return `api/walks?${new URLSearchParams({ avatar, key: pageKey() })}`;
+}
+
 let key = "";
 
 /** The secret by which the server knows which files are this tab's; it outlives a reload, not the tab. */

@@ -24,6 +24,8 @@ type ObstacleMesh = Mesh<BufferGeometry, MeshStandardMaterial | MeshLambertMater
 export interface DrawnObstacle {
   readonly form: Form;
   readonly box: OrientedBox;
+  /** "#rrggbb", or "" for the palette's. */
+  readonly color: string;
 }
 
 export class Obstacles {
@@ -36,7 +38,8 @@ export class Obstacles {
     this.clear();
     this.glow = palette.touching;
     obstacles.forEach((obstacle, i) => {
-      const colour = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
+      const chosen = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
+      const colour = obstacle.color ? Number.parseInt(obstacle.color.slice(1), 16) : chosen;
       this.group.add(obstacleMesh(obstacle, colour, rich));
     });
     this.glowMarked();

@@ -107,8 +107,8 @@ function hides(box: PreparedBox | undefined, camera: Vec3, body: readonly Vec3[]
 
 /** The obstacles that stand, then those that move, where they begin. */
 function allObstacles({ obstacles, moving }: SceneMessage): DrawnObstacle[] {
-  const standing = obstacles.map((one: Obstacle) => ({ form: one.form, box: orientedBox(one) }));
-  return [...standing, ...moving.map((one: MovingObstacle) => ({ form: one.form, box: boxAt(one, 0) }))];
+  const standing = obstacles.map((one: Obstacle) => ({ form: one.form, color: one.color, box: orientedBox(one) }));
+  return [...standing, ...moving.map((one: MovingObstacle) => ({ form: one.form, color: one.color, box: boxAt(one, 0) }))];
 }
 
 function orientedBox({ center, rotation, form: { size } }: Obstacle): OrientedBox {

@@ -46,6 +46,7 @@ const KEYBOARD: readonly Section[] = [
     [["T"], "assist on and off: planned motion or the canned walk"],
     [["O"], "overlays"],
     [["N"], "menu"],
+    [["U"], "build mode: place and move things, try them, send them as a file or an address"],
     [["H"], "hide everything but the world; Esc shows it again"],
     [["?"], "or F1: this help"],
   ] },

@@ -3,6 +3,7 @@
 import { POSE_FLAGS, type Crossed, type PoseFrame, type Settings, type Status } from "../generated/messages";
 import { blockedSentence } from "./blocked_sentence";
 import { worded } from "../texts/worded";
+import { stuckWords } from "../texts/stuck_words";
 import { text } from "../texts/texts";
 import { byId } from "./dom";
 
@@ -60,8 +61,7 @@ export class StatusLine {
 }
 
 function crossedText({ seconds, stuckTimes }: Crossed): string {
-  const stuck = stuckTimes === 0 ? text("stuck.never") : stuckTimes === 1 ? text("stuck.once") : text("stuck.times", stuckTimes);
-  return text("status.through", seconds.toFixed(1), stuck);
+  return text("status.through", seconds.toFixed(1), stuckWords(stuckTimes));
 }
 
 function firstHint(): string {

@@ -78,6 +78,32 @@ def make_course(name: str) -> dict[str, Any]:
     return course_scene(name).to_dict()
 
 
+def read_scene(file: str, name: str) -> dict[str, Any]:
+    """The scene in a JSON file that a page has sent, as `Scene.to_dict` writes it; raises `InputError`."""
+    from elbowroom.world.json_place import parse_json
+    from elbowroom.world.scene import Scene
+
+    try:
+        text = Path(file).read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{name}: byte {error.start} is not UTF-8 text; save the file as UTF-8") from None
+    document = parse_json(text, name)
+    if isinstance(document, dict) and "place" in document:
+        raise InputError(f"{name}: $.place names the model of a place; drop the model itself on the page")
+    return Scene.from_dict(document, name).to_dict()
+
+
+def walk_scene(file: str, name: str, humanoid: str) -> tuple[object, ...]:
+    """How the humanoid in a file of `answers.packed` fares in such a scene: the fields of an `UnseenWalk`, in order."""
+    from elbowroom.experiment.unseen_walk import Effort, walk_unseen
+    from elbowroom.server.apart.answers import unpacked
+    from elbowroom.world.scene import Scene
+
+    scene = Scene.from_dict(read_scene(file, name), name)
+    walk = walk_unseen(unpacked(Path(humanoid).read_bytes()), scene, Effort())
+    return tuple(getattr(walk, field.name) for field in fields(walk))
+
+
 def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
     """The frames of a recording as `run_frames.PosedRun` has them, its fields in order; raises `InputError`.
 
@@ -95,5 +121,5 @@ def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
 
 
 JOBS: dict[str, Callable[..., object]] = {
-    job.__name__: job for job in (read_upload, read_place, read_clip, make_course, pose_run)
+    job.__name__: job for job in (read_upload, read_place, read_scene, walk_scene, read_clip, make_course, pose_run)
 }

@@ -8,6 +8,7 @@ from elbowroom.control import settings
 PROTOCOL = 2  # raised with every change that an older client would misread
 MAX_MESSAGE = 64 * 1024  # bytes in a client's text message
 MAX_UPLOAD = 64 * 1024 * 1024  # bytes in an avatar file dropped on the page
+MAX_SCENE = 512 * 1024  # bytes in a scene that was built on the page
 QUEUE_SIZES = tuple(settings.QUEUE_SIZES)
 WALK_SPEEDS = (0.2, 2.0)  # m/s, slowest and fastest
 INPUT_TIMEOUT = 1.0  # seconds without any message after which the keys count as released

@@ -50,6 +50,7 @@ class Obstacle:
     form: Form
     center: Vector  # of its origin
     rotation: Quaternion
+    color: str  # "#rrggbb"; "" where the client chooses
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class MovingObstacle:
     centers: list[Vector]
     yaws: list[float]  # radians
     repeat: Literal["once", "loop", "pingpong"]  # then: it stays, begins anew, goes back the same way
+    color: str  # as of an obstacle that stands
 
 
 @dataclass(frozen=True)
