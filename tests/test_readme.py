@@ -15,11 +15,16 @@ from elbowroom.world.scene import Scene
 ROOT = Path(__file__).parents[1]
 
 
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+READMES = [ROOT / "README.md", ROOT / "README.zh-Hant.md"]
+PAGES = [*READMES, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def code_blocks(language: str, file: str = "README.md") -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / file).read_text("utf-8"), flags=re.DOTALL)
+
+
+def code_lines(language: str, file: str) -> list[str]:
+    return [line for block in code_blocks(language, file) for line in block.splitlines()]
 
 
 def commands_in(page: Path) -> list[str]:
@@ -52,6 +57,18 @@ def test_every_command_shown_is_a_command() -> None:
     commands = set(get_command(app).commands)  # type: ignore[attr-defined]
     shown = set(re.findall(r"^elbowroom (\w+)", "\n".join(code_blocks("bash")), flags=re.MULTILINE))
     assert shown == commands
+
+
+def test_both_readmes_show_the_same_commands_programs_and_pictures() -> None:
+    def said(page: Path) -> tuple[list[str], list[str], list[str]]:
+        code = [line.partition("#")[0].rstrip() for name in ("bash", "python") for line in code_lines(name, page.name)]
+        text = page.read_text("utf-8")
+        return code, re.findall(r"!\[[^\]]*\]\(([^)]*)\)", text)[:1], re.findall(r"`(\.\w+|--?\w+)`", text)
+
+    english, chinese = (said(page) for page in READMES)
+    assert english == chinese
+    assert "(README.zh-Hant.md)" in READMES[0].read_text("utf-8")
+    assert "(README.md)" in READMES[1].read_text("utf-8")
 
 
 def test_every_make_target_shown_exists() -> None:
