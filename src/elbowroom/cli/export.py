@@ -1,4 +1,4 @@
-"""`elbowroom export`: what a recording shows, for other programs."""
+"""`elbowroom export`: what a recording shows, or a scene alone, for other programs."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -20,8 +20,9 @@ EXAMPLES = (
 
 
 def export(
-    recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
+    recording: Annotated[Path | None, typer.Argument(help="A file written by `elbowroom walk --record`.")] = None,
     *,
+    scene: Annotated[str | None, typer.Option(help="A scene in place of a recording: .glb or .x3d.")] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="The file to write; its ending says the format.")],
     fps: Annotated[float, typer.Option(help="Frames a second.")] = 60.0,
     root: Annotated[str, typer.Option(help="What carries the way: hips, root (a node above them) or none.")] = "hips",
@@ -44,13 +45,16 @@ def export(
     from elbowroom.export.animation import Animation, check_rate
     from elbowroom.export.writers import Wishes, format_of
 
+    if out.exists() and not overwrite:
+        raise InputError(f"{out}: exists; choose another name or say --overwrite")
+    if scene is not None or recording is None:
+        _export_scene(scene, recording, out, json=json)
+        return
     chosen = format_of(out)
     layout = chosen.layout(Wishes(root, rest, unit, up))
     check_rate(fps)
     if place and chosen.title != "GLB":
         raise InputError(f"{out}: --place is possible in .glb only")
-    if out.exists() and not overwrite:
-        raise InputError(f"{out}: exists; choose another name or say --overwrite")
     recorded = Recording(recording)
     compile_first(quiet=quiet)
     with progress_bar(f"Writing {out.name}", None, quiet):
@@ -62,6 +66,27 @@ def export(
         _keep(out, written.data)
     notes = [*written.notes, *([f"not whole: {recorded.note}"] if recorded.note else [])]
     _report(out, chosen.title, len(written.data), animation, notes, json)
+
+
+def _export_scene(name: str | None, recording: Path | None, out: Path, *, json: bool) -> None:
+    from elbowroom.experiment.gauntlet.scenes import load_scene
+    from elbowroom.export.place import place_glb
+    from elbowroom.export.place_x3d import place_x3d
+
+    if name is None or recording is not None:
+        raise InputError("export: give either a recording or --scene, such as `elbowroom export --scene d -o d.glb`")
+    writers = {".glb": ("GLB", place_glb), ".x3d": ("X3D", place_x3d)}
+    if out.suffix.lower() not in writers:
+        raise InputError(f"{out}: a scene is written as .glb or .x3d")
+    title, write = writers[out.suffix.lower()]
+    scene = load_scene(name)
+    data = write(scene)
+    _keep(out, data)
+    things = len(list(scene.obstacles)) + len(scene.obstacles.moving)
+    if json:
+        print_json({"file": str(out), "format": title, "bytes": len(data), "obstacles": things})
+    else:
+        print_row(str(out), {"format": title, "size": f"{len(data) / 1e3:.1f} kB", "obstacles": str(things)})
 
 
 def _with_place(glb: bytes, recorded: "Recording", animation: "Animation") -> bytes:

@@ -17,7 +17,12 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _AROUND, _RINGS = 32, 8  # corners of a circle, rings of half a ball
-_GROUND, _STANDING, _MOVING, _FINISH = (0.55, 0.55, 0.52), (0.75, 0.55, 0.35), (0.35, 0.55, 0.75), (0.2, 0.65, 0.3)
+COLORS = {
+    "ground": (0.55, 0.55, 0.52),
+    "standing": (0.75, 0.55, 0.35),
+    "moving": (0.35, 0.55, 0.75),
+    "finish": (0.2, 0.65, 0.3),
+}  # of what has none of its own: red, green, blue
 _BOX = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 _THIN = 0.002  # metres that the finish lies above the ground
 
@@ -25,21 +30,32 @@ _THIN = 0.002  # metres that the finish lies above the ground
 def place_glb(scene: Scene) -> bytes:
     """The scene as a GLB: the ground, the finish, and a node for each obstacle where it is at the beginning."""
     draft = GlbDraft()
-    looks = {color: _look(draft, color) for color in (_GROUND, _STANDING, _MOVING, _FINISH)}
+    looks = _Looks(draft)
     x, z = scene.ground_center
     flat = _rectangle(*scene.ground_size)
-    draft.add_node("ground", None, (x, 0.0, z), mesh=_mesh(draft, flat, looks[_GROUND]))
+    draft.add_node("ground", None, (x, 0.0, z), mesh=_mesh(draft, flat, looks.of(COLORS["ground"])))
     gate = scene.finish
-    line = _mesh(draft, _rectangle(gate.width, 0.1), looks[_FINISH])
+    line = _mesh(draft, _rectangle(gate.width, 0.1), looks.of(COLORS["finish"]))
     place = (gate.position[0], _THIN, gate.position[1])
     draft.add_node("finish", None, place, quaternion.about_axis(1, gate.heading), mesh=line)
     for name, shape, center, turn in scene.obstacles:
-        draft.add_node(name, None, center, turn, mesh=_mesh(draft, triangles_of(shape), looks[_STANDING]))
+        look = looks.of(color_of(scene, name, "standing"))
+        draft.add_node(name, None, center, turn, mesh=_mesh(draft, triangles_of(shape), look))
     for track in scene.obstacles.moving.tracks:
         centers, yaws = track.poses([0.0])
         turn = quaternion.about_axis(1, float(yaws[0]))
-        draft.add_node(track.name, None, centers[0], turn, mesh=_mesh(draft, triangles_of(track.shape), looks[_MOVING]))
+        look = looks.of(color_of(scene, track.name, "moving"))
+        draft.add_node(track.name, None, centers[0], turn, mesh=_mesh(draft, triangles_of(track.shape), look))
     return draft.finish()
+
+
+def color_of(scene: Scene, name: str, kind: str) -> tuple[float, float, float]:
+    """The colour of an obstacle, 0 to 1: its own, or that of its kind in `COLORS`."""
+    own = scene.colors.get(name)
+    if own is None:
+        return COLORS[kind]
+    red, green, blue = (int(own[at : at + 2], 16) / 255.0 for at in (1, 3, 5))
+    return red, green, blue
 
 
 def with_place(glb: bytes, scene: Scene, animation: Animation) -> bytes:
@@ -103,6 +119,20 @@ def _rectangle(width: float, depth: float) -> Floats:
     x, z = 0.5 * width, 0.5 * depth
     a, b, c, d = (-x, 0.0, -z), (-x, 0.0, z), (x, 0.0, z), (x, 0.0, -z)
     return np.array([[a, b, c], [a, c, d]])
+
+
+class _Looks:
+    """The materials of a file, one for each colour."""
+
+    def __init__(self, draft: GlbDraft) -> None:
+        self._draft = draft
+        self._made: dict[tuple[float, float, float], int] = {}
+
+    def of(self, color: tuple[float, float, float]) -> int:
+        """The number of a colour's material."""
+        if color not in self._made:
+            self._made[color] = _look(self._draft, color)
+        return self._made[color]
 
 
 def _look(draft: GlbDraft, color: tuple[float, float, float]) -> int:
