@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup, columns_of
+from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.joint.step import JointStep
@@ -81,7 +81,8 @@ def slice_table(humanoid: Humanoid) -> str:
     body, path = UpperBodyPlanner(humanoid, Scene.load("d"), ExactSettings()), walk(16, 0.4)
     dressing = dressing_of(body, path)
     ways = dressing.apart().paths
-    way, points_of = ways[1], dressing.caches.group(DofGroup.LEFT_ARM).postures.configurations
+    way = ways[SEARCH_ORDER.index(DofGroup.LEFT_ARM)]
+    points_of = dressing.caches.group(DofGroup.LEFT_ARM).postures.configurations
     goals = dressing.goals[:, columns_of(DofGroup.LEFT_ARM)]
     order = np.argsort(np.linalg.norm(points_of - goals[0], axis=1))
     free = np.isfinite(way.cost[:, order]).T

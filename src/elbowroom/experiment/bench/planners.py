@@ -184,7 +184,7 @@ def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int,
         np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown]), 1.0 / DT
     )
     waits = times.plan_ms if len(times.plan_ms) else np.zeros(1)
-    costs = float(waits.sum()) / 1e3, float(waits.max()), result.collision_checks
+    costs = float(waits.sum()) / 1e3, float(waits.max()), result.local_checks
     return _judged(humanoid, scene, motion, (where, planner, seed), result.straight, costs)
 
 
