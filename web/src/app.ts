@@ -9,6 +9,7 @@ import { GoingSomewhere } from "./going/going";
 import { POSE_FLAGS } from "./generated/messages";
 import type { AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status, Uploaded } from "./generated/messages";
 import { Controls } from "./input/controls";
+import { KeyMap } from "./input/key_map";
 import type { Action } from "./input/keyboard";
 import { PointerInput } from "./input/pointer";
 import { NO_INTENT, type SteeringMode } from "./input/steering";
@@ -19,7 +20,7 @@ import { Session, type SessionListener } from "./net/session";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import { Picture } from "./picture";
 import { ReplayDoor } from "./replay/door";
-import { readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
+import { addressWithoutLanguage, readPreferences, readWishes, storePreferences, type Preferences } from "./preferences";
 import { BestTimes, nextScene } from "./results";
 import { text } from "./texts/texts";
 import { showAvatarAbout } from "./ui/avatar_about";
@@ -27,6 +28,8 @@ import { byId } from "./ui/dom";
 import { listenForFiles } from "./ui/file_drop";
 import { keepKeysOnView } from "./ui/focus";
 import { FinishCard, type FinishDeed } from "./ui/finish_card";
+import { KeyDialog } from "./ui/key_dialog";
+import { showKeys } from "./ui/key_hints";
 import { Help } from "./ui/help";
 import { Hud } from "./ui/hud";
 import { Menu, type MenuListener } from "./ui/menu";
@@ -66,7 +69,9 @@ export class App implements SessionListener, MenuListener {
   private readonly menu: Menu;
   private readonly pointer: PointerInput;
   private readonly hud = new Hud();
-  private readonly help = new Help();
+  private readonly keys = new KeyMap(localStore());
+  private readonly help = new Help(this.keys);
+  private keyDialog: KeyDialog | null = null;
   private readonly finishCard = new FinishCard((deed) => this.goOn(deed));
   private readonly best = new BestTimes(localStore());
   private readonly notices = new Notices();
@@ -100,7 +105,7 @@ export class App implements SessionListener, MenuListener {
     this.applyTheme();
     this.dark.addEventListener("change", () => this.applyTheme());
     this.menu = new Menu(this, this.preferences);
-    this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement));
+    this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement), this.keys);
     this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
     this.somewhere = new GoingSomewhere(this.view, {
       picture: this.picture, send: (message) => this.session.send(message),
@@ -108,6 +113,11 @@ export class App implements SessionListener, MenuListener {
     });
     keepKeysOnView(this.view);
     listenForFiles((file) => this.file(file));
+    showKeys(this.keys);
+    byId("keys-open", HTMLButtonElement).addEventListener("click", () => {
+      this.keyDialog ??= new KeyDialog(this.keys, () => showKeys(this.keys));
+      this.keyDialog.open();
+    });
     this.showPanels();
     this.picture.camera.show(wishes.camera);
     this.menu.showView(wishes.camera);
@@ -263,6 +273,7 @@ export class App implements SessionListener, MenuListener {
     if (change.theme) this.applyTheme();
     if (change.quality) this.picture.setQuality(change.quality);
     storePreferences(this.preferences);
+    if (change.language) location.replace(addressWithoutLanguage(location.href));
   }
 
   overlay(name: OverlayName, on: boolean): void {

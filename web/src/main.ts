@@ -1,11 +1,12 @@
 /** Starts the page, or says in one sentence why it cannot start. */
 
 import { App } from "./app";
+import { readLanguages } from "./preferences";
 import { exposeState } from "./probe";
 import { speak } from "./texts/texts";
 import { wordDocument } from "./texts/worded";
 
-speak([new URLSearchParams(location.search).get("lang"), ...navigator.languages]);
+speak(readLanguages(new URLSearchParams(location.search)));
 wordDocument(document.documentElement);
 
 try {

@@ -4,12 +4,14 @@ import { viewNamed, type ViewName } from "./camera/views";
 import type { SteeringMode } from "./input/steering";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import type { QualityName } from "./stage/quality";
+import { LANGUAGES, type Language } from "./texts/language";
 
 export type ThemeChoice = "auto" | "light" | "dark";
 
 /** The page's own choices; the server knows nothing of them. */
 export interface Preferences {
   theme: ThemeChoice;
+  language: Language | "auto";
   quality: QualityName;
   steering: SteeringMode;
   overlays: Set<OverlayName>;
@@ -46,6 +48,7 @@ export function readPreferences(query: URLSearchParams): Preferences {
   const overlays = query.has("overlays") ? query.get("overlays") : stored["overlays"];
   return {
     theme: pick("theme", THEMES, "auto"),
+    language: LANGUAGES.find((language) => language === stored["language"]) ?? "auto",
     quality: pick("quality", QUALITIES, "auto"),
     steering: pick("steering", STEERINGS, "camera"),
     overlays: typeof overlays === "string" ? parseOverlays(overlays) : new Set(),
@@ -63,6 +66,19 @@ export function storePreferences(preferences: Preferences): void {
   } catch {
     return;
   }
+}
+
+/** The languages that are wished for, the first wish first. */
+export function readLanguages(query: URLSearchParams): readonly (string | null)[] {
+  const { language } = readPreferences(query);
+  return [query.get("lang"), language === "auto" ? null : language, ...navigator.languages];
+}
+
+/** The page's address when it is loaded again in the language that was chosen: what the address says of it goes. */
+export function addressWithoutLanguage(address: string): string {
+  const url = new URL(address);
+  url.searchParams.delete("lang");
+  return url.href.replaceAll("%3A", ":").replaceAll("%2C", ",");
 }
 
 export function readWishes(query: URLSearchParams): SessionWishes {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { PAD_BUTTONS } from "../src/input/gamepad";
-import { HELD_KEYS, KEY_ACTIONS } from "../src/input/keyboard";
+import { DEFAULT_KEYS } from "../src/input/key_map";
 import { helpSections } from "../src/ui/help_sections";
 
 const sections = helpSections({ touch: false, gamepad: false });
@@ -15,7 +15,7 @@ describe("the help", () => {
 
   it("names every key that does something", () => {
     const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
-    for (const code of [...Object.keys(KEY_ACTIONS), ...HELD_KEYS]) {
+    for (const code of DEFAULT_KEYS.keys()) {
       if (code.startsWith("Arrow")) expect(words).toContain("arrow");
       else expect(words).toContain(names[code] ?? code.replace(/^(Key|Digit)/, ""));
     }

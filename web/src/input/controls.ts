@@ -2,6 +2,7 @@
 
 import type { Input } from "../generated/messages";
 import { Gamepads } from "./gamepad";
+import type { KeyMap } from "./key_map";
 import { Keyboard, type Action } from "./keyboard";
 import { commandsDiffer, mergeIntents, NO_INTENT, steer, type Command, type Intent, type SteeringMode } from "./steering";
 import { TouchStick } from "./touch_stick";
@@ -27,8 +28,8 @@ export class Controls {
   private sentAt = -Infinity;
   private sequence = 0;
 
-  constructor(private readonly host: ControlsHost, stickRing: HTMLElement) {
-    this.keyboard = new Keyboard((action) => host.action(action), () => this.flush());
+  constructor(private readonly host: ControlsHost, stickRing: HTMLElement, keys: KeyMap) {
+    this.keyboard = new Keyboard(keys, (action) => host.action(action), () => this.flush());
     this.stick = new TouchStick(stickRing, () => this.flush());
   }
 

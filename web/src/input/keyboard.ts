@@ -1,6 +1,7 @@
 /** The keyboard, by `event.code`, so that the keys lie in the same place on every layout. */
 
-import { VIEW_NAMES, type ViewName } from "../camera/views";
+import type { ViewName } from "../camera/views";
+import { HELD_DEEDS, type HeldDeed, type KeyMap } from "./key_map";
 import type { Intent } from "./steering";
 
 /** Something that one key press does once. */
@@ -8,26 +9,14 @@ export type Action =
   | "reset" | "pause" | "step" | "slow" | "cameraMode" | "overlays" | "hideUi" | "assist" | "help" | "recenter"
   | "pointerLock" | "escape" | "menu" | "nextView" | "inset" | "share" | "stepBack" | "replay" | "build" | `view:${ViewName}`;
 
-/** What each key does, by `event.code`. */
-export const KEY_ACTIONS: Readonly<Record<string, Action>> = {
-  KeyR: "reset", KeyP: "pause", Space: "pause", Period: "step", KeyM: "slow", KeyV: "cameraMode", KeyO: "overlays",
-  KeyH: "hideUi", KeyT: "assist", F1: "help", KeyC: "recenter", KeyL: "pointerLock", Escape: "escape", KeyN: "menu",
-  KeyB: "nextView", KeyI: "inset", KeyK: "replay", KeyU: "build", Comma: "stepBack", ...Object.fromEntries(VIEW_NAMES.map((name, i) => [`Digit${i + 1}`, `view:${name}` as const])),
-};
-
-/** Keys that steer while they are held. */
-export const HELD_KEYS: ReadonlySet<string> = new Set([
-  "KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE", "ArrowUp", "ArrowLeft", "ArrowDown", "ArrowRight", "ShiftLeft",
-  "ShiftRight",
-]);
-
 /** Keys by which lists and sliders are worked; all others steer past them. */
 const CONTROL_KEYS = /^(Arrow.*|Home|End|PageUp|PageDown|Enter|NumpadEnter|Space)$/;
 
 export class Keyboard {
-  private readonly held = new Set<string>();
+  /** What the keys that are down do, by their codes. */
+  private readonly held = new Map<string, HeldDeed>();
 
-  constructor(private readonly onAction: (action: Action) => void, private readonly onChange: () => void) {
+  constructor(private readonly keys: KeyMap, private readonly onAction: (action: Action) => void, private readonly onChange: () => void) {
     window.addEventListener("keydown", (event) => this.down(event));
     window.addEventListener("keyup", (event) => this.up(event));
     window.addEventListener("blur", () => this.releaseAll());
@@ -44,12 +33,13 @@ export class Keyboard {
   }
 
   get intent(): Intent {
-    const on = (...codes: string[]) => (codes.some((code) => this.held.has(code)) ? 1 : 0);
+    const down = new Set(this.held.values());
+    const on = (deed: HeldDeed) => Number(down.has(deed));
     return {
-      forward: on("KeyW", "ArrowUp") - on("KeyS", "ArrowDown"),
-      right: on("KeyD", "ArrowRight") - on("KeyA", "ArrowLeft"),
-      strafe: on("KeyQ") - on("KeyE"),
-      run: on("ShiftLeft", "ShiftRight") === 1,
+      forward: on("forward") - on("back"),
+      right: on("right") - on("left"),
+      strafe: on("stepLeft") - on("stepRight"),
+      run: down.has("run"),
     };
   }
 
@@ -61,26 +51,30 @@ export class Keyboard {
 
   private down(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const action = event.key === "?" ? "help" : KEY_ACTIONS[event.code];
+    const deed = event.key === "?" ? "help" : this.keys.deedOf(event.code);
     const { activeElement } = document;
-    const always = event.code === "Escape" || event.code === "F1" || (action === "help" && !takesText(activeElement));
+    const always = event.code === "Escape" || event.code === "F1" || (deed === "help" && !takesText(activeElement));
     if (!always && takesKey(activeElement, event.code)) return;
-    if (HELD_KEYS.has(event.code)) {
+    if (!deed) return;
+    if (isHeld(deed)) {
       event.preventDefault();
       if (!this.held.has(event.code)) {
-        this.held.add(event.code);
+        this.held.set(event.code, deed);
         this.onChange();
       }
       return;
     }
-    if (!action) return;
-    if (action !== "escape") event.preventDefault();
-    if (!event.repeat || action === "step" || action === "stepBack") this.onAction(action);
+    if (deed !== "escape") event.preventDefault();
+    if (!event.repeat || deed === "step" || deed === "stepBack") this.onAction(deed);
   }
 
   private up(event: KeyboardEvent): void {
     if (this.held.delete(event.code)) this.onChange();
   }
+}
+
+function isHeld(deed: HeldDeed | Action): deed is HeldDeed {
+  return (HELD_DEEDS as readonly string[]).includes(deed);
 }
 
 /** Whether a key belongs to the element that has the focus: letters steer on past lists, sliders and buttons. */

@@ -1,15 +1,15 @@
 /** Keeps the walks of this page as they are shown, so that each can be played again: no server is needed for it. */
 
 import type { AvatarMessage, PoseFrame, SceneMessage } from "../generated/messages";
-import type { Take } from "./take";
+import { moves, type Take } from "./take";
 
 /** Frames of all walks together: ten minutes; the oldest go first. */
 export const MOST_FRAMES = 36_000;
 const MOST_TAKES = 12;
 /** A walk shorter than this is none, seconds. */
 const SHORTEST = 1;
-/** Frames that are kept of the standing before a walk. */
-const LEAD = 15;
+/** Seconds that are kept of the standing before a walk; while nothing moves frames come seldom. */
+const LEAD = 0.25;
 
 /** What is shown while frames come. */
 export interface Circumstances {
@@ -48,7 +48,7 @@ export class WalkKeeper {
     draft.circumstances = circumstances;
     draft.frames.push({ ...frame, time: frame.simTime });
     draft.moved ||= moves(frame);
-    if (!draft.moved && draft.frames.length > LEAD) draft.frames.shift();
+    while (!draft.moved && frame.simTime - (draft.frames[1]?.time ?? frame.simTime) >= LEAD) draft.frames.shift();
     this.shorten(draft);
   }
 
@@ -76,10 +76,6 @@ export class WalkKeeper {
     while (kept > this.most && this.done.length > 0) kept -= this.done.shift()?.frames.length ?? 0;
     if (kept > this.most) draft.frames.splice(0, kept - this.most + Math.floor(this.most / 60));
   }
-}
-
-function moves({ forward, lateral, turn }: PoseFrame): boolean {
-  return Math.abs(forward) + Math.abs(lateral) + Math.abs(turn) > 0.01;
 }
 
 /** A draft as a take whose time begins at 0; null where too little happens in it. */

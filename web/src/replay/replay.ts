@@ -10,10 +10,12 @@ import { marksOf } from "./marks";
 import { ReplayPanel, type Choice, type Manner, type PanelListener } from "./panel";
 import { Player } from "./player";
 import { save, type SavedAs } from "./save";
-import { durationOf, hasAssist, poseAt, samePlace, type Take } from "./take";
+import { durationOf, hasAssist, poseAt, samePlace, setsOff, type Take } from "./take";
 
 /** The most moments at which curves are drawn. */
 const MOMENTS = 1000;
+/** Seconds of standing that are shown of a recording before its avatar sets off. */
+const LEAD = 0.25;
 
 /** What the replay needs of the page. */
 export interface ReplayHost {
@@ -174,6 +176,7 @@ export class Replay implements PanelListener {
     if (this.other && (this.other === take || !samePlace(this.other, take))) this.setOther(null);
     picture.showScene(take.scene);
     if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch((error: unknown) => this.host.say("error", String(error)));
+    if (take.file) this.player.seek(setsOff(take) - LEAD);
     this.describe();
   }
 

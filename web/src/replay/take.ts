@@ -23,6 +23,16 @@ export function durationOf({ frames }: Take): number {
   return (frames[frames.length - 1]?.time ?? 0) - (frames[0]?.time ?? 0);
 }
 
+/** Whether the avatar goes or turns in a frame. */
+export function moves({ forward, lateral, turn }: PoseFrame): boolean {
+  return Math.abs(forward) + Math.abs(lateral) + Math.abs(turn) > 0.01;
+}
+
+/** When the avatar sets off, seconds; 0 where it never does. */
+export function setsOff({ frames }: Take): number {
+  return frames.find(moves)?.time ?? 0;
+}
+
 /** The place of the last frame that is not after `time`; 0 before the first. */
 export function frameAt(frames: readonly PoseFrame[], time: number): number {
   let low = 0;

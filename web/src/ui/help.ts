@@ -1,6 +1,7 @@
 /** The help dialog. */
 
 import { connectedPad } from "../input/gamepad";
+import type { KeyMap } from "../input/key_map";
 import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
 import { helpSections, type Section } from "./help_sections";
@@ -14,7 +15,7 @@ export class Help {
   private readonly columns = make("div", { class: "help-columns" });
   private readonly touch = window.matchMedia("(pointer: coarse)");
 
-  constructor() {
+  constructor(private readonly keyMap: KeyMap) {
     const close = make("button", { class: "icon", type: "button", "aria-label": worded("Close help") }, "✕");
     close.addEventListener("click", () => this.close());
     this.dialog.addEventListener("click", (event) => {
@@ -35,7 +36,7 @@ export class Help {
       return;
     }
     const sections = helpSections({ touch: this.touch.matches, gamepad: connectedPad() !== null });
-    this.columns.replaceChildren(...sections.map(drawn));
+    this.columns.replaceChildren(...sections.map((section) => drawn(section, (cap) => this.keyMap.capNow(cap))));
     this.dialog.showModal();
     this.dialog.scrollTop = 0;
   }
@@ -45,10 +46,11 @@ export class Help {
   }
 }
 
-function drawn({ title, rows }: Section): HTMLElement {
+function drawn({ title, rows }: Section, capNow: (cap: string) => string): HTMLElement {
   const list = make("dl", { class: "keys" });
   for (const [keys, meaning] of rows) {
-    const caps = keys.flatMap((key, i) => (i === 0 ? [make("kbd", {}, key)] : [" ", make("kbd", {}, key)]));
+    const kbd = (key: string) => make("kbd", {}, title === "Gamepad" ? key : capNow(key));
+    const caps = keys.flatMap((key, i) => (i === 0 ? [kbd(key)] : [" ", kbd(key)]));
     list.append(make("dt", {}, ...caps), make("dd", {}, worded(meaning)));
   }
   return make("section", {}, make("h3", {}, worded(title)), list);

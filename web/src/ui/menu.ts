@@ -199,6 +199,9 @@ export class Menu {
       select.value = preferences[name];
       select.addEventListener("change", () => this.listener.prefer({ [name]: select.value }));
     }
+    const language = byId("language", HTMLSelectElement);
+    language.value = preferences.language;
+    language.addEventListener("change", () => this.listener.prefer({ language: language.value as Preferences["language"] }));
     this.hud.addEventListener("change", () => this.listener.prefer({ hud: this.hud.checked }));
     this.inset.addEventListener("change", () => this.listener.prefer({ inset: this.inset.checked }));
     this.sound.checked = preferences.sound;
