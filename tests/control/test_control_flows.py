@@ -32,7 +32,7 @@ class FakeRootPlanner:
 
     memory = RootMemory()
 
-    def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
+    def __init__(self, humanoid: Humanoid, scene: Scene, above: object = None) -> None:
         pass
 
     def reset(self) -> None:

@@ -10,7 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
-from elbowroom.experiment.gauntlet.course import Course, CourseMaker
+from elbowroom.experiment.gauntlet.course import Course, CourseMaker, NoCourseError
 from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import BodyVerdict, judge
@@ -19,6 +19,7 @@ from shared_data import SHARED, needs_shared
 pytestmark = needs_shared
 
 LEVEL = 3
+SEEDS, WALKS = 12, 3  # the first courses that there are among so many seeds
 AVATARS = [
     "vrm0/Robot.vrm",
     "glb/m2m_human-male.glb",
@@ -59,8 +60,16 @@ def test_past_the_first_obstacles_the_mesh_stays_free_and_without_planning_it_to
 @pytest.mark.long
 @pytest.mark.parametrize("name", AVATARS)
 def test_the_mesh_touches_nothing_on_whole_courses(name: str) -> None:
-    for seed in range(3):
-        humanoid, course = opened(name, seed)
+    walks = 0
+    for seed in range(SEEDS):
+        try:
+            humanoid, course = opened(name, seed)
+        except NoCourseError:  # a body as broad as a barrel gets none from some seeds
+            continue
+        walks += 1
         result, mesh = walked(controller_on(humanoid, course, TrialSettings()), humanoid, course)
         assert result.crossed, seed
         assert mesh.touching == 0, seed
+        if walks == WALKS:
+            return
+    raise AssertionError(f"{walks} of {SEEDS} seeds give {name} a course")
