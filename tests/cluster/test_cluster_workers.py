@@ -28,7 +28,8 @@ def cluster() -> Iterator[Any]:
     """Two nodes of one core each; a test may take nodes away and add others."""
     from ray.cluster_utils import Cluster
 
-    os.environ |= {"RAY_USAGE_STATS_ENABLED": "0", "RAY_worker_niceness": "0"}
+    paths = [str(Path(__file__).parents[1]), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]  # of `cluster_tasks`
+    os.environ |= {"RAY_USAGE_STATS_ENABLED": "0", "RAY_worker_niceness": "0", "PYTHONPATH": os.pathsep.join(paths)}
     made: Any = Cluster(initialize_head=True, head_node_args=NODE | {"include_dashboard": False})
     made.add_node(**NODE)
     yield made

@@ -141,7 +141,7 @@ def test_status_and_plan_tell_what_the_controller_did(stage: Stage) -> None:
     status, plan = stage.status(0.5), stage.plan()
     assert status.plans >= 1
     assert status.plan_status == "found"
-    assert [group.group for group in status.groups] == ["waist", "leftArm", "rightArm"]
+    assert [group.group for group in status.groups] == ["waist", "head", "leftArm", "rightArm"]
     assert status.checks == sum(group.checks for group in status.groups)
     assert 0.0 < status.frame_ms_p50 <= status.frame_ms_p95
     assert (status.clearance, status.nearest) == (None, None)

@@ -18,9 +18,11 @@ from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
+    from elbowroom.control.controller import Controller
     from elbowroom.control.frame import Frame
     from elbowroom.control.recording import Recorder
-    from elbowroom.experiment.crossing import CrossingResult, Listener
+    from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, Listener
+    from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.command import Command
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
@@ -67,8 +69,7 @@ def walk(
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
     compile_first(quiet=quiet)
     from elbowroom.control.recording import Recorder
-    from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
-    from elbowroom.experiment.tour.leg import walk_to
+    from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 
     settings = CrossingSettings(planner, queue, seed, limit)
     of_place = is_model(scene)
@@ -85,16 +86,31 @@ def walk(
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
         send = None if stream is None else in_time(stream, humanoid)
-        listener = _listener(bar, recorder, send)
-        if target is not None:
-            leg = walk_to(controller, target, limit, listener)[0]
-        else:
-            result = run_crossing(controller, settings, listener)
-    if target is not None:
-        report_leg(leg, place.name, record, json)
-        raise typer.Exit(0 if leg.arrived else FELL_SHORT)
-    _report(result, record, json)
-    raise typer.Exit(0 if result.passed else FELL_SHORT)
+        outcome = _walked(controller, settings, target, _listener(bar, recorder, send))
+    raise typer.Exit(0 if _told(outcome, place.name, record, json) else FELL_SHORT)
+
+
+def _walked(
+    controller: "Controller", settings: "CrossingSettings", target: tuple[float, float] | None, listener: "Listener"
+) -> "Leg | CrossingResult":
+    """Walk to the target, or across the scene without one."""
+    from elbowroom.experiment.crossing import run_crossing
+    from elbowroom.experiment.tour.leg import walk_to
+
+    if target is None:
+        return run_crossing(controller, settings, listener)
+    return walk_to(controller, target, settings.limit, listener)[0]
+
+
+def _told(outcome: "Leg | CrossingResult", scene: str, record: Path | None, json: bool) -> bool:
+    """Print how it went; whether that is what was wanted."""
+    from elbowroom.experiment.tour.leg import Leg
+
+    if isinstance(outcome, Leg):
+        report_leg(outcome, scene, record, json)
+        return outcome.arrived
+    _report(outcome, record, json)
+    return outcome.passed
 
 
 def _listener(bar: Bar, recorder: "Recorder | None", send: "Callable[[Frame], None] | None") -> "Listener":

@@ -56,7 +56,7 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
     name = fields["name"].text(NAME, least=1)
     found = read_place_field(fields["place"], folder) if placed else _EMPTY
     standing = _read_obstacles(fields["obstacles"]) if "obstacles" in fields else Obstacles()
-    colors = _read_colors(fields.get("obstacles"), standing.names)
+    colors = _read_colors(fields.get("obstacles"), standing.standing_names)
     standing = replace(standing, moving=read_moving(fields["moving"]) if "moving" in fields else Moving())
     center, size = _read_ground(fields["ground"]) if "ground" in fields else (found.ground_center, found.ground_size)
     scene = Scene(
