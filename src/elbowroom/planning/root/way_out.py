@@ -25,6 +25,7 @@ from elbowroom.planning.root.query import Asked
 Floats = NDArray[np.float64]
 
 _ASTRAY = 0.02  # metres, radians, and these by second: who is farther from a way out does not follow it
+_LATE = 1.5  # times as long as the steps take, their walker may need for them: playback can be slower than the plan
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,9 @@ class WayOut(NamedTuple):
     tries: int  # ways out that have been taken from about there
 
     def left(self, asked: Asked) -> Floats | None:
-        """The states (n+1, 7) that are left for who is on its steps; None for everybody else."""
+        """The states (n+1, 7) that are left for who is on its steps; None for who is not, or comes by later."""
+        if asked.start_time - self.path.start_time > _LATE * self.length * self.path.interval:
+            return None
         moments = self.path.start_time + self.path.interval * np.arange(0.0, self.length, 0.25)
         apart = np.abs(self.path.sample(moments) - asked.start.as_array())[:, :6].max(axis=1)
         nearest = int(apart.argmin())
