@@ -1,6 +1,8 @@
 """Datasets of walks: what is drawn, files that come out the same whatever happened meanwhile, what strangers read."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -220,6 +222,15 @@ def test_from_the_command_line(tmp_path: Path) -> None:
     wrong = CliRunner().invoke(app, ["dataset", "check", str(out), "--show", "7", "-q"])
     assert (wrong.exit_code, "walk 7 is not between 0 and 0" in wrong.stderr) == (2, True)
     assert CliRunner().invoke(app, ["dataset", "check", str(tmp_path)]).exit_code == 2
+
+
+def test_without_a_spec_it_is_said_what_is_missing() -> None:
+    outcome = subprocess.run(
+        [sys.executable, "-m", "elbowroom", "dataset"], capture_output=True, text=True, check=False
+    )
+    assert outcome.returncode == 2
+    assert outcome.stderr.startswith("elbowroom: Missing command")
+    assert outcome.stderr.count("\n") == 1
 
 
 def test_the_stock_spec_is_read_and_every_column_explained() -> None:

@@ -35,9 +35,7 @@ class _OrMake(TyperGroup):
         return super().parse_args(ctx, args if named or not args else [self.default, *args])
 
 
-dataset = typer.Typer(
-    cls=_OrMake, help="Make, check and look at datasets of walks.", epilog=EXAMPLES, no_args_is_help=True
-)
+dataset = typer.Typer(cls=_OrMake, help="Make, check and look at datasets of walks.", epilog=EXAMPLES)
 
 
 @dataset.command(epilog=EXAMPLES)
