@@ -1,6 +1,6 @@
 /** Starts the page, or says in one sentence why it cannot start. */
 
-import { App } from "./app";
+import { App } from "./app/app";
 import { readLanguages } from "./preferences";
 import { exposeState } from "./probe";
 import { speak } from "./texts/texts";

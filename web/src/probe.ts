@@ -1,6 +1,6 @@
 /** The page's state for tests and the curious, as `window.__app`. */
 
-import type { App } from "./app";
+import type { App } from "./app/app";
 import { POSE_FLAGS } from "./generated/messages";
 
 /** A plain snapshot; every read takes a new one. */
@@ -71,7 +71,7 @@ function snapshot(app: App): AppState {
     connection: session.state,
     timesOpened: session.timesOpened,
     framesReceived: session.framesReceived,
-    framesDrawn: app.framesDrawn,
+    framesDrawn: app.frames.drawn,
     fps: app.stats.fps,
     root: pose && { x: pose.x, z: pose.z, heading: pose.heading },
     feet: pose && picture.onScreen([pose.x, pose.y, pose.z]),
@@ -79,9 +79,9 @@ function snapshot(app: App): AppState {
     simTime: pose?.simTime ?? 0,
     acknowledged: session.newestPose?.acknowledged ?? 0,
     sent: controls.lastSequence,
-    scene: app.sceneMessage?.name ?? null,
+    scene: app.live.scene?.name ?? null,
     avatar: settings?.avatar ?? null,
-    avatarTitle: app.avatarTitle,
+    avatarTitle: app.live.avatarTitle,
     avatarLoaded: picture.avatar.loaded,
     avatarRevision: picture.avatar.revision,
     poseRevision: pose?.avatarRevision ?? -1,
@@ -101,13 +101,13 @@ function snapshot(app: App): AppState {
     view: picture.camera.viewName,
     cameraHeading: picture.camera.heading,
     heldKeys: controls.heldKeys,
-    overlays: [...app.preferences.overlays],
+    overlays: [...app.taste.preferences.overlays],
     quality: picture.stage.currentQuality,
     delayMs: 1000 * session.delay,
     roundTripMs: session.roundTripMs,
-    replay: app.replay.state,
+    replay: app.modes.replay.state,
     going: app.somewhere.last,
-    build: app.build.state,
+    build: app.modes.build.state,
     steps: app.steps.count,
     footprints: app.steps.printed,
   };

@@ -1,0 +1,114 @@
+/** What each action does; the keyboard, the gamepad and the bar share them. */
+
+import { nextView, viewNamed } from "../camera/views";
+import type { GoingSomewhere } from "../going/going";
+import type { Action } from "../input/keyboard";
+import type { PointerInput } from "../input/pointer";
+import type { Session } from "../net/session";
+import type { Picture } from "../picture";
+import { nextScene } from "../results";
+import type { FinishCard, FinishDeed } from "../ui/finish_card";
+import type { Help } from "../ui/help";
+import type { Menu } from "../ui/menu";
+import type { StatusLine } from "../ui/status_line";
+import type { AddressBar } from "./address_bar";
+import type { Modes } from "./modes";
+import type { Taste } from "./taste";
+
+type Deed = Exclude<Action, `view:${string}`>;
+
+const SLOW_MOTION = 0.25;
+
+export interface DeedsParts {
+  readonly session: Session;
+  readonly picture: Picture;
+  readonly taste: Taste;
+  readonly modes: Modes;
+  readonly address: AddressBar;
+  readonly menu: Menu;
+  readonly help: Help;
+  readonly pointer: PointerInput;
+  readonly somewhere: GoingSomewhere;
+  readonly statusLine: StatusLine;
+  readonly finishCard: FinishCard;
+  readonly view: HTMLElement;
+}
+
+export class Deeds {
+  private readonly all: Readonly<Record<Deed, () => void>>;
+
+  constructor(private readonly parts: DeedsParts) {
+    this.all = { ...walking(parts), ...looking(parts) };
+  }
+
+  do(action: Action): void {
+    const { modes, address, taste } = this.parts;
+    if (modes.answers(action)) return;
+    if (action.startsWith("view:")) {
+      taste.showCamera(viewNamed(action.slice("view:".length)));
+      address.show();
+    } else this.all[action as Deed]();
+  }
+
+  /** After the finish. */
+  goOn(deed: FinishDeed): void {
+    const { session, menu, address } = this.parts;
+    const { scene, assist } = session.settings ?? {};
+    if (deed === "replay") {
+      this.do("replay");
+      return;
+    }
+    if (deed === "next" && scene) {
+      address.configure({ scene: nextScene(scene, menu.offered) });
+      return;
+    }
+    if (deed === "compare") address.configure({ assist: !assist });
+    this.do("reset");
+  }
+}
+
+type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build";
+
+/** What is done to the walk. */
+function walking({ session, modes, statusLine, finishCard, somewhere }: DeedsParts): Record<Walking, () => void> {
+  return {
+    reset: () => {
+      statusLine.restart();
+      finishCard.hide();
+      somewhere.forget();
+      session.send({ type: "reset" });
+    },
+    pause: () => session.send({ type: "clock", paused: !session.settings?.paused }),
+    step: () => session.send({ type: "clock", steps: 1 }),
+    slow: () => session.send({ type: "clock", speed: (session.settings?.speed ?? 1) < 1 ? 1 : SLOW_MOTION }),
+    assist: () => session.configure({ assist: !(session.settings?.assist ?? true) }),
+    stepBack: () => undefined,
+    replay: () => void modes.toggleReplay(),
+    build: () => void modes.toggleBuild(),
+  };
+}
+
+/** What is done to picture and panels. */
+function looking(parts: DeedsParts): Record<Exclude<Deed, Walking>, () => void> {
+  const { picture, taste, address, pointer, menu, help, finishCard, view } = parts;
+  return {
+    cameraMode: () => taste.toggleSteering(),
+    recenter: () => picture.camera.recenter(),
+    pointerLock: () => pointer.toggleLock(),
+    overlays: () => taste.toggleAllOverlays(),
+    hideUi: () => taste.setBare(!taste.bare),
+    menu: () => menu.setOpen(!menu.isOpen),
+    nextView: () => {
+      taste.showCamera(nextView(picture.camera.viewName));
+      address.show();
+    },
+    inset: () => taste.prefer({ inset: !taste.preferences.inset }),
+    share: () => address.share(),
+    help: () => help.toggle(),
+    escape: () => {
+      finishCard.hide();
+      taste.setBare(false);
+      view.focus();
+    },
+  };
+}

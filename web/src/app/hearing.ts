@@ -1,0 +1,139 @@
+/** What the server says, and what the page does about it. */
+
+import type {
+  AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status,
+} from "../generated/messages";
+import type { FrameStats } from "../frame_stats";
+import type { GoingSomewhere } from "../going/going";
+import type { Controls } from "../input/controls";
+import type { ConnectionState } from "../net/connection";
+import type { ShownPose } from "../net/pose_timeline";
+import type { Session, SessionListener } from "../net/session";
+import type { Picture } from "../picture";
+import type { BestTimes } from "../results";
+import { showAvatarAbout } from "../ui/avatar_about";
+import { byId } from "../ui/dom";
+import type { FinishCard } from "../ui/finish_card";
+import type { Hud } from "../ui/hud";
+import type { Menu } from "../ui/menu";
+import type { Notices } from "../ui/notices";
+import type { StatusLine } from "../ui/status_line";
+import type { Veil } from "../ui/veil";
+import type { AddressBar } from "./address_bar";
+import type { Arrivals } from "./arrivals";
+import type { LiveWalk } from "./live_walk";
+import type { Modes } from "./modes";
+import type { Taste } from "./taste";
+
+export interface HearingParts {
+  readonly session: Session;
+  readonly picture: Picture;
+  readonly controls: Controls;
+  readonly taste: Taste;
+  readonly modes: Modes;
+  readonly live: LiveWalk;
+  readonly address: AddressBar;
+  readonly arrivals: Arrivals;
+  readonly somewhere: GoingSomewhere;
+  readonly menu: Menu;
+  readonly hud: Hud;
+  readonly veil: Veil;
+  readonly notices: Notices;
+  readonly statusLine: StatusLine;
+  readonly finishCard: FinishCard;
+  readonly best: BestTimes;
+  readonly stats: FrameStats;
+  readonly pose: ShownPose | null;
+  subscribe(): void;
+}
+
+export class Hearing implements SessionListener {
+  constructor(private readonly parts: HearingParts) {}
+
+  connection(state: ConnectionState, why: string): void {
+    this.parts.veil.connection(state, why);
+    if (state === "open") this.parts.controls.repeat();
+  }
+
+  catalog(catalog: Catalog): void {
+    this.parts.menu.showCatalog(catalog);
+  }
+
+  settings(settings: Settings): void {
+    this.parts.menu.showSettings(settings);
+    this.parts.modes.noteLive();
+    this.parts.subscribe();
+    this.parts.address.show();
+  }
+
+  scene(scene: SceneMessage): void {
+    const { live, modes, somewhere, statusLine, finishCard, menu } = this.parts;
+    live.scene = scene;
+    modes.noteLive();
+    somewhere.forget();
+    if (modes.live) live.furnish();
+    statusLine.restart();
+    finishCard.hide();
+    menu.addScene(scene.name, scene.title);
+    byId("place", HTMLElement).textContent = scene.title;
+    document.title = `${scene.title} · Elbowroom`;
+  }
+
+  avatar(message: AvatarMessage): void {
+    const { live, modes, menu } = this.parts;
+    live.avatar = message;
+    modes.noteLive();
+    showAvatarAbout(message);
+    menu.addAvatar(message.id, message.title);
+    this.parts.subscribe();
+    if (!modes.replay.active) live.dress();
+  }
+
+  frameCame(frame: PoseFrame): void {
+    this.parts.modes.replay.keep(frame);
+  }
+
+  clip(message: ClipMessage): void {
+    this.parts.menu.clips.show(message);
+  }
+
+  avatarLost(id: string): boolean {
+    return this.parts.arrivals.avatarLost(id);
+  }
+
+  status(status: Status): void {
+    const { picture, session, stats, pose, hud, taste } = this.parts;
+    picture.world.markBlocking(status.blocked?.obstacles ?? []);
+    const page = {
+      fps: stats.fps, frameMsP50: stats.percentileMs(0.5), frameMsP95: stats.percentileMs(0.95),
+      roundTripMs: session.roundTripMs, clearance: pose?.clearance ?? Infinity,
+      planner: session.settings?.planner ?? "",
+    };
+    hud.update(status, page, taste.preferences.overlays.has("plan"));
+  }
+
+  plan(plan: Plan): void {
+    this.parts.picture.setPlan(plan);
+  }
+
+  loading(loading: Loading): void {
+    this.parts.veil.loading(loading);
+  }
+
+  crossed(crossed: Crossed): void {
+    const { session, statusLine, best, live, finishCard, picture } = this.parts;
+    statusLine.crossed(crossed, performance.now() / 1000);
+    const { assist = true, planner = "" } = session.settings ?? {};
+    const bestTime = assist ? best.note(live.scene?.name ?? "", planner, crossed.seconds) : null;
+    finishCard.show({ crossed, clearance: session.leastClearance.value, assist, best: bestTime });
+    picture.world.gate.flash();
+  }
+
+  going(going: Going): void {
+    this.parts.somewhere.heard(going);
+  }
+
+  notice(level: Notice["level"], message: string): void {
+    this.parts.notices.show(level, message);
+  }
+}
