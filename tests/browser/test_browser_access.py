@@ -1,10 +1,71 @@
-"""For everyone: keys that can be changed, the language chosen in the menu."""
+"""For everyone: no serious barrier by axe-core, keys that can be changed, the language of the menu, twice the size."""
 
 from collections.abc import Callable
 
+import pytest
+
+from axe import grave_barriers
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
+
+# What of the panels that are shown lies in another one or beyond the window, and which words do not fit their button.
+CROWDED = """
+() => {
+  const all = (at) => [...document.querySelectorAll(at)];
+  const shown = (element) => element.checkVisibility({ visibilityProperty: true, opacityProperty: true });
+  const boxes = all("#brand, #bar button, #hud, #status, #show-all").filter(shown)
+    .map((element) => ({ name: element.id, box: element.getBoundingClientRect() }))
+    .filter(({ box }) => box.width > 1 && box.height > 1);
+  const besides = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1;
+  const apart = (a, b) => besides(a, b) || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+  const beyond = (box) => box.left < -1 || box.top < -1 || box.right > innerWidth + 1 || box.bottom > innerHeight + 1;
+  const over = boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => !apart(a.box, b.box))
+    .map((b) => `${a.name} over ${b.name}`));
+  const outside = boxes.filter(({ box }) => beyond(box)).map(({ name }) => `${name} outside`);
+  const cut = all("button, select, h1, h2, label").filter(shown)
+    .filter((element) => element.scrollWidth > element.clientWidth + 1)
+    .filter((element) => getComputedStyle(element).overflowX !== "visible")
+    .map(({ id, textContent }) => `${id || textContent} cut`);
+  return [...over, ...outside, ...cut];
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("theme", "options"),
+    [("light", {}), ("dark", {}), ("light", {"contrast": "more"}), ("dark", {"contrast": "more"})],
+    ids=["light", "dark", "light, more contrast", "dark, more contrast"],
+)
+def test_axe_finds_nothing_serious_wherever_one_can_be(open_page: Open, theme: str, options: dict[str, str]) -> None:
+    live = open_page(f"scene=doorway&theme={theme}", viewport=(1280, 800), **options)
+    live.wait("s.scene === 'doorway'")
+    page = live.page
+    found = {"menu": grave_barriers(page)}
+    page.keyboard.press("n")
+    live.settle()
+    found["page"] = grave_barriers(page)
+    page.keyboard.press("?")
+    found["help"] = grave_barriers(page)
+    page.keyboard.press("Escape")
+    page.keyboard.press("n")
+    live.settle()
+    page.locator("#keys-open").click()
+    found["keys"] = grave_barriers(page)
+    page.keyboard.press("Escape")
+    page.keyboard.down("w")
+    live.wait("s.root.z > 0.4")
+    page.keyboard.up("w")
+    page.keyboard.press("k")
+    live.wait("s.replay")
+    found["replay"] = grave_barriers(page)
+    page.keyboard.press("Escape")
+    live.wait("s.replay === null")
+    page.keyboard.press("u")
+    live.wait("s.build && s.build.things.length > 0")
+    page.locator("#build .board .thing").first.focus()
+    found["build"] = grave_barriers(page)
+    assert {place: barriers for place, barriers in found.items() if barriers} == {}
 
 
 def test_another_key_walks_once_it_is_given_and_after_a_reload(open_page: Open) -> None:
@@ -43,3 +104,26 @@ def test_the_language_is_chosen_in_the_menu_and_kept(open_page: Open) -> None:
     assert live.page.locator("#share").inner_text() == "分享目前畫面"
     live.page.goto(live.page.url)
     live.wait("document.documentElement.lang === 'zh-Hant' && s.settings")
+
+
+def test_all_of_it_can_be_reached_at_twice_the_size(open_page: Open) -> None:
+    live = open_page("scene=doorway", viewport=(640, 360), device_scale_factor=2, forced_colors="active")
+    live.wait("s.scene === 'doorway'")
+    live.settle()
+    assert live.page.evaluate(CROWDED) == []
+    live.page.locator("#menu-button").click()
+    live.settle()
+    assert [said for said in live.page.evaluate(CROWDED) if said.endswith("cut")] == []
+    for name in ("#keys-open", "#language", "#hide-all"):
+        live.page.locator(name).scroll_into_view_if_needed()
+        box = live.page.locator(name).bounding_box()
+        assert box is not None
+        assert box["x"] >= 0, name
+        assert box["x"] + box["width"] <= 640, name
+    live.page.locator("#build-open").click()
+    live.wait("s.build && s.build.things.length > 0")
+    live.settle()
+    for name in ("#build .walk", "#build .close", "#build .verdict", "#build .board"):
+        box = live.page.locator(name).bounding_box()
+        assert box is not None
+        assert box["y"] + box["height"] <= 360.5, name
