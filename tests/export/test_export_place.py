@@ -12,12 +12,13 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.export.animation import Animation
 from elbowroom.export.avatar_glb import avatar_glb
 from elbowroom.export.layout import RootMotion
-from elbowroom.export.place import place_glb, triangles_of, with_place
+from elbowroom.export.place import place_glb, with_place
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
+from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 from made_recording import made_recording
 

@@ -37,6 +37,7 @@ from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.world.ground.ground import Sole, height_along, sole_on
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
@@ -67,6 +68,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_product()
     rehearse_mesh()
     rehearse_place()
+    rehearse_ground()
     rehearse_way(humanoid)
     path.sample(path.times)
     jolts(start[None], start[None], 1)
@@ -117,6 +119,13 @@ def rehearse_place() -> None:
     surface_keys(np.eye(3)[None], 1.0, (2, 2))
     cell = np.zeros(1, np.int64)
     link_surfaces(cell, np.zeros(1), np.array([0, 1]), 1, 1, 0.1)
+
+
+def rehearse_ground() -> None:
+    """Stand on a low box."""
+    ground = _scene_with((0.0, 0.05, 1.0), (0.5, 0.05, 0.5)).ground
+    height_along(ground, (0.0, 0.0, 0.0), 0.0, 1.0)
+    sole_on(ground, Sole(0.1, 0.1, 0.1), (0.0, 0.0, 1.0), 0.0)
 
 
 def rehearse_way(humanoid: Humanoid) -> None:

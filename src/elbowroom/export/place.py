@@ -1,7 +1,5 @@
 """A scene as triangles: what stands and moves in it, the ground, and the line to cross."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,20 +8,17 @@ from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf_animating import NodeMotion, joined_animation
 from elbowroom.formats.gltf_merging import with_nodes_of
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.hulls import surface_of
-from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere
+from elbowroom.world.obstacles.triangles import areas_of, triangles_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
-_AROUND, _RINGS = 32, 8  # corners of a circle, rings of half a ball
 COLORS = {
     "ground": (0.55, 0.55, 0.52),
     "standing": (0.75, 0.55, 0.35),
     "moving": (0.35, 0.55, 0.75),
     "finish": (0.2, 0.65, 0.3),
 }  # of what has none of its own: red, green, blue
-_BOX = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 _THIN = 0.002  # metres that the finish lies above the ground
 
 
@@ -68,52 +63,6 @@ def with_place(glb: bytes, scene: Scene, animation: Animation) -> bytes:
     return joined_animation(merged, 1.0 / animation.fps, motions) if motions else merged
 
 
-def triangles_of(shape: Shape) -> Floats:
-    """Corners (T, 3, 3) of a shape's surface about its own origin, counter-clockwise seen from outside, metres."""
-    match shape:
-        case Box(size):
-            signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-            faces = np.array(_BOX)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-            corners: Floats = (signs * size)[faces]
-            return corners
-        case Sphere(radius):
-            return _turned(_half_ball(radius, 0.0))
-        case Capsule(radius, length):
-            return _turned(_half_ball(radius, 0.5 * length))
-        case Cylinder(radius, height):
-            half = 0.5 * height
-            return _turned([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
-        case Hull():
-            points, triangles = surface_of(shape)
-            corners = points[triangles]
-            return corners
-        case Mesh():
-            return shape.corners
-
-
-def _half_ball(radius: float, rise: float) -> list[tuple[float, float]]:
-    """Outline (radius, height), from the lowest point up, of a ball whose halves are moved apart by `rise` each."""
-    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * _RINGS + 2)
-    return [(radius * np.cos(a), radius * np.sin(a) + (rise if a > 0.0 else -rise)) for a in angles.tolist()]
-
-
-def _turned(outline: Sequence[tuple[float, float]]) -> Floats:
-    """The surface that an outline sweeps about Y."""
-    angles = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
-    rings = np.array([[[r * np.sin(a), y, r * np.cos(a)] for a in angles] for r, y in outline])
-    beside = np.roll(rings, -1, axis=1)
-    lower = np.stack([rings[:-1], beside[:-1], beside[1:]], axis=2)
-    upper = np.stack([rings[:-1], beside[1:], rings[1:]], axis=2)
-    triangles = np.concatenate([lower.reshape(-1, 3, 3), upper.reshape(-1, 3, 3)])
-    return triangles[_areas(triangles) > 1e-12]
-
-
-def _areas(triangles: Floats) -> Floats:
-    across: Floats = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    areas: Floats = np.linalg.norm(across, axis=1)
-    return areas
-
-
 def _rectangle(width: float, depth: float) -> Floats:
     """Two triangles on the ground, seen from above."""
     x, z = 0.5 * width, 0.5 * depth
@@ -142,7 +91,7 @@ def _look(draft: GlbDraft, color: tuple[float, float, float]) -> int:
 
 def _mesh(draft: GlbDraft, triangles: Floats, material: int) -> int:
     """A mesh of flat triangles; those without an area are left out."""
-    kept = triangles[_areas(triangles) > 1e-12]
+    kept = triangles[areas_of(triangles) > 1e-12]
     kept = kept if len(kept) else triangles[:1]
     across = np.cross(kept[:, 1] - kept[:, 0], kept[:, 2] - kept[:, 0])
     lengths = np.linalg.norm(across, axis=1, keepdims=True)

@@ -6,10 +6,11 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.export.place import COLORS, color_of, triangles_of
+from elbowroom.export.place import COLORS, color_of
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.moving import Repeat, Track
 from elbowroom.world.obstacles.shapes import Box, Cylinder, Shape, Sphere
+from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.formats.models.kinds import kind_by_name
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
+from elbowroom.world.ground.ground import Ground
+from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.places.options import PlaceOptions
@@ -111,6 +114,11 @@ class Scene:
         from elbowroom.world.scene_format import scene_document
 
         return cls.from_dict(scene_document(name, obstacles, start, finish, moving), name)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """What feet stand on: the plane at height 0, and all that is low and flat enough to be stepped onto."""
+        return ground_of(self.obstacles, self.place.floor if self.place else None)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""

@@ -1,0 +1,130 @@
+"""The ground under feet, for kernels: how high it is at a place, and how a sole lies on it.
+
+Ground is the level plane at height 0 and every surface that is level enough to stand on, whatever it belongs to: floors
+above one another, treads, ramps, sills, kerbs. So a place has many heights, and each question says near which height it
+is meant: nothing is ground that lies more than a step from there. Surfaces are triangles, held exactly: the grid only
+finds them. Where nothing but the plane can be reached by steps, the ground is plain and costs a look at a flag.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+STEP = 0.25  # metres: higher is climbed, not walked
+STEEPEST = math.radians(30.0)  # of a surface that one walks on
+PLACE = 0.1  # metres between places that a way over the ground is looked at
+_NONE = -math.inf
+_GRADE = math.tan(STEEPEST)
+_INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
+_ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
+_UNEVEN = 0.01  # metres: a sole that would have more air under it lies level
+
+
+class Ground(NamedTuple):
+    """Surfaces over the cells of a grid; `ground_of` a scene makes it. Metres."""
+
+    plain: bool  # there is only the plane: the rest is not looked at
+    step: float  # nothing farther up or down is reached
+    corner: tuple[float, float]  # x, z of the grid
+    cell: float
+    shape: tuple[int, int]  # cells along x and z
+    starts: Longs  # (cells + 1,) where the triangles over each cell, numbered ix * shape[1] + iz, begin
+    members: Longs  # (M,) their numbers, the same several times
+    triangles: Floats  # (T, 9) x, z, height of a corner; x, z of the next two, all to the left; grade along x and z
+    level: Bools  # (cells,) where the plane at height 0 is ground
+    beyond: bool  # whether it is, outside of the grid
+
+
+class Sole(NamedTuple):
+    """The rectangle that a flat foot stands on, from the ankle; metres."""
+
+    back: float
+    ahead: float
+    aside: float
+
+
+PLAIN = Ground(
+    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 9)),
+    np.zeros(0, np.bool_), True,
+)  # fmt: skip
+
+
+@exact_kernel
+def height_at(ground: Ground, x: float, z: float, near: float) -> float:
+    """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any."""
+    if ground.plain:
+        return 0.0
+    ix, iz = math.floor((x - ground.corner[0]) / ground.cell), math.floor((z - ground.corner[1]) / ground.cell)
+    inside = 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]
+    cell = int(ix) * ground.shape[1] + int(iz)
+    there = ground.level[cell] if inside else ground.beyond
+    best = 0.0 if there and abs(near) <= ground.step else _NONE
+    if not inside:
+        return best
+    for m in range(ground.starts[cell], ground.starts[cell + 1]):
+        t = ground.triangles[ground.members[m]]
+        px, pz = x - t[0], z - t[1]
+        bx, bz, cx, cz = t[3] - t[0], t[4] - t[1], t[5] - t[0], t[6] - t[1]
+        if bz * px - bx * pz < -_INSIDE or cx * pz - cz * px < -_INSIDE:
+            continue
+        if (cz - bz) * (px - bx) - (cx - bx) * (pz - bz) < -_INSIDE:
+            continue
+        height = t[2] + t[7] * px + t[8] * pz
+        if height > best and abs(height - near) <= ground.step:
+            best = height
+    return best
+
+
+@exact_kernel
+def height_along(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
+    """The ground at a place as one comes to it from `start` (x, height, z), step by step; minus infinity without any.
+
+    Where there is none on the way, the last height is kept.
+    """
+    if ground.plain:
+        return 0.0
+    dx, dz, near = x - start[0], z - start[2], start[1]
+    count, found = math.ceil(math.sqrt(dx * dx + dz * dz) / PLACE) + 1, near
+    for i in range(1, count + 1):
+        share = i / count
+        found = height_at(ground, start[0] + share * dx, start[2] + share * dz, near)
+        if found > _NONE:
+            near = found
+    return found
+
+
+@exact_kernel
+def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: float) -> tuple[float, float]:
+    """How a foot stands whose ankle is over a place (x, height, z), turned by `yaw`: it lies on the highest ground.
+
+    Returns the height of the sole under the ankle, minus infinity where there is no ground, and its pitch in radians,
+    positive with the toes down: on a slope it lies on it, on what is uneven it is level.
+    """
+    if ground.plain:
+        return 0.0, 0.0
+    sine, cosine, highest = math.sin(yaw), math.cos(yaw), np.empty(_ALONG)
+    length = sole.back + sole.ahead
+    for i in range(_ALONG):
+        ahead, highest[i] = length * i / (_ALONG - 1) - sole.back, _NONE
+        for j in range(_ACROSS):
+            aside = sole.aside * (2.0 * j / (_ACROSS - 1) - 1.0)
+            x, z = place[0] + ahead * sine + aside * cosine, place[2] + ahead * cosine - aside * sine
+            highest[i] = max(highest[i], height_at(ground, x, z, place[1]))
+    grade = 0.0
+    if min(highest[0], highest[-1]) > _NONE:
+        grade = (highest[-1] - highest[0]) / length
+    level, tilted = _NONE, _NONE
+    for i in range(_ALONG):
+        level = max(level, highest[i])
+        tilted = max(tilted, highest[i] - grade * (length * i / (_ALONG - 1) - sole.back))
+    if abs(grade) > _GRADE or tilted - highest[0] - grade * sole.back > _UNEVEN:
+        return level, 0.0
+    return tilted, -math.atan(grade)

@@ -1,0 +1,122 @@
+"""The ground of a scene: made once, from what stands in it, by its shape and not by its name."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry import quaternion
+from elbowroom.jit import exact_kernel
+from elbowroom.world.ground.ground import PLAIN, STEEPEST, STEP, Ground
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Mesh
+from elbowroom.world.obstacles.triangles import triangles_of
+from elbowroom.world.places.floor_area import FloorArea
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+RISE = 0.005  # metres: what rises no higher from the plane is the plane
+_CELL = 0.25  # metres
+_MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
+_FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
+_THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
+
+
+def ground_of(obstacles: Obstacles, floor: FloorArea | None = None) -> Ground:
+    """The ground of what stands on the plane at height 0, which is ground all over, or where a place has its `floor`.
+
+    Plain where no surface lies within a step of the plane, or all of those rise from it by nothing.
+    """
+    triangles = level_triangles(obstacles)
+    least, most = triangles[:, :, 1].min(axis=1, initial=np.inf), triangles[:, :, 1].max(axis=1, initial=-np.inf)
+    within = (least <= STEP) & (most >= -STEP) & ((most > RISE) | (least < -RISE))
+    if not within.any():
+        return PLAIN
+    return _gridded(triangles, floor)
+
+
+def level_triangles(obstacles: Obstacles) -> Floats:
+    """The triangles (T, 3, 3) of what stands that are no steeper than one walks, and face up where it is closed."""
+    found = [np.empty((0, 3, 3))]
+    for _, shape, center, turn in obstacles:
+        corners = quaternion.rotate(turn, triangles_of(shape).reshape(-1, 3)).reshape(-1, 3, 3) + center
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        up = np.abs(normals[:, 1]) if isinstance(shape, Mesh) else normals[:, 1]
+        steep = np.cos(STEEPEST) * np.linalg.norm(normals, axis=1)
+        found.append(corners[(up >= steep * (1.0 - 1e-9)) & (up > _FLAT)])
+    return np.concatenate(found)
+
+
+def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
+    flat = triangles[:, :, [0, 2]]
+    least, most = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
+    if floor is not None:
+        corner = np.array(floor.origin)
+        least, most = np.minimum(least, corner), np.maximum(most, corner + floor.cell * np.array(floor.there.shape))
+    cell = max(_CELL, float(np.sqrt(np.prod(most - least + _CELL) / _MOST_CELLS)))
+    while True:
+        wide, deep = (int(size / cell) + 1 for size in (most - least).tolist())
+        spans = _spans(flat, least, cell, (wide, deep))
+        count = int(((spans[:, 1] - spans[:, 0] + 1) * (spans[:, 3] - spans[:, 2] + 1)).sum())
+        if count <= _MOST_MEMBERS:
+            break
+        cell *= 2.0
+    starts, members = _members(spans, wide, deep, count)
+    begins = (float(least[0]), float(least[1]))
+    level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
+    return Ground(False, STEP, begins, cell, (wide, deep), starts, members, _planes(triangles), level, floor is None)
+
+
+def _planes(triangles: Floats) -> Floats:
+    """Triangles (T, 3, 3) as `Ground` has them, turned so that seen from above each corner has the next to its left."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    u, v = b - a, c - a
+    area = u[:, 2] * v[:, 0] - u[:, 0] * v[:, 2]
+    turned = area < 0.0
+    u, v = np.where(turned[:, None], v, u), np.where(turned[:, None], u, v)
+    area = np.abs(area)
+    along_x = (u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / area
+    along_z = (v[:, 0] * u[:, 1] - u[:, 0] * v[:, 1]) / area
+    columns = [a[:, 0], a[:, 2], a[:, 1], *(a + u)[:, [0, 2]].T, *(a + v)[:, [0, 2]].T, along_x, along_z]
+    return np.ascontiguousarray(np.stack(columns, axis=1))
+
+
+def _spans(flat: Floats, least: Floats, cell: float, shape: tuple[int, int]) -> Longs:
+    """The first and the last cell along x, and along z, (T, 4) of triangles (T, 3, 2) seen from above."""
+    low = np.floor((flat.min(axis=1) - least) / cell).astype(np.int64)
+    high = np.floor((flat.max(axis=1) - least) / cell).astype(np.int64)
+    last = np.array(shape) - 1
+    low, high = np.clip(low, 0, last), np.clip(high, 0, last)
+    return np.ascontiguousarray(np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1))
+
+
+@exact_kernel
+def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Longs]:
+    """Where each cell's triangles begin (cells + 1,), and their numbers (count,)."""
+    starts, members = np.zeros(wide * deep + 1, np.int64), np.empty(count, np.int64)
+    for t in range(spans.shape[0]):
+        for ix in range(spans[t, 0], spans[t, 1] + 1):
+            for iz in range(spans[t, 2], spans[t, 3] + 1):
+                starts[ix * deep + iz + 1] += 1
+    for c in range(wide * deep):
+        starts[c + 1] += starts[c]
+    filled = starts.copy()
+    for t in range(spans.shape[0]):
+        for ix in range(spans[t, 0], spans[t, 1] + 1):
+            for iz in range(spans[t, 2], spans[t, 3] + 1):
+                cell = ix * deep + iz
+                members[filled[cell]] = t
+                filled[cell] += 1
+    return starts, members
+
+
+def _floor_cells(floor: FloorArea, corner: tuple[float, float], cell: float, shape: tuple[int, int]) -> Bools:
+    """The cells (nx nz,) in which a place has its ground floor, or nearly."""
+    along = np.arange(-_THRESHOLD, cell + _THRESHOLD, floor.cell)
+    x = corner[0] + cell * np.arange(shape[0])[:, None] + along
+    z = corner[1] + cell * np.arange(shape[1])[:, None] + along
+    found = np.zeros(shape, np.bool_)
+    for i in range(len(along)):
+        for j in range(len(along)):
+            found |= floor.holds(*np.broadcast_arrays(x[:, i][:, None], z[:, j][None, :]))
+    return found.reshape(-1)
