@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from elbowroom.planning.exact.joint.bounds import Problem, bounds_of
 from elbowroom.planning.exact.joint.dynamic_programming import sweep
-from elbowroom.planning.exact.joint.reachability import Reach, reach
+from elbowroom.planning.exact.joint.reachability import reach
 from elbowroom.planning.result import PlanStatus
 
 Floats32 = NDArray[np.float32]
@@ -39,29 +39,30 @@ class JointPath(NamedTuple):
     """How a search of the product ended."""
 
     status: PlanStatus
-    reach: Reach | None  # how deep paths lead, where it was proved that none leads to the end: EXHAUSTED
     cost: float  # of the cheapest path to the last depth; infinite unless FOUND
     nodes: Indices  # (n+1, 3) waist, left and right posture at each depth; (0, 3) unless FOUND
     states: int  # triples that were settled
 
 
 _NONE = np.empty((0, 3), np.int64)
+NO_PATH = JointPath(PlanStatus.EXHAUSTED, np.inf, _NONE, 0)
 
 
 def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
     """The cheapest path from depth 0 to the last, or the proof that there is none.
 
-    At most `budget` triples are settled; the proof is made once the first few selections have found nothing.
+    At most `budget` triples are settled; the proof is made at once where a group by itself has none, else once the
+    first few selections have found nothing.
     """
     bounds = bounds_of(problem)
-    everyone = [np.isfinite(through) for through in bounds.through]
-    possible = all(bool(mask.any(axis=1).all()) for mask in everyone)
+    if not all(bool(np.isfinite(through).any(axis=1).all()) for through in bounds.through):
+        return NO_PATH
     states, count, proved = 0, _FIRST, False
     while True:
-        if not proved and (not possible or count > _FEW):
-            deepest, proved = reach(problem), True
-            if deepest.depth < len(problem.waist_edges):
-                return JointPath(PlanStatus.EXHAUSTED, deepest, np.inf, _NONE, states)
+        if not proved and count > _FEW:
+            if reach(problem).depth < len(problem.waist_edges):
+                return NO_PATH._replace(states=states)
+            proved = True
         chosen = [_cheapest(through, count) for through in bounds.through]
         states += _size(chosen)
         if states > budget:
@@ -76,11 +77,11 @@ def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
         if states > budget:
             return _stopped(states)
         cost, nodes = sweep(problem, *needed)
-    return JointPath(PlanStatus.FOUND, None, cost, nodes, states)
+    return JointPath(PlanStatus.FOUND, cost, nodes, states)
 
 
 def _stopped(states: int) -> JointPath:
-    return JointPath(PlanStatus.OUT_OF_BUDGET, None, np.inf, _NONE, states)
+    return JointPath(PlanStatus.OUT_OF_BUDGET, np.inf, _NONE, states)
 
 
 def _cheapest(through: Floats32, count: int) -> Bools:

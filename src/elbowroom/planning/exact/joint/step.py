@@ -18,7 +18,7 @@ from elbowroom.body.kinematics import BodyModel, chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.exact.joint.bounds import Problem, path_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
-from elbowroom.planning.exact.joint.product import JointPath, joint_path
+from elbowroom.planning.exact.joint.product import NO_PATH, JointPath, joint_path
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
@@ -133,7 +133,7 @@ class JointStep:
                 return path
             count *= _GROWTH
         needed = np.isfinite(alone) & (alone <= path.cost)
-        if self.spent or (self.filled >= needed).all():
+        if self.spent or (wanted >= needed).all():
             return path
         go_on()
         better = self._among(self.filled | needed)
@@ -145,12 +145,33 @@ class JointStep:
         return self.checks > self.settings.checks or self.states > self.settings.triples
 
     def _among(self, waists: Bools) -> JointPath:
-        """The cheapest path among some waists (n+1, W+E), filled in first."""
+        """The cheapest path among some waists (n+1, W+E), filled in first, as far as each group has paths."""
+        alive = [np.isfinite(self.nodes[g].base[0]) for g in PRODUCT]
         for depth in range(len(waists)):
-            self.fill(depth, waists[depth])
+            if depth > 0:
+                alive = [_led_to(edges[depth - 1], here) for edges, here in zip(self._all_edges, alive, strict=True)]
+            self.fill(depth, waists[depth] & alive[0])
+            alive = [here & open_ for here, open_ in zip(alive, self._open(depth, alive[0]), strict=True)]
+            if not all(here.any() for here in alive):
+                return NO_PATH
         path = joint_path(self.problem(), self.settings.budget - self.states)
         self.states += path.states
         return path
+
+    @property
+    def _all_edges(self) -> list[Floats32]:
+        """The edges of the groups that are combined, in the order of `PRODUCT`."""
+        return [self.edges[g] for g in PRODUCT]
+
+    def _open(self, depth: int, alive: Bools) -> list[Bools]:
+        """Nodes of a slice that are in some free triple under waists that are `alive` (W+E,), by each arm itself."""
+        waists = np.flatnonzero(alive & self.filled[depth])
+        free = [np.isfinite(costs[depth, waists]) for costs in self.costs]
+        under = np.isfinite(self.nodes[0].base[depth, waists] + self._others[depth, waists])
+        usable = under & free[0].any(axis=1) & free[1].any(axis=1)
+        waist = np.zeros(len(alive), np.bool_)
+        waist[waists[usable]] = True
+        return [waist, *(arm[usable].any(axis=0) for arm in free)]
 
     def problem(self) -> Problem:
         """The product as far as it is filled in."""
@@ -257,6 +278,12 @@ class JointStep:
         apart[known.shape[0] :] = arm_clearances(own[0], every, between) >= SPARE
         apart[: known.shape[0], known.shape[1] :] = arm_clearances(segments[0], own[1], between) >= SPARE
         return apart
+
+
+def _led_to(edges: Floats32, nodes: Bools) -> Bools:
+    """The nodes (V,) to which edges (V, V) lead from some `nodes` (V,)."""
+    found: Bools = np.isfinite(edges[nodes]).any(axis=0)
+    return found
 
 
 def _padded(postures: Postures) -> Floats:
