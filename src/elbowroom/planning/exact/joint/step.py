@@ -146,7 +146,7 @@ class JointStep:
 
     def _among(self, waists: Bools) -> JointPath:
         """The cheapest path among some waists (n+1, W+E), filled in first, as far as each group has paths."""
-        alive = [np.isfinite(self.nodes[g].base[0]) for g in PRODUCT]
+        alive: list[Bools] = [np.isfinite(self.nodes[g].base[0]) for g in PRODUCT]
         for depth in range(len(waists)):
             if depth > 0:
                 alive = [_led_to(edges[depth - 1], here) for edges, here in zip(self._all_edges, alive, strict=True)]
@@ -282,8 +282,7 @@ class JointStep:
 
 def _led_to(edges: Floats32, nodes: Bools) -> Bools:
     """The nodes (V,) to which edges (V, V) lead from some `nodes` (V,)."""
-    found: Bools = np.isfinite(edges[nodes]).any(axis=0)
-    return found
+    return np.asarray(np.isfinite(edges[nodes]).any(axis=0))
 
 
 def _padded(postures: Postures) -> Floats:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import CHILDREN, LOCAL, SEARCH_ORDER, DofGroup, columns_of, side_by_side
+from elbowroom.body.dof import CHILDREN, LOCAL, SEARCH_ORDER, DofGroup, columns_of, followers_of, side_by_side
 from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
 from elbowroom.planning.exact.group.path_problem import PathProblem
@@ -51,20 +51,26 @@ class ChildSearch:
         self._problem = problem  # with the goals under the waist's path
         self._contacts: list[Contact] = []  # of all motions along this path
 
-    def under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
-        """The children's paths under the waist's; those that have a guide follow it."""
-        horizon = self._problem.path.horizon
-        if waist.reached < horizon:
+    def followers(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
+        """The paths of those children that could follow the waist; they come first, and depend on no other child."""
+        if waist.reached < self._given.path.horizon:
             return GroupPaths((), waist, waist.reached)
-        self._problem = self._given._replace(goals=keeping_gaze(self._given.goals, waist.keys))
-        paths, first, whole, touching = [waist], 0, bool(self._contacts), 0
+        self._take(waist)
+        paths = [waist]
+        failed = self._searched(followers_of(DofGroup.WAIST), paths, guides, evidence_log)
+        return failed or GroupPaths(tuple(paths), None, self._given.path.horizon)
+
+    def under(self, followers: GroupPaths, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
+        """The children's paths under the waist's, those of its `followers` known; who has a guide follows it."""
+        if followers.failed is not None:
+            return followers
+        horizon, (waist, *_) = self._problem.path.horizon, followers.paths
+        self._take(waist)
+        paths, first, touching = list(followers.paths), len(followers.paths) - 1, 0
         for _ in range(self._rounds):
             del paths[1 + first :]
-            for group in CHILDREN[first:]:
-                path = self._path(group, paths, guides.get(group), evidence_log, whole=whole)
-                if path.reached < horizon:
-                    return GroupPaths(tuple(paths), path, path.reached)
-                paths.append(path)
+            if failed := self._searched(CHILDREN[first:], paths, guides, evidence_log):
+                return failed
             found = GroupPaths.joined(paths, horizon, self._problem.goals)
             contact = self._self_contact(found)
             if contact is None:
@@ -72,9 +78,28 @@ class ChildSearch:
             number, touching = contact
             if number == 0:
                 return GroupPaths((), waist, touching)
-            first, whole = number - 1, True
+            first = number - 1
             self._remember(paths, number, touching)
         return GroupPaths(tuple(paths[:-1]), paths[-1], touching)
+
+    def _take(self, waist: GroupPath) -> None:
+        """Search under this path of the waist from now on."""
+        self._problem = self._given._replace(goals=keeping_gaze(self._given.goals, waist.keys))
+
+    def _searched(
+        self,
+        groups: tuple[DofGroup, ...],
+        paths: list[GroupPath],
+        guides: Mapping[DofGroup, Guide],
+        evidence_log: EvidenceLog,
+    ) -> GroupPaths | None:
+        """Add the paths of some groups to those of the groups before them; how far they led if one has none."""
+        for group in groups:
+            path = self._path(group, paths, guides.get(group), evidence_log, whole=bool(self._contacts))
+            if path.reached < self._problem.path.horizon:
+                return GroupPaths(tuple(paths), path, path.reached)
+            paths.append(path)
+        return None
 
     def _path(
         self,

@@ -58,6 +58,14 @@ class Effort(Enum):
     REFINED = "refined"  # then with more postures
 
 
+class _Trunk(NamedTuple):
+    """Paths of the waist and of what could follow it."""
+
+    waist: GroupPath  # as it was found, with the costs of its nodes
+    found: GroupPaths
+    guides: Mapping[DofGroup, Guide]  # that the waist's children follow
+
+
 @dataclass(eq=False)
 class UpperBodySearch:
     """One root path to be dressed."""
@@ -117,42 +125,50 @@ class UpperBodySearch:
         return self.problem.required if enough else self.problem.required.at_most(most)
 
     def _cost(self, found: GroupPaths) -> float:
-        """What ways cost that are free: distance from the goals and its changes, squared radians."""
-        away = found.keys - found.goals
-        return float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
+        """What paths cost that are free: distance from the goals and its changes, squared radians."""
+        cost, goals = 0.0, keeping_gaze(self.goals, found.paths[0].keys)
+        for group, path in zip(SEARCH_ORDER, found.paths, strict=False):
+            away = path.keys - goals[:, columns_of(group)]
+            cost += float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
+        return cost
 
     def apart(self) -> GroupPaths:
-        """Each group by itself."""
+        """Each group by itself: the waist and what could follow it, or both as one limb; then the arms."""
         self._waist = self._waist_path(self._crouching)
-        found = self._under(self._waist)
-        if self._is_pressed(found):
-            found = self._with_followers(found)
+        trunks = [_Trunk(self._waist, self._children.followers(self._waist, {}, self.evidence_log), {})]
+        if self._is_pressed(trunks[0].found):
+            trunks += self._as_one()
+        if len(trunks) > 1 and self._is_better(trunks[1].found, trunks[0].found):
+            trunks.reverse()
+        found = self._with_arms(trunks[0])
+        if found.failed is not None and len(trunks) > 1:
+            other = self._with_arms(trunks[1])
+            if self._is_better(other, found):
+                found = other
+                trunks.reverse()
+        self._waist = trunks[0].waist
         self.blocked = len(found.paths), min(found.reached + 1, self.path.horizon)
         return found
 
     def _is_pressed(self, found: GroupPaths) -> bool:
         """Whether a group that could follow the waist finds no path under it, or only one far from its goals."""
-        for group in followers_of(DofGroup.WAIST):
-            number, at = SEARCH_ORDER.index(group), columns_of(group)
-            if number == len(found.paths):
+        if found.failed is not None:
+            return len(found.paths) > 0
+        goals = keeping_gaze(self.goals, found.paths[0].keys)
+        for group, path in zip(SEARCH_ORDER[1:], found.paths[1:], strict=False):
+            if np.linalg.norm(path.keys - goals[:, columns_of(group)], axis=1).max() > _PRESSED:
                 return True
-            if number < len(found.paths):
-                away = found.paths[number].keys - keeping_gaze(self.goals, found.paths[0].keys)[:, at]
-                if np.linalg.norm(away, axis=1).max() > _PRESSED:
-                    return True
         return False
 
-    def _with_followers(self, other: GroupPaths) -> GroupPaths:
-        """The path of the whole trunk as one limb, and its followers guided by it; another one, if that is better."""
+    def _as_one(self) -> list[_Trunk]:
+        """The path of waist and followers as one limb, each of them guided by it; nothing if there is none."""
         trunk = self._waist_path(self._crouching, trunk=True)
         if trunk.reached < self.path.horizon:
-            return other
+            return []
         waist = self._waist_path(self._crouching, self._only(trunk.keys))
-        found = self._under(waist, self._following(trunk.keys))
-        if not self._is_better(found, other):
-            return other
-        self._waist = trunk._replace(velocities=waist.velocities, entries=waist.entries)
-        return found
+        guides = self._following(trunk.keys)
+        found = self._children.followers(waist, guides, self.evidence_log)
+        return [_Trunk(trunk._replace(velocities=waist.velocities, entries=waist.entries), found, guides)]
 
     def _only(self, keys: Floats) -> Guide:
         """A guide of the waist that leaves it no other path than through `keys` (n+1, d)."""
@@ -183,8 +199,13 @@ class UpperBodySearch:
         )
 
     def _under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide] | None = None) -> GroupPaths:
-        """The arms under a way of the waist."""
-        found = self._children.under(waist, guides or {}, self.evidence_log)
+        """The waist's children under a path of it."""
+        guides = guides or {}
+        return self._with_arms(_Trunk(waist, self._children.followers(waist, guides, self.evidence_log), guides))
+
+    def _with_arms(self, trunk: _Trunk) -> GroupPaths:
+        """A trunk's path, and those of the arms under it."""
+        found = self._children.under(trunk.found, trunk.guides, self.evidence_log)
         if found.failed is not None:
             self.deepest = max(self.deepest, found.reached)
         return found
