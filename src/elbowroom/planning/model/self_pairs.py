@@ -113,13 +113,13 @@ def with_waist(waists: Floats) -> Floats:
     return out
 
 
-def seen_from_chest(model: BodyModel, capsules: Indices, uppers: Floats, roots: Floats) -> Floats32:
-    """Some capsules (K, 6, N) in the chest frame, for upper bodies (N, LOCAL) and root states (N, 7)."""
+def seen_from_chest(model: BodyModel, uppers: Floats, roots: Floats) -> Floats32:
+    """All capsules (all, 6, N) in the chest frame, for upper bodies (N, LOCAL) and root states (N, 7)."""
     here = roots.copy()
     here[:, :3] = 0.0
     postures = _postures(uppers)
     chests = chest_frames(model, np.ascontiguousarray(postures[:, DofGroup.WAIST.at]))
-    segments = posture_capsules(model, postures, here)[capsules]
+    segments = posture_capsules(model, postures, here)
     return _into_frames(segments, *compose(*pelvis_frames(model, here), *chests))
 
 

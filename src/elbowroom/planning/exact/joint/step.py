@@ -186,14 +186,14 @@ class JointStep:
             return
         self.filled[depth, chosen] = True
         inner = self.configurations(0, depth)[chosen]
-        frames = self.chests(depth, inner)
+        frames, body = self.chests(depth, inner), self._body_under(depth, chosen)
         for g in range(1, len(self.nodes)):
             group, lanes, every = self.nodes[g], self.lanes(g, depth), np.ones(len(chosen), np.bool_)
             clear, checks = clearances_under(lanes, *frames, span_of(self.around.obstacles, depth), every)
             self.checks += checks
             clear = clear[:, : group.base.shape[1]]
             if depth > 0:
-                clear[self.touches_body(g, depth, chosen)] = -np.inf
+                clear[self._touching(g, depth, body)] = -np.inf
             lack = np.maximum(np.float32(self.settings.comfort) - clear, np.float32(0.0))
             cost = group.base[depth] + np.float32(self.settings.near) * np.minimum(lack, 1.0) ** 2
             cost[clear < group.margins[depth]] = _INFINITE
@@ -204,15 +204,21 @@ class JointStep:
 
     def touches_body(self, g: int, depth: int, waists: Indices) -> Bools:
         """Which nodes of a child touch what the waist alone poses under some waists (F,) of a slice, (F, W+E)."""
-        lanes, size, group = self.lanes(g, depth), self.nodes[g].base.shape[1], SEARCH_ORDER[g]
-        out = np.zeros((len(waists), size), np.bool_)
-        carriers = carriers_of(group)
-        if not carriers:
-            return out
+        return self._touching(g, depth, self._body_under(depth, waists))
+
+    def _body_under(self, depth: int, waists: Indices) -> Floats32:
+        """All capsules (F, all, 6) in the chest frame under some waists (F,) of a slice."""
         states = np.repeat(self.around.states[depth : depth + 1], len(waists), axis=0)
-        parts = self._body.parts(group, carriers, with_waist(self.configurations(0, depth)[waists]), states)
-        for row, axes in enumerate(parts.axes):
-            out[row] = touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
+        return self._body.seen(with_waist(self.configurations(0, depth)[waists]), states)
+
+    def _touching(self, g: int, depth: int, body: Floats32) -> Bools:
+        """Which nodes of a child touch what the waist alone poses of a `body` (F, all, 6), (F, W+E)."""
+        lanes, size, group = self.lanes(g, depth), self.nodes[g].base.shape[1], SEARCH_ORDER[g]
+        out = np.zeros((len(body), size), np.bool_)
+        if carriers := carriers_of(group):
+            parts = self._body.parts(group, carriers, body)
+            for row, axes in enumerate(parts.axes):
+                out[row] = touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[:size]
         return out
 
     def configurations(self, group: int, depth: int) -> Floats:

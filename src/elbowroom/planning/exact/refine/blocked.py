@@ -51,7 +51,8 @@ def waists_for(body: OwnBody, known: Known, blocked: Blocked, settings: Refineme
     clear, _ = clearances_under(
         lanes, places, turns, span_of(blocked.around.obstacles, blocked.depth), np.ones(1, np.bool_)
     )
-    free = (clear[0, : len(drawn)] >= blocked.margin) & ~body.folded(drawn)
+    free: Bools = clear[0, : len(drawn)] >= blocked.margin
+    free[free] = ~body.folded(drawn[free])
     return _worth(drawn, free, known.postures, blocked.goal, settings)
 
 
@@ -69,7 +70,7 @@ def children_for(body: OwnBody, known: Known, blocked: Blocked, settings: Refine
     free: Bools = clear[:, : len(drawn)] >= blocked.margin
     if carriers:
         states = np.repeat(blocked.around.states[blocked.depth][None], len(waists), axis=0)
-        parts = body.parts(known.group, carriers, with_waist(waists), states)
+        parts = body.parts(known.group, carriers, body.seen(with_waist(waists), states))
         for row, axes in enumerate(parts.axes):
             free[row] &= ~touches_body(lanes.lanes, lanes.balls, axes, parts.allowed, SPARE)[: len(drawn)]
     under_any: Bools = free.sum(axis=0) > 0

@@ -52,17 +52,20 @@ class OwnBody:
         self.pairs: SelfPairs = self_pairs(model, goals)
         self._goals = goals
 
-    def parts(self, group: DofGroup, others: tuple[DofGroup, ...], uppers: Floats, states: Floats) -> Parts:
-        """What a group must keep away from of `others`, for N upper bodies (N, LOCAL) and root states (N, 7)."""
+    def seen(self, uppers: Floats, states: Floats) -> Floats32:
+        """All capsules (N, all, 6) in the chest frame, for N upper bodies (N, LOCAL) and root states (N, 7)."""
+        return np.ascontiguousarray(seen_from_chest(self.model, uppers, states).transpose(2, 0, 1))
+
+    def parts(self, group: DofGroup, others: tuple[DofGroup, ...], body: Floats32) -> Parts:
+        """What a group must keep away from of `others`, where these are as in a `body` that was `seen` (N, all, 6)."""
         capsules, allowed = self.pairs.beside(group, others)
-        axes = seen_from_chest(self.model, capsules, uppers, states).transpose(2, 0, 1)
-        return Parts(np.ascontiguousarray(axes), np.ascontiguousarray(allowed))
+        return Parts(np.ascontiguousarray(body[:, capsules]), np.ascontiguousarray(allowed))
 
     def resting(self, group: DofGroup, postures: Postures) -> Bools:
         """Which postures (W,) touch the body at some phase of the natural walk, all other groups being natural."""
         states = _walking()
         natural = self._goals(RootPath(0.0, 1.0, states))
-        parts = self.parts(group, neighbours_of(group), natural, states)
+        parts = self.parts(group, neighbours_of(group), self.seen(natural, states))
         found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
         touching: Bools = np.any(found, axis=0)
         return touching
@@ -76,7 +79,7 @@ class OwnBody:
         gaps = self_clearances(
             self.model, self.pairs, np.tile(states, (len(waists), 1)), np.repeat(uppers, len(states), axis=0)
         )[SEARCH_ORDER.index(DofGroup.WAIST)]
-        found: Bools = gaps.reshape(len(waists), -1).min(axis=1) < 0.0
+        found: Bools = gaps.reshape(len(waists), len(states)).min(axis=1) < 0.0
         return found
 
     def own_body_nodes(self, group: DofGroup, postures: Postures, resting: Bools) -> OwnBodyNodes:
