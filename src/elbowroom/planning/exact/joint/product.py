@@ -46,6 +46,7 @@ class JointPath(NamedTuple):
 
 _NONE = np.empty((0, 3), np.int64)
 NO_PATH = JointPath(PlanStatus.EXHAUSTED, np.inf, _NONE, 0)
+OUT_OF_BUDGET = JointPath(PlanStatus.OUT_OF_BUDGET, np.inf, _NONE, 0)
 
 
 def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
@@ -64,24 +65,22 @@ def joint_path(problem: Problem, budget: int = 4_000_000) -> JointPath:
                 return NO_PATH._replace(states=states)
             proved = True
         chosen = [_cheapest(through, count) for through in bounds.through]
-        states += _size(chosen)
-        if states > budget:
-            return _stopped(states)
+        size = _size(chosen)
+        if states + size > budget:
+            return OUT_OF_BUDGET._replace(states=states)
+        states += size
         cost, nodes = sweep(problem, *chosen)
         if np.isfinite(cost):
             break
         count *= _GROWTH
     needed = [through <= cost + _ROUNDING for through in bounds.through]
     if not all(bool((mask >= need).all()) for mask, need in zip(chosen, needed, strict=True)):
-        states += _size(needed)
-        if states > budget:
-            return _stopped(states)
+        size = _size(needed)
+        if states + size > budget:
+            return OUT_OF_BUDGET._replace(states=states)
+        states += size
         cost, nodes = sweep(problem, *needed)
     return JointPath(PlanStatus.FOUND, cost, nodes, states)
-
-
-def _stopped(states: int) -> JointPath:
-    return JointPath(PlanStatus.OUT_OF_BUDGET, np.inf, _NONE, states)
 
 
 def _cheapest(through: Floats32, count: int) -> Bools:

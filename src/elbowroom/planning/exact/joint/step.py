@@ -18,7 +18,7 @@ from elbowroom.body.kinematics import BodyModel, chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.exact.joint.bounds import Problem, path_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
-from elbowroom.planning.exact.joint.product import NO_PATH, JointPath, joint_path
+from elbowroom.planning.exact.joint.product import NO_PATH, OUT_OF_BUDGET, JointPath, joint_path
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, blocks_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE, touches_body
@@ -54,7 +54,7 @@ class JointSettings(NamedTuple):
     near: float  # weight of lacking comfort
     comfort: float  # metres
     budget: int = 1_500_000  # triples settled
-    # What is begun is ended, but nothing more is begun after so many capsules checked, or so many triples settled.
+    # No slice more is filled in after so many capsules checked, or so many triples settled.
     checks: int = 2_000_000
     triples: int = 600_000
 
@@ -154,6 +154,8 @@ class JointStep:
             alive = [here & open_ for here, open_ in zip(alive, self._open(depth, alive[0]), strict=True)]
             if not all(here.any() for here in alive):
                 return NO_PATH
+            if self.spent:
+                return OUT_OF_BUDGET
         path = joint_path(self.problem(), self.settings.budget - self.states)
         self.states += path.states
         return path

@@ -8,9 +8,10 @@ from elbowroom.planning.result import LocalPlan
 
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _SOON = 1.05  # seconds ahead: what is nearer is thought through at once
-# Work is counted in capsules checked, some 10 ns each. These cost as much as so many of them:
-_TRIPLE, _NODE, _PATH, _PLACE = 2.5, 10, 150_000, 60  # a triple, a node, a path for the upper body, a place of the root
-_MOST, _MOST_IN_A_HURRY = 4e6, 1e6  # work of a plan after which nothing is begun but a safe end
+# Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
+# path for the upper body, the tables of all groups together, a place of the root.
+_TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
+_MOST, _MOST_IN_A_HURRY = 2.5e6, 1e6  # work of a plan after which nothing is begun but a safe end
 
 
 def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
@@ -44,7 +45,7 @@ class AttemptOrder:
         """A path was sought for the upper body."""
         self._work += _PATH + sum(row.checks + _NODE * row.nodes for row in upper.evidence)
         if upper.joint is not None:
-            self._work += upper.joint.checks + _TRIPLE * upper.joint.states
+            self._work += _TABLES + upper.joint.checks + _TRIPLE * upper.joint.states
 
     @property
     def spent(self) -> bool:

@@ -19,7 +19,13 @@ class EvidenceLog:
         """`go_on` is called before each search, and raises an exception to call the plan off."""
         self._caches, self._weights, self.go_on = caches, weights, go_on
         self._rows: list[GroupEvidence] = []
+        self._joint_before: JointEvidence | None = None
         self.joint: JointEvidence | None = None
+
+    def begin_after(self, earlier: "EvidenceLog") -> None:
+        """Keep what earlier searches of the same path cost too."""
+        self._rows = list(earlier._rows)
+        self.joint = self._joint_before = earlier.joint
 
     def search(self, group: DofGroup, task: GroupTask, *, trunk: bool = False) -> GroupPath:
         """`search_group`, entered under `group`; of the whole trunk, if told so, as one limb."""
@@ -33,9 +39,13 @@ class EvidenceLog:
         return way
 
     def enter_joint(self, step: JointStep, status: PlanStatus, nanoseconds: int) -> None:
-        """What the joint step cost until now."""
-        before = 0 if self.joint is None else self.joint.nanoseconds
-        self.joint = JointEvidence(status, step.states, step.checks, before + nanoseconds)
+        """What the joint step of this search cost until now."""
+        states, checks, spent = step.states, step.checks, nanoseconds
+        if self._joint_before is not None:
+            states, checks = states + self._joint_before.states, checks + self._joint_before.checks
+        if self.joint is not None:
+            spent += self.joint.nanoseconds
+        self.joint = JointEvidence(status, states, checks, spent)
 
     def evidence(self) -> tuple[GroupEvidence, ...]:
         """A row for each group that was searched, in order."""
