@@ -48,7 +48,7 @@ def gaps_of(side: int, arms: Floats, uppers: Floats, state: Floats) -> Floats:
     """How far beyond what is allowed arm `side` is at `arms` (V, d) from the body, and the right arm from the left."""
     group = ARMS[side]
     capsules, allowed = BODY.pairs.beside(group, group.clear_of)
-    axes = seen_from_chest(MODEL, capsules, uppers[None], state[None])[:, :, 0]
+    axes = seen_from_chest(MODEL, uppers[None], state[None])[capsules, :, 0]
     segments = group_capsules(MODEL, group, arms).astype(np.float64)
     return np.array(
         [

@@ -103,7 +103,7 @@ def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
             least[group] = min(least[group], crossing)
             if group not in CHILDREN:
                 continue
-            bodies = seen_from_chest(model, capsules, uppers[n : n + 1], roots[n : n + 1])[:, :, 0]
+            bodies = seen_from_chest(model, uppers[n : n + 1], roots[n : n + 1])[capsules, :, 0]
             gap = np.full(1, np.inf, np.float32)
             own = segments[group][:, :, n : n + 1].copy()
             lower_to_body(own, np.ascontiguousarray(bodies), allowed, np.ones(len(capsules), np.bool_), gap)

@@ -49,13 +49,13 @@ def test_a_plan_in_a_hurry_is_soon_spent() -> None:
     counts = []
     for hurry in (True, False):
         order, count = AttemptOrder(), 0
-        order.begin(hurry=hurry)
+        order.begin(hurry=hurry, moves=True)
         while not order.spent:
             order.enter_root(1000)
             order.enter(plain)
             count += 1
         counts.append(count)
-        order.begin(hurry=hurry)
+        order.begin(hurry=hurry, moves=True)
         order.enter(joint)
         assert order.spent is hurry
     assert 0 < counts[0] < counts[1]

@@ -11,7 +11,8 @@ _SOON = 1.05  # seconds ahead: what is nearer is thought through at once
 # Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
 # path for the upper body, the tables of all groups together, a place of the root.
 _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
-_MOST, _MOST_IN_A_HURRY = 2.5e6, 1e6  # work of a plan after which nothing is begun but a safe end
+# Work of a plan after which nothing is begun but a safe end: of who stands, of who walks, and in a hurry.
+_MOST_STANDING, _MOST, _MOST_IN_A_HURRY = 4e6, 3e6, 1e6
 
 
 def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
@@ -33,9 +34,10 @@ class AttemptOrder:
         """Turns to come after the last plan: one for each path that had none yet, the last for steps to elsewhere."""
         return self._paths
 
-    def begin(self, *, hurry: bool) -> None:
+    def begin(self, *, hurry: bool, moves: bool) -> None:
         """Begin a plan."""
-        self._paths, self._work, self._most = 0, 0.0, _MOST_IN_A_HURRY if hurry else _MOST
+        self._paths, self._work = 0, 0.0
+        self._most = _MOST_IN_A_HURRY if hurry else _MOST if moves else _MOST_STANDING
 
     def enter_root(self, checks: int) -> None:
         """A root path was made, for which so many places and postures were looked at."""

@@ -57,7 +57,7 @@ class NewPlan:
         `left` is what is left of a walk that has no new end at first sight: that is searched more closely too.
         """
         tried: list[_Tried] = []
-        self.body.memory.attempts.begin(hurry=self.hurry)
+        self.body.memory.attempts.begin(hurry=self.hurry, moves=self._moves)
         found = (self._way_out() if self.at_last else None) or self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
@@ -192,8 +192,8 @@ class NewPlan:
     def _why(self, upper: UpperPlan) -> Blockade | None:
         """Why there is no path; None as long as that is far off: most of it is solved when it has come nearer.
 
-        On the way to a place that was asked about before it is the answer of then; one who has come to a stand asks
-        anew, once, and not in a plan that has cost enough. Near the end of a path it is now and then only the motion
+        On the way to a place that was asked about before it is the answer of then, and none is sought in a plan that
+        has cost enough; one who has come to a stand asks anew, once. Near the end of a path it is now and then only the motion
         between free postures that touches: the earlier answer, which names obstacles, says more.
         """
         path, depth, last = upper.search.path, upper.search.blocked[1], self.body.memory.blockade
@@ -202,7 +202,7 @@ class NewPlan:
         told = math.dist(self.body.memory.asked_at, here) < _STANDING  # that is: from here
         if last is not None and near and (moves or told):
             why = replace(last, time=path.start_time + path.interval * depth, ahead=_walked(path, depth))
-        elif self.body.memory.attempts.spent or (moves and depth * path.interval > _FAR_OFF):
+        elif moves and (self.body.memory.attempts.spent or depth * path.interval > _FAR_OFF):
             return None
         else:
             why, self.body.memory.asked_at = upper.search.blockade(), here
