@@ -193,8 +193,8 @@ class NewPlan:
         """Why there is no path; None as long as that is far off: most of it is solved when it has come nearer.
 
         On the way to a place that was asked about before it is the answer of then, and none is sought in a plan that
-        has cost enough; one who has come to a stand asks anew, once. Near the end of a path it is now and then only the motion
-        between free postures that touches: the earlier answer, which names obstacles, says more.
+        has cost enough; one who has come to a stand asks anew, once. Near the end of a path it is now and then only the
+        motion between free postures that touches: the earlier answer, which names obstacles, says more.
         """
         path, depth, last = upper.search.path, upper.search.blocked[1], self.body.memory.blockade
         place, moves, here = _place(upper), self._moves, (self.query.root.x, self.query.root.z)
