@@ -67,7 +67,7 @@ def test_server_messages_survive_the_wire(message: ServerMessage) -> None:
 def test_names_on_the_wire_are_camel_case() -> None:
     assert json.loads(encode(Configure(queue_size=4)))["queueSize"] == 4
     assert {tag(kind) for kind in get_args(ClientMessage)} == {
-        "input", "configure", "clock", "reset", "goto", "overlays", "ping",
+        "input", "configure", "clock", "reset", "goto", "push", "overlays", "ping",
     }  # fmt: skip
 
 

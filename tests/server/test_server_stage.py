@@ -3,6 +3,7 @@
 import asyncio
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.body.stock import stock_avatar_path
+from elbowroom.errors import InputError
 from elbowroom.experiment.rehearsal import rehearse_detour
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings
@@ -18,7 +20,7 @@ from elbowroom.server.library import Library
 from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
 from elbowroom.server.pose_frame import parse
 from elbowroom.server.rate_limit import TokenBucket
-from elbowroom.server.schema.commands import ClockMessage, Input, Overlays
+from elbowroom.server.schema.commands import ClockMessage, Input, Overlays, Push
 from elbowroom.server.schema.progress import Notice, Plan, Pong
 from elbowroom.server.stage import STEP, Stage
 from elbowroom.server.walk import Walk, WalkSettings, at_speed
@@ -251,3 +253,30 @@ def test_messages_keep_their_order() -> None:
         return socket.sent
 
     assert [f'"t":{i}.0' in str(text) for i, text in enumerate(asyncio.run(scenario()))] == [True] * 5
+
+
+def test_what_is_pushed_is_told_while_it_moves_and_is_back_after_a_reset(library: Library) -> None:
+    walk = Walk(library.avatars.get("stock"), library.scenes["d"], WalkSettings())
+    stage = Stage(walk, 0.0)
+    assert stage.pushed() == []
+    stage.push(Push(1, (-2.0, 1.75)))
+    assert stage.restless is False
+    told = [pushed for tick in range(1, 120) for pushed in (stage.advance(tick / 60), stage.pushed())[1]]
+    assert {pushed.obstacle for pushed in told} == {1}
+    assert told[-1].center[0] == pytest.approx(-2.0, abs=0.01)
+    assert max(b.center[0] for b in told) <= -0.6
+    assert all(a.time < b.time for a, b in pairwise(told))
+    assert stage.status(2.0).clearance is not None
+    for tick in range(120, 180):
+        stage.advance(tick / 60)
+        stage.pushed()
+    assert stage.pushed() == []
+    epoch = told[-1].epoch
+    stage.reset()
+    assert stage.pushed() == []
+    assert walk.things == {}
+    stage.push(Push(0, (3.0, 1.4)))
+    stage.advance(3.1)
+    assert [pushed.epoch for pushed in stage.pushed()] == [epoch + 1]
+    with pytest.raises(InputError, match="by this number"):
+        stage.push(Push(77, (0.0, 0.0)))

@@ -9,6 +9,7 @@ import type { AvatarMessage, Plan, SceneMessage, Status } from "./generated/mess
 import type { Intent, SteeringMode } from "./input/steering";
 import type { ShownPose } from "./net/pose_timeline";
 import { OverlayDrawing, type Moment } from "./overlays/overlays";
+import { NOTHING_LOOSE } from "./stage/loose";
 import type { Theme } from "./stage/palette";
 import { cheaper, fixedQuality, QualityGovernor, startingQuality, type Quality, type QualityName } from "./stage/quality";
 import { Stage } from "./stage/stage";
@@ -79,8 +80,10 @@ export class Picture {
     this.overlays.repaint();
   }
 
-  showScene(scene: SceneMessage): void {
+  /** Shows a scene, with what was pushed in it. */
+  showScene(scene: SceneMessage, loose = NOTHING_LOOSE): void {
     this.world.show(scene, this.stage.palette, this.stage.currentQuality.rich);
+    this.world.loosen(loose);
     this.overlays.setScene(this.world.boxes, this.world.names);
     this.last = [Infinity, Infinity];
   }

@@ -47,6 +47,11 @@ export interface AppState {
   readonly replay: unknown;
   readonly going: unknown;
   readonly build: unknown;
+  /** The number of the obstacle in hand; where each of those is that were pushed. */
+  readonly held: number | null;
+  readonly pushed: unknown;
+  /** Where the middles of the obstacles are in the view, CSS pixels. */
+  readonly obstaclesOnScreen: readonly (readonly [number, number])[];
   readonly steps: number;
   readonly footprints: number;
 }
@@ -108,6 +113,9 @@ function snapshot(app: App): AppState {
     replay: app.modes.replay.state,
     going: app.somewhere.last,
     build: app.modes.build.state,
+    held: app.pushing.held,
+    obstaclesOnScreen: picture.world.boxes.map(({ center }) => picture.onScreen(center)),
+    pushed: [...app.pushing.loose.keys()].map((number) => ({ number, center: [...(picture.world.boxes[number]?.center ?? [])] })),
     steps: app.steps.count,
     footprints: app.steps.printed,
   };

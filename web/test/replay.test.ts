@@ -5,11 +5,12 @@ import { WalkKeeper } from "../src/replay/keeper";
 import { marksOf } from "../src/replay/marks";
 import { Player } from "../src/replay/player";
 import { packed } from "../src/replay/save";
+import { NOTHING_LOOSE } from "../src/stage/loose";
 import { durationOf, frameAt, hasAssist, poseAt, samePlace, type Take } from "../src/replay/take";
 
 const SCENE = { name: "a", title: "Scene A", obstacles: [] } as unknown as SceneMessage;
 const AVATAR = { revision: 1, bones: [{ name: "hips", node: 0 }, { name: "leftLowerArm", node: 1 }], capsules: [] } as unknown as AvatarMessage;
-const HERE = { scene: SCENE, avatar: AVATAR, planner: "exact" };
+const HERE = { scene: SCENE, loose: NOTHING_LOOSE, avatar: AVATAR, planner: "exact" };
 const PLAY = POSE_PHASES.indexOf("play");
 
 function frame(simTime: number, changes: Partial<PoseFrame> = {}): PoseFrame {

@@ -91,9 +91,8 @@ def _export_scene(name: str | None, recording: Path | None, out: Path, *, json: 
 
 def _with_place(glb: bytes, recorded: "Recording", animation: "Animation") -> bytes:
     from elbowroom.export.place import with_place
-    from elbowroom.world.scene import Scene
 
-    return with_place(glb, Scene.from_dict(recorded.header.scene, str(recorded.path)), animation)
+    return with_place(glb, recorded.scene(), animation)
 
 
 def _keep(path: Path, data: bytes) -> None:

@@ -37,12 +37,11 @@ def verify(
     from elbowroom.control.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion
     from elbowroom.experiment.judge.verdict import JudgeSettings, judge
-    from elbowroom.world.scene import Scene
 
     settings, recorded = JudgeSettings(rate=rate, mesh=mesh), Recording(recording)
     compile_first(quiet=quiet)
     motion = ShownMotion.of(recorded)
-    scene = Scene.from_dict(recorded.header.scene, str(recording))
+    scene = recorded.scene()
     with progress_bar("Judging", float(motion.times[-1]), quiet) as bar:
         humanoid = recorded.header.avatar.load(avatar)
         verdict = judge(motion, humanoid, scene, settings, lambda time: bar.move(time, f"{time:.1f} s"))

@@ -21,6 +21,7 @@ Floats32 = NDArray[np.float32]
 
 _HALVINGS = 7  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 _LOOKS = 8  # at once
+THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _BOTH = np.array([0.0, 1.0])  # the frames themselves
 
 
@@ -49,16 +50,26 @@ class BodyCheck:
         self._moving = Obstacles(moving=moving)
         self._empty = not len(scene.obstacles.shapes) and not len(scene.obstacles.moving)
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
+        self._loose = Obstacles()
 
     @property
     def alone(self) -> bool:
         """Whether there is nothing and nobody else: then no pose has to be looked at."""
-        return self._empty and not self.others
+        return self._empty and not self.others and not len(self._loose)
+
+    @property
+    def loose(self) -> Moving:
+        """What was taken in hand, as it moves from the frame that is shown to the next."""
+        return self._loose.moving
+
+    @loose.setter
+    def loose(self, things: Moving) -> None:
+        self._loose = Obstacles(moving=things)
 
     @property
     def restless(self) -> bool:
-        """Whether anything moves by itself."""
-        return bool(len(self._obstacles.moving) or self.others)
+        """Whether anything moves that is not the avatar's own."""
+        return bool(len(self._obstacles.moving) or self.others) or self.loose.fastest > 0.0
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
@@ -80,6 +91,15 @@ class BodyCheck:
         segments = self._posed(root, upper)
         return Obstacles(moving=moving).clearance(segments, self._radii, root[:2], time)
 
+    def leaves_alone(self, thing: Moving, body: tuple[Floats, Floats], span: tuple[float, float], way: float) -> bool:
+        """Whether a thing that moves `way` metres in a span of time keeps its margin from a body: root and upper body.
+
+        Who has less than the margin already may not come nearer. All in between is free too: gaps change by no more
+        than the way.
+        """
+        before, after = (self.clearance_from(thing, *body, time) for time in span)
+        return after >= min(before, THING_MARGIN) and before + after > way
+
     def free_between(self, frames: Frames, clearances: tuple[float, float]) -> bool:
         """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
 
@@ -87,8 +107,8 @@ class BodyCheck:
         """
         way, first, last = self._levers.travel(frames.roots, frames.uppers), *frames.times
         ways, gaps = [way], np.array([[clearances[0]], [clearances[1]]], np.float32)
-        if self.restless:
-            ways += [way + self._moving.moving.fastest * (last - first)]
+        if self._accompanied:
+            ways += [way + around.moving.fastest * (last - first) for around in self._around]
             ways += [way + other.travel(first, last) for other in self.others]
             gaps = self._gaps(frames, _BOTH)
         proof = begun(gaps, np.array([ways]), 1, 0.0, _HALVINGS)
@@ -97,10 +117,20 @@ class BodyCheck:
             settle(proof, self._gaps(frames, shares[:count]), count)
         return bool(proof.least.min() >= 0.0)
 
+    @property
+    def _accompanied(self) -> bool:
+        """Whether there is anything that can move."""
+        return bool(self.others or self._around)
+
+    @property
+    def _around(self) -> list[Obstacles]:
+        """The obstacles that can move: the scene's own, and what is loose."""
+        return [each for each in (self._moving, self._loose) if len(each)]
+
     def _gaps(self, frames: Frames, shares: Floats) -> Floats32:
         """The clearances at shares (N,) of the time between two frames: from what stands (N, 1).
 
-        Where anything moves by itself, from that too and from each of the others (N, 2 + others).
+        Where anything can move, from that too, from what is loose, and from each of the others: a column for each.
         """
         (first, last), (begin, end), origin = frames.roots, frames.uppers, frames.roots[0][:2]
         root, upper = first + shares[:, None] * (last - first), begin + shares[:, None] * (end - begin)
@@ -109,8 +139,8 @@ class BodyCheck:
         for i, time in enumerate((frames.times[0] + shares * (frames.times[1] - frames.times[0])).tolist()):
             axes = np.ascontiguousarray(segments[:, :, i : i + 1])
             row = [self._standing.clearance(axes, self._radii, origin, time)]
-            if self.restless:
-                row.append(self._moving.clearance(axes, self._radii, origin, time))
+            if self._accompanied:
+                row += [around.clearance(axes, self._radii, origin, time) for around in self._around]
             gaps.append(row + [other.clearance(axes, self._radii, origin, time) for other in self.others])
         return np.array(gaps, np.float32)
 
@@ -121,6 +151,8 @@ class BodyCheck:
     def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
         """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""
         found = self._obstacles.clearance(segments, self._radii, origin[:2], time)
+        if len(self._loose):
+            found = min(found, self._loose.clearance(segments, self._radii, origin[:2], time))
         axes, when = np.ascontiguousarray(segments), time if others_at is None else others_at
         return min([found, *(other.clearance(axes, self._radii, origin, when) for other in self.others)])
 

@@ -1,7 +1,7 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -21,6 +21,7 @@ from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.loose import Hand, Loose, Thing
 from elbowroom.control.neighbour import Neighbour, Walker
 from elbowroom.control.passing import expected, way_made
 from elbowroom.control.planners import Planners
@@ -86,12 +87,11 @@ class Controller:
         self.scene = scene  # where
         self.settings = ControlSettings(planner, queue_size, interval, seed, assist)  # what it was told, in one object
         self.start = scene.start if start is None else start  # where it stands after a reset
-        self._check = BodyCheck(humanoid, scene)
         self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions  # how it walks and evades
         self._errands = Errands(desk or ImmediateDesk())
+        self._wayfinder: Wayfinder
         self._worn = fitted(self.motions, humanoid)
-        self._planners = Planners(planner, humanoid, scene, self._worn)
-        self._wayfinder = Wayfinder(self.settings, self._check, self._worn, self._planners)
+        self._settle_in(scene, ())
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
 
@@ -99,8 +99,20 @@ class Controller:
         """Back to the start, as if newly made."""
         self._errands.forget()
         self.journey = None
-        self._wayfinder = self._wayfinder.afresh()
+        if len(self._loose):
+            self._settle_in(self.scene, self.others)
+        else:
+            self._wayfinder = self._wayfinder.afresh()
         self._begin()
+
+    def _settle_in(self, standing: Scene, others: Sequence[Neighbour]) -> None:
+        """Check and plan among what stands: all of the scene, or all but what is loose."""
+        self._check = BodyCheck(self.humanoid, standing)
+        self.others = others
+        self._planners = Planners(self.settings.planner, self.humanoid, standing, self._worn)
+        self._wayfinder = Wayfinder(self.settings, self._check, self._worn, self._planners)
+        self._standing = standing
+        self.__dict__.pop("navigator", None)
 
     def prepare(self) -> None:
         """Make the planners now, in the caller's thread, so that the first plan need not wait for that."""
@@ -109,7 +121,7 @@ class Controller:
     @cached_property
     def navigator(self) -> Navigator:
         """Finds ways in the scene, for `goto` and for who wants to find them in another thread."""
-        return Navigator(self.humanoid, self.scene)
+        return Navigator(self.humanoid, self._standing)
 
     def goto(self, place: tuple[float, float], pace: Command = FORWARD) -> Journey:
         """Go to a place (x, z) on the ground, with the following steps; a command that is not idle takes over.
@@ -123,7 +135,37 @@ class Controller:
         self.journey = Journey(self.navigator, way, pace)
         return self.journey
 
+    @property
+    def things(self) -> Mapping[int, Thing]:
+        """What was pushed since the start, by its number among the scene's standing obstacles."""
+        return self._loose.things
+
+    @property
+    def surroundings(self) -> Scene:
+        """The scene as it is now: what was pushed is where it is."""
+        return self._loose.surroundings(self._queue.time)
+
+    @property
+    def hand(self) -> Hand | None:
+        """What is pushed now, and where to."""
+        return self._loose.hand
+
+    def push(self, number: int, place: tuple[float, float]) -> None:
+        """Push a standing obstacle over the ground, with the following steps, until it is at a place (x, z).
+
+        It is told by its number in the scene, upright and small, moves at up to `loose.FASTEST`, and stops before the
+        body that is shown. It stays where it is left, until `reset`. Raises `InputError` for what cannot be pushed.
+        """
+        if self._loose.take(Hand(number, place)):
+            self._settle_in(self._loose.scene(), self.others)
+            self._check.loose = self._loose.at_rest(self._queue.time)
+
+    def let_go(self) -> None:
+        """Push nothing any more."""
+        self._loose.let_go()
+
     def _begin(self) -> None:
+        self._loose = Loose(self.scene)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._errands.begin()
         self._holding = Holding()
@@ -229,11 +271,12 @@ class Controller:
         self._stands_by = command.idle
         if not command.idle or not self.others or not self._assist:
             return command
-        shown, free_map = self._shown, self.scene.obstacles.free_map
+        shown, free_map = self._shown, self._standing.obstacles.free_map
         body = self._check.body(shown.root, shown.upper)
         return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
 
     def _turn(self, command: Command, dt: float) -> Phase:
+        self._move_things(dt)
         self._take_plan(command)
         self._errands.supersede(command)
         flow = self._choose_flow(command)
@@ -243,6 +286,19 @@ class Controller:
             self._plan(command, at_once=flow is Phase.RESET or steering.changed(self._command, command))
         self._play(dt)
         return flow
+
+    def _move_things(self, dt: float) -> None:
+        """What is loose goes on; who rests looks up."""
+        if not len(self._loose):
+            return
+        self._check.loose = self._loose.advance(self._queue.time, dt, self._left_alone)
+        if self._resting and self._loose.moves:
+            self._resting, self._next = False, Phase.PLAN
+
+    def _left_alone(self, thing: Moving, way: float) -> bool:
+        """Whether a thing may move so as it does on its track, `way` metres."""
+        first, last = thing.tracks[0].times.tolist()
+        return self._check.leaves_alone(thing, (self._shown.root, self._shown.upper), (first, last), way)
 
     def _choose_flow(self, command: Command) -> Phase:
         """Figure 4 (b): which flow this turn takes."""
@@ -283,12 +339,21 @@ class Controller:
 
     def _others_beside(self, start: Playback, time: float, command: Command) -> Moving:
         """The others' boxes; slimmer, where a motion starts within one: it is larger than the body that it holds."""
+        things = self._foreseen(start, time)
         if not self.others:
-            return Moving()
+            return things
         body = self._check.body(start.root, start.upper)
-        others = expected(self._walker(command), body, self.others, self.scene.obstacles.free_map)
+        others = expected(self._walker(command), body, self.others, self._standing.obstacles.free_map)
         clearance = self._check.clearance_from(others, start.root, start.upper, time)
-        return slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others
+        return things + (slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others)
+
+    def _foreseen(self, start: Playback, time: float) -> Moving:
+        """Where what is loose will be, for a plan that starts so, then."""
+
+        def clear(thing: Moving) -> bool:
+            return self._check.clearance_from(thing, start.root, start.upper, time) >= 0.0
+
+        return self._loose.foreseen(self._queue.time, time, clear)
 
     def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
         """When and from where to plan; where nothing is left to play, it is what is shown now."""

@@ -1,11 +1,14 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 4`, a header, chunks and an end. Header: its length (uint32), UTF-8
+A `.elbow` file is the line `ELBOWROOM RECORDING 5`, a header, chunks and an end. Header: its length (uint32), UTF-8
 JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
-data (uint32 each), the data: `STEP` records. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All
-numbers are little-endian. A file is only ever appended to, so one that was cut off is good up to its last whole chunk.
-Older files are read too: in those of the format 3, 14 numbers of `q` wide, the head followed the waist; those of the
-format 2 have no end; and in those of the format 1, 13 wide, nobody lowered the pelvis.
+data (uint32 each), the data: `STEP` records. Where things were pushed, a chunk `HAND` of `THING` records stands before
+that of their steps. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All numbers are little-endian. A
+file is only ever appended to, so one that was cut off is good up to its last whole chunk.
+
+Older files are read too: in those of the format 4 nothing was pushed; in those of the format 3, 14 numbers of `q` wide,
+the head followed the waist; those of the format 2 have no end; and in those of the format 1, 13 wide, nobody lowered
+the pelvis.
 """
 
 import hashlib
@@ -29,18 +32,22 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.recorded_things import THING, ThingLog, Things, walked_scene
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
 
-MAGIC = b"ELBOWROOM RECORDING 4\n"
+MAGIC = b"ELBOWROOM RECORDING 5\n"
+_MAGIC_4 = b"ELBOWROOM RECORDING 4\n"
 _MAGIC_3 = b"ELBOWROOM RECORDING 3\n"
 _MAGIC_2 = b"ELBOWROOM RECORDING 2\n"
 _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
-_CHUNK_MARK, _END_MARK = b"CHNK", b"DONE"
+MAX_CHUNK_THINGS = 65_536
+_CHUNK_MARK, _HAND_MARK, _END_MARK = b"CHNK", b"HAND", b"DONE"
 _CHUNK_HEAD = struct.Struct("<4sIII")
 _COUNT = struct.Struct("<I")
 
@@ -59,7 +66,7 @@ STEP = np.dtype(
 )
 _Q_3 = np.arange(DofGroup.HEAD.at.start)  # the places of older files' numbers in `q`
 _Q_1 = np.delete(_Q_3, LOWERING)
-_PLACES = {MAGIC: np.arange(DOF), _MAGIC_3: _Q_3, _MAGIC_2: _Q_3, _MAGIC_1: _Q_1}
+_PLACES = {MAGIC: np.arange(DOF), _MAGIC_4: np.arange(DOF), _MAGIC_3: _Q_3, _MAGIC_2: _Q_3, _MAGIC_1: _Q_1}
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 _PHASES = tuple(Phase)
 _SAID = 200  # characters of what a header says that are repeated in a message
@@ -138,6 +145,7 @@ class Recorder:
         self.path = Path(path)  # of the recording
         self._pending: list[tuple[Any, ...]] = []
         self._written, self._crc = 0, 0  # steps in all chunks, and of their data
+        self._things = ThingLog(controller)
         header = RecordingHeader.of(controller).to_json()
         try:
             if self.path.exists() and not is_recording(self.path):
@@ -155,6 +163,7 @@ class Recorder:
         )
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
+        self._things.note(self._written + len(self._pending))
         self._pending.append((*wish, frame.q, frame.root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
@@ -163,12 +172,18 @@ class Recorder:
         """Write what is pending as a chunk, so that it survives whatever comes."""
         if not self._pending:
             return
-        steps = np.array(self._pending, dtype=STEP)
-        data = zlib.compress(steps.tobytes(), 6)
-        self._file.write(_CHUNK_HEAD.pack(_CHUNK_MARK, len(steps), len(data), zlib.crc32(data)) + data)
+        steps, things = np.array(self._pending, dtype=STEP), self._things.taken()
+        if len(things):
+            self._write_chunk(_HAND_MARK, things)
+        self._write_chunk(_CHUNK_MARK, steps)
         self._file.flush()
-        self._written, self._crc = self._written + len(steps), zlib.crc32(data, self._crc)
+        self._written += len(steps)
         self._pending.clear()
+
+    def _write_chunk(self, mark: bytes, records: NDArray[np.void]) -> None:
+        data = zlib.compress(records.tobytes(), 6)
+        self._file.write(_CHUNK_HEAD.pack(mark, len(records), len(data), zlib.crc32(data)) + data)
+        self._crc = zlib.crc32(data, self._crc)
 
     def close(self) -> None:
         """Write what is pending and the end, and close the file."""
@@ -199,6 +214,7 @@ class Recording:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self.note: str | None = None  # after reading the steps: why they end before the file does
+        self.things: Things = np.empty(0, THING)  # what was pushed in the steps that are read
         try:
             with self.path.open("rb") as file:
                 self.header = self._read_header(file)
@@ -209,7 +225,7 @@ class Recording:
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
         magic = file.read(len(MAGIC))
         self._places = _PLACES.get(magic, np.arange(0))
-        self._has_end = magic in (MAGIC, _MAGIC_3)
+        self._has_end = magic in (MAGIC, _MAGIC_4, _MAGIC_3)
         if not len(self._places):
             raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
         size = file.read(_COUNT.size)
@@ -227,7 +243,7 @@ class Recording:
 
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
-        self.note = None
+        self.note, self.things = None, np.empty(0, THING)
         stored = _stored(len(self._places))
         count, crc = 0, 0
         with self.path.open("rb") as file:
@@ -236,12 +252,17 @@ class Recording:
                 if self._has_end and head[:4] == _END_MARK:
                     self.note = _end_note(head, file, count, crc)
                     return
-                found = _read_chunk(head, file, stored)
+                pushed = head[:4] == _HAND_MARK
+                found = _read_chunk(head, file, THING if pushed else stored)
                 if found is None:
                     self.note = f"the file was cut off or is damaged: what follows step {count} is missing"
                     return
                 steps, data = found
-                count, crc = count + len(steps), zlib.crc32(data, crc)
+                crc = zlib.crc32(data, crc)
+                if pushed:
+                    self.things = np.concatenate([self.things, steps])
+                    continue
+                count += len(steps)
                 yield steps if stored == STEP else _completed(steps, self._places)
         if self._has_end:
             self.note = f"the file ends without its end mark: what follows step {count} is missing"
@@ -249,6 +270,11 @@ class Recording:
     def steps(self) -> Steps:
         """All steps in one array."""
         return np.concatenate([np.empty(0, STEP), *self.chunks()])
+
+    def scene(self) -> Scene:
+        """The scene as it was while this was recorded: what was pushed moves as it did then; raises `InputError`."""
+        scene = Scene.from_dict(self.header.scene, str(self.path))
+        return walked_scene(scene, self.steps(), self.things, RESTART)
 
 
 def _stored(width: int) -> np.dtype[np.void]:
@@ -284,8 +310,8 @@ def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> tuple
     if len(head) < _CHUNK_HEAD.size:
         return None
     mark, count, length, crc = _CHUNK_HEAD.unpack(head)
-    expected = count * stored.itemsize
-    if mark != _CHUNK_MARK or not 0 < count <= MAX_CHUNK_STEPS or length > expected + 1024:
+    expected, most = count * stored.itemsize, MAX_CHUNK_THINGS if mark == _HAND_MARK else MAX_CHUNK_STEPS
+    if mark not in (_CHUNK_MARK, _HAND_MARK) or not 0 < count <= most or length > expected + 1024:
         return None
     data = file.read(length)
     if len(data) < length or zlib.crc32(data) != crc:

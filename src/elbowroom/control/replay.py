@@ -9,6 +9,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.recorded_things import obey, same_places
 from elbowroom.control.recording import ASSIST, RESTART, Recording, command_of
 from elbowroom.world.scene import Scene
 
@@ -72,9 +73,11 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
             if step["flags"] & RESTART:
                 controller.reset()
             controller.assist = bool(step["flags"] & ASSIST)
+            pushed = recording.things[recording.things["step"] == count]
+            obey(controller, pushed)
             frame = controller.step(command_of(step), float(step["dt"]))
             time = frame.time
-            if not _same(step, frame):
+            if not (_same(step, frame) and same_places(controller, pushed)):
                 return ReplayResult(count + 1, time, _difference(count, step, frame))
             count += 1
         if progress is not None:

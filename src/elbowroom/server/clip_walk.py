@@ -1,5 +1,7 @@
 """A recorded clip played on an avatar: it moves as the recorded body did, or as planning would keep it."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,8 @@ from elbowroom.clips.performance import Moment, perform
 from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.key_frame_queue import KeyFrames
+from elbowroom.control.loose import Thing
+from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.clip_store import StoredClip
@@ -46,6 +50,22 @@ class ClipWalk:
     def place(self) -> RootState:
         """Where a walk that follows begins: at the scene's start."""
         return self.scene.start
+
+    @property
+    def surroundings(self) -> Scene:
+        """The scene: nothing is pushed in it."""
+        return self.scene
+
+    @property
+    def things(self) -> Mapping[int, Thing]:
+        """Nothing is pushed."""
+        return {}
+
+    def push(self, number: int, place: tuple[float, float] | None) -> None:
+        """Raises `InputError`."""
+        del number
+        if place is not None:
+            raise InputError("push: a recorded motion plays; walk first")
 
     def heeds(self, command: Command) -> bool:
         """No command waits for an answer."""

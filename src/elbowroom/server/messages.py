@@ -4,12 +4,12 @@ They travel over one WebSocket as JSON text, `{"type": "input", ...}`; poses tra
 (`pose_frame`).
 """
 
-from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Reset
+from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Push, Reset
 from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, ClipMessage, SceneMessage
-from elbowroom.server.schema.progress import Crossed, Going, Loading, Notice, Plan, Pong, Status
+from elbowroom.server.schema.progress import Crossed, Going, Loading, Notice, Plan, Pong, Pushed, Status
 
-ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Overlays | Ping
+ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Push | Overlays | Ping
 ServerMessage = (
     Hello
     | Settings
@@ -21,6 +21,7 @@ ServerMessage = (
     | Loading
     | Crossed
     | Going
+    | Pushed
     | Notice
     | Pong
 )

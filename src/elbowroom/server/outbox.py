@@ -7,10 +7,10 @@ from starlette.websockets import WebSocket
 
 from elbowroom.server.codec import encode
 from elbowroom.server.messages import ServerMessage
-from elbowroom.server.schema.progress import Plan, Status
+from elbowroom.server.schema.progress import Plan, Pushed, Status
 
 MAX_WAITING = 256  # messages; a client that lets so many pile up is given up
-_REPLACED = (Status, Plan)  # of these only the newest matters
+_REPLACED = (Status, Plan, Pushed)  # of these only the newest matters: of what is pushed, of each thing
 
 
 class SlowClientError(Exception):
@@ -29,7 +29,7 @@ class Outbox:
     def put(self, message: ServerMessage) -> None:
         """Send a message, in order; raises `SlowClientError` if too many wait."""
         if isinstance(message, _REPLACED):
-            self._messages = deque(m for m in self._messages if type(m) is not type(message))
+            self._messages = deque(m for m in self._messages if not _replaces(message, m))
         if len(self._messages) >= MAX_WAITING:
             raise SlowClientError
         self._messages.append(message)
@@ -55,3 +55,9 @@ class Outbox:
             if self._frame is not None:
                 frame, self._frame = self._frame, None
                 await socket.send_bytes(frame)
+
+
+def _replaces(message: ServerMessage, older: ServerMessage) -> bool:
+    if isinstance(message, Pushed) and isinstance(older, Pushed) and message.obstacle != older.obstacle:
+        return False
+    return type(message) is type(older)

@@ -1,6 +1,7 @@
 """What a session tells its client, made from what it knows. No state."""
 
 import math
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import AvatarMeta
 from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
+from elbowroom.control.loose import pushable
 from elbowroom.planning.result import BlockadeKind
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.clip_store import StoredClip
@@ -62,6 +64,7 @@ def scene_message(scene: Scene) -> SceneMessage:
         description=scene.description,
         ground=Ground(scene.ground_center, scene.ground_size),
         model=model,
+        pushable=list(pushable(scene)),
         obstacles=[_obstacle(scene, *obstacle) for obstacle in list(scene.obstacles)[shown:]],
         moving=[_moving(scene, track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
@@ -171,12 +174,11 @@ def group_reports(plan: PlanReport | None) -> list[GroupReport]:
     ]
 
 
-def blocked_message(plan: PlanReport | None, scene: Scene) -> Blocked | None:
-    """Why the last plan is not the whole way that was asked for."""
+def blocked_message(plan: PlanReport | None, known: Sequence[str]) -> Blocked | None:
+    """Why the last plan is not the whole way that was asked for; obstacles are `known` by these names."""
     blockade = None if plan is None else plan.local.blockade
     if blockade is None:
         return None
-    known = scene.obstacles.names
     names = list(dict.fromkeys(known[number] for number in blockade.obstacles if number < len(known)))
     return Blocked(_REASONS[blockade.kind], names, round(blockade.ahead, 3), blockade.place)
 

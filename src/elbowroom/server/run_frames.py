@@ -12,6 +12,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.recorded_things import told
 from elbowroom.control.recording import ASSIST, STUCK, TOUCHING, Recording
 from elbowroom.export.shown import ShownFrames
 from elbowroom.server import pose_frame
@@ -44,10 +45,18 @@ def posed_run(path: Path, known: dict[str, AvatarReference]) -> PosedRun:
     recording = Recording(path)
     humanoid, avatar, stand_in = _avatar_of(recording.header.avatar, known)
     shown, steps = ShownFrames.of(recording), recording.steps()
-    scene = Scene.from_dict(recording.header.scene, str(path))
+    scene = recording.scene()
     frames = _frames(_Told(shown, steps["flags"], steps["phase"]), humanoid, scene)
     header, note = recording.header, recording.note or ""
-    return PosedRun(header.scene, header.settings.planner, avatar, stand_in, note, len(frames), b"".join(frames))
+    return PosedRun(
+        told(scene).to_dict() if len(recording.things) else header.scene,
+        header.settings.planner,
+        avatar,
+        stand_in,
+        note,
+        len(frames),
+        b"".join(frames),
+    )
 
 
 def _avatar_of(wanted: AvatarReference, known: dict[str, AvatarReference]) -> tuple[Humanoid, str, str]:

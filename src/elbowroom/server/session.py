@@ -21,7 +21,7 @@ from elbowroom.server.page_key import page_key
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
-from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Reset
+from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Push, Reset
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.schema.progress import Loading, Notice, Pong
 from elbowroom.server.stage import Stage
@@ -141,6 +141,8 @@ class Session:
             self._outbox.put(Pong(message.t, self._now()))
         elif isinstance(message, Configure):
             self._changes.ask(message)
+        elif isinstance(message, Push):
+            self._stage.push(message)
         elif isinstance(message, Goto):
             self._ways.ask(message)
         else:
@@ -177,6 +179,7 @@ class Session:
     def _show(self) -> None:
         now = self._now()
         self._tell(self._stage.advance(now))
+        self._tell(self._stage.pushed())
         packed = self._stage.frame(now)
         if self._standstill.worth_sending(packed, now, restless=self._stage.restless):
             self._outbox.put_frame(packed)

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from elbowroom.control.frame import Phase
+from elbowroom.control.loose import Thing
 from elbowroom.control.steering import steady
 from elbowroom.planning.command import Command
 from elbowroom.server import pose_frame
@@ -14,9 +15,9 @@ from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.punctuality import Punctuality
 from elbowroom.server.reports import blocked_message, finite, group_reports, plan_message
-from elbowroom.server.schema.commands import ClockMessage, Input, Overlays
+from elbowroom.server.schema.commands import ClockMessage, Input, Overlays, Push
 from elbowroom.server.schema.menus import Settings
-from elbowroom.server.schema.progress import Crossed, Nearest, Plan, Status
+from elbowroom.server.schema.progress import Crossed, Nearest, Plan, Pushed, Status
 from elbowroom.server.vmc import Moment
 from elbowroom.server.walk import Walk
 
@@ -38,6 +39,7 @@ class Stage:
         self.overlays = Overlays()
         self.command = Command()
         self.revision = 1  # of the avatar
+        self._told: dict[int, Thing] = {}
         self._epoch = 0
         self._index = 0
         self._acknowledged = 0
@@ -76,6 +78,21 @@ class Stage:
     def release(self) -> None:
         """Hold nothing."""
         self.command = Command()
+        self.push(Push(0, None))
+
+    def push(self, message: Push) -> None:
+        """Push something, or let go of it; raises `InputError`."""
+        self.walk.push(message.obstacle, message.place)
+
+    def pushed(self) -> list[Pushed]:
+        """Where things are, of those that are elsewhere than was told last."""
+        told = []
+        for number, thing in self.walk.things.items():
+            if self._told.get(number) is not thing:
+                self._told[number] = thing
+                x, y, z = thing.center.tolist()
+                told.append(Pushed(number, self._epoch, self.walk.frame.time, (x, y, z), thing.yaw))
+        return told
 
     def set_clock(self, message: ClockMessage) -> list[Crossed]:
         """Pause, go on, change speed, or take single steps."""
@@ -147,6 +164,7 @@ class Stage:
     def restless(self) -> bool:
         """Whether something may move though the avatar stands: it is told to go, or obstacles move by themselves."""
         moves = not self.walk.frame.command.idle or bool(len(self.walk.scene.obstacles.moving))
+        moves = moves or any(thing.moves for thing in self.walk.things.values())
         return not self.paused and (moves or not self.command.idle)
 
     def status(self, now: float) -> Status:
@@ -179,7 +197,7 @@ class Stage:
             stuck_times=walk.stuck_times,
             clearance=finite(frame.clearance),
             nearest=self._nearest(),
-            blocked=blocked_message(plan, walk.scene),
+            blocked=blocked_message(plan, walk.surroundings.obstacles.names),
         )
 
     def plan(self) -> Plan:
@@ -217,6 +235,7 @@ class Stage:
 
     def _jump(self) -> None:
         self._epoch = (self._epoch + 1) % 2**16
+        self._told.clear()
 
     def _flags(self) -> int:
         walk, bits = self.walk, pose_frame.FLAGS
@@ -232,4 +251,4 @@ class Stage:
         walk, frame = self.walk, self.walk.frame
         capsules = walk.avatar.humanoid.capsules
         segments = walk.avatar.poser.segments(frame.q, frame.root)[0]
-        return nearest(segments, capsules.radii, capsules.names, walk.scene, frame.time)
+        return nearest(segments, capsules.radii, capsules.names, walk.surroundings, frame.time)

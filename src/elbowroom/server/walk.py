@@ -1,5 +1,6 @@
 """One avatar on its way through one scene: the controller, and what a session counts about it. No clock, no socket."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
@@ -9,6 +10,7 @@ from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
 from elbowroom.control.journey import Journey
+from elbowroom.control.loose import Thing
 from elbowroom.control.settings import check_queue_size
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -147,6 +149,23 @@ class Walk:
     def journey(self) -> Journey | None:
         """The walk to a place that goes on, or has ended last."""
         return self._controller.journey
+
+    @property
+    def surroundings(self) -> Scene:
+        """The scene as it is now: what was pushed is where it is."""
+        return self._controller.surroundings
+
+    @property
+    def things(self) -> Mapping[int, Thing]:
+        """What was pushed since the start, by its number among the scene's obstacles."""
+        return self._controller.things
+
+    def push(self, number: int, place: tuple[float, float] | None) -> None:
+        """Push an obstacle to a place, or let go where that is None; raises `InputError`."""
+        if place is None:
+            self._controller.let_go()
+        else:
+            self._controller.push(number, place)
 
     def set_out(self, way: Way) -> None:
         """Go along a way, at the walking speed that is set."""

@@ -8,6 +8,7 @@ import { sessionUrl } from "../net/endpoints";
 import type { ShownPose } from "../net/pose_timeline";
 import { Session } from "../net/session";
 import { Picture } from "../picture";
+import { Pushing, type PushingHost } from "../pushing/pushing";
 import { readPreferences, readWishes } from "../preferences";
 import { BestTimes } from "../results";
 import { Steps } from "../steps/steps";
@@ -39,6 +40,7 @@ export class App {
   readonly session: Session;
   readonly controls: Controls;
   readonly pointer: PointerInput;
+  readonly pushing: Pushing;
   readonly steps: Steps;
   readonly live: LiveWalk;
   readonly modes: Modes;
@@ -77,7 +79,8 @@ export class App {
       },
     });
     this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement), this.keys);
-    this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick);
+    this.pushing = new Pushing(this.pushingHost());
+    this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick, this.pushing.grip);
     this.somewhere = new GoingSomewhere(this.view, {
       picture: this.picture, send: (message) => this.session.send(message),
       say: (level, said) => this.notices.show(level, said), walks: () => this.modes.live,
@@ -139,6 +142,18 @@ export class App {
         if (!this.modes.build.active) this.picture.stage.setCoveredRight(pixels);
       },
       action: (action) => this.deeds.do(action),
+    };
+  }
+
+  private pushingHost(): PushingHost {
+    return {
+      view: this.view, picture: this.picture, send: (message) => this.session.send(message),
+      say: (level, said) => this.notices.show(level, said), walks: () => this.modes.live, pose: () => this.pose,
+      changed: () => {
+        this.live.loose = this.pushing.loose;
+        this.modes.noteLive();
+        if (this.modes.live) this.picture.world.loosen(this.live.loose);
+      },
     };
   }
 

@@ -6,6 +6,7 @@ import type { Action } from "../input/keyboard";
 import type { PointerInput } from "../input/pointer";
 import type { Session } from "../net/session";
 import type { Picture } from "../picture";
+import type { Pushing } from "../pushing/pushing";
 import { nextScene } from "../results";
 import type { FinishCard, FinishDeed } from "../ui/finish_card";
 import type { Help } from "../ui/help";
@@ -29,6 +30,7 @@ export interface DeedsParts {
   readonly help: Help;
   readonly pointer: PointerInput;
   readonly somewhere: GoingSomewhere;
+  readonly pushing: Pushing;
   readonly statusLine: StatusLine;
   readonly finishCard: FinishCard;
   readonly view: HTMLElement;
@@ -67,10 +69,10 @@ export class Deeds {
   }
 }
 
-type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build";
+type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build" | "push";
 
 /** What is done to the walk. */
-function walking({ session, modes, statusLine, finishCard, somewhere }: DeedsParts): Record<Walking, () => void> {
+function walking({ session, modes, statusLine, finishCard, somewhere, pushing }: DeedsParts): Record<Walking, () => void> {
   return {
     reset: () => {
       statusLine.restart();
@@ -85,6 +87,7 @@ function walking({ session, modes, statusLine, finishCard, somewhere }: DeedsPar
     stepBack: () => undefined,
     replay: () => void modes.toggleReplay(),
     build: () => void modes.toggleBuild(),
+    push: () => pushing.next(),
   };
 }
 

@@ -8,6 +8,7 @@ import type { ShownPose } from "../net/pose_timeline";
 import type { Session } from "../net/session";
 import { OVERLAYS } from "../overlays/overlay_names";
 import type { Picture } from "../picture";
+import type { Pushing } from "../pushing/pushing";
 import type { Steps } from "../steps/steps";
 import type { StatusLine } from "../ui/status_line";
 import type { Modes } from "./modes";
@@ -21,6 +22,7 @@ export interface FramesParts {
   readonly controls: Controls;
   readonly steps: Steps;
   readonly modes: Modes;
+  readonly pushing: Pushing;
   readonly taste: Taste;
   readonly statusLine: StatusLine;
 }
@@ -40,7 +42,7 @@ export class Frames {
 
   private frame(): void {
     requestAnimationFrame(() => this.frame());
-    const { session, picture, controls, modes, steps, taste } = this.parts;
+    const { session, picture, controls, modes, pushing, steps, taste } = this.parts;
     const now = performance.now() / 1000;
     const elapsed = now - this.last;
     this.last = now;
@@ -48,6 +50,7 @@ export class Frames {
     picture.measure(elapsed);
     const dt = Math.min(elapsed, LONGEST_FRAME);
     controls.update(dt);
+    pushing.update(dt);
     const replayed = modes.replay.advance(dt);
     this.pose = replayed ?? session.poseAt(now) ?? this.pose;
     const { sound, overlays } = taste.preferences;

@@ -1,7 +1,7 @@
 /** What the server says, and what the page does about it. */
 
 import type {
-  AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, SceneMessage, Settings, Status,
+  AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, Pushed, SceneMessage, Settings, Status,
 } from "../generated/messages";
 import type { FrameStats } from "../frame_stats";
 import type { GoingSomewhere } from "../going/going";
@@ -10,6 +10,7 @@ import type { ConnectionState } from "../net/connection";
 import type { ShownPose } from "../net/pose_timeline";
 import type { Session, SessionListener } from "../net/session";
 import type { Picture } from "../picture";
+import type { Pushing } from "../pushing/pushing";
 import type { BestTimes } from "../results";
 import { showAvatarAbout } from "../ui/avatar_about";
 import { byId } from "../ui/dom";
@@ -35,6 +36,7 @@ export interface HearingParts {
   readonly address: AddressBar;
   readonly arrivals: Arrivals;
   readonly somewhere: GoingSomewhere;
+  readonly pushing: Pushing;
   readonly menu: Menu;
   readonly hud: Hud;
   readonly veil: Veil;
@@ -67,8 +69,10 @@ export class Hearing implements SessionListener {
   }
 
   scene(scene: SceneMessage): void {
-    const { live, modes, somewhere, statusLine, finishCard, menu } = this.parts;
+    const { live, modes, pushing, somewhere, statusLine, finishCard, menu } = this.parts;
     live.scene = scene;
+    pushing.enter(scene);
+    live.loose = pushing.loose;
     modes.noteLive();
     somewhere.forget();
     if (modes.live) live.furnish();
@@ -89,7 +93,12 @@ export class Hearing implements SessionListener {
     if (!modes.replay.active) live.dress();
   }
 
+  pushed(pushed: Pushed): void {
+    this.parts.pushing.heard(pushed);
+  }
+
   frameCame(frame: PoseFrame): void {
+    this.parts.pushing.frameCame(frame);
     this.parts.modes.replay.keep(frame);
   }
 

@@ -2,6 +2,7 @@
 
 import type { AvatarMessage, SceneMessage } from "../generated/messages";
 import type { Picture } from "../picture";
+import { NOTHING_LOOSE, type Loose } from "../stage/loose";
 import { text } from "../texts/texts";
 import type { Notices } from "../ui/notices";
 import type { Veil } from "../ui/veil";
@@ -15,6 +16,8 @@ export interface LiveWalkParts {
 
 export class LiveWalk {
   scene: SceneMessage | null = null;
+  /** What was pushed in it. */
+  loose: Loose = NOTHING_LOOSE;
   avatar: AvatarMessage | null = null;
   /** Of the avatar in the picture. */
   avatarTitle = "";
@@ -31,7 +34,7 @@ export class LiveWalk {
     const { scene } = this;
     const { picture, veil, notices } = this.parts;
     if (!scene) return;
-    picture.showScene(scene);
+    picture.showScene(scene, this.loose);
     if (scene.model) veil.download(true);
     picture
       .showModel()

@@ -64,7 +64,7 @@ export class Modes {
   /** Notes what walks where, for the walks that are kept. */
   noteLive(): void {
     const { live, session } = this.parts;
-    this.replay.live(live.scene, live.avatar, session.settings);
+    this.replay.live(live, session.settings);
   }
 
   /** Opens the last walk, or closes the replay. */

@@ -11,6 +11,7 @@ export function previewOf({ title, description, ground, start, finish, things }:
   return {
     type: "scene", name: "", title, description, ground: { center: [...ground.center], size: [...ground.size] }, model: null,
     obstacles: things.filter(({ track }) => track.length === 0).map(standing),
+    pushable: [],
     moving: things.filter(({ track }) => track.length > 0).map(moving),
     start, finish,
   };

@@ -71,6 +71,15 @@ export interface Goto {
   place: [number, number];
 }
 
+/** Push an obstacle over the ground, or let go of it; it stops before the body and stays where it is left. */
+export interface Push {
+  type: "push";
+  /** its number among the scene's obstacles; one that is pushable; from 0 to 4294967295 */
+  obstacle: number;
+  /** x, z, where its middle is to be; null: let go; from -1000000 to 1000000, from -1000000 to 1000000 */
+  place: [number, number] | null;
+}
+
 /** Which extra data to send. */
 export interface Overlays {
   type: "overlays";
@@ -254,6 +263,8 @@ export interface SceneMessage {
   /** shows what stands in it, which is not among the obstacles */
   model: Model | null;
   obstacles: Obstacle[];
+  /** the numbers of those of them that can be pushed */
+  pushable: number[];
   moving: MovingObstacle[];
   start: Place;
   finish: Gate | null;
@@ -427,6 +438,21 @@ export interface Going {
   nearest: [number, number] | null;
 }
 
+/** Where an obstacle is that was pushed; told while it moves. With a new epoch all are back where they were. */
+export interface Pushed {
+  type: "pushed";
+  /** its number among the scene's obstacles */
+  obstacle: number;
+  /** as in the pose frames */
+  epoch: number;
+  /** simulated, as in the pose frames */
+  time: number;
+  /** of its origin */
+  center: [number, number, number];
+  /** radians */
+  yaw: number;
+}
+
 /** A sentence for the user. */
 export interface Notice {
   type: "notice";
@@ -473,9 +499,9 @@ export interface UnseenWalk {
   z: number;
 }
 
-export type ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Overlays | Ping;
+export type ClientMessage = Input | Configure | ClockMessage | Reset | Goto | Push | Overlays | Ping;
 
-export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Going | Notice | Pong;
+export type ServerMessage = Hello | Settings | SceneMessage | AvatarMessage | ClipMessage | Status | Plan | Loading | Crossed | Going | Pushed | Notice | Pong;
 
 /** One pose as it travels. */
 export interface PoseFrame {

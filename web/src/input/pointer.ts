@@ -1,4 +1,4 @@
-/** Mouse and touch on the view: drag to look, wheel or pinch to zoom, the stick on the left, pointer lock on request. */
+/** Mouse and touch on the view: drag a thing to push it, elsewhere to look, wheel or pinch to zoom, the stick on the left, pointer lock on request. */
 
 import type { TouchStick } from "./touch_stick";
 
@@ -12,11 +12,22 @@ export interface LookTarget {
   zoom(factor: number): void;
 }
 
+/** Who may take a pointer that goes down, before it looks around: until it is released. */
+export interface PointerTaker {
+  take(event: PointerEvent): boolean;
+  owns(event: PointerEvent): boolean;
+  move(event: PointerEvent): void;
+  release(): void;
+}
+
 export class PointerInput {
   private readonly looking = new Map<number, [number, number]>();
   private pinch = 0;
 
-  constructor(private readonly view: HTMLElement, private readonly camera: LookTarget, private readonly stick: TouchStick) {
+  constructor(
+    private readonly view: HTMLElement, private readonly camera: LookTarget, private readonly stick: TouchStick,
+    private readonly grip: PointerTaker,
+  ) {
     view.addEventListener("pointerdown", (event) => this.down(event));
     view.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
@@ -40,12 +51,17 @@ export class PointerInput {
     } catch {
       // A synthetic pointer has no capture; the drag works without.
     }
+    if (this.grip.take(event)) return;
     if (this.stick.take(event, this.view.getBoundingClientRect())) return;
     this.looking.set(event.pointerId, [event.clientX, event.clientY]);
     this.pinch = 0;
   }
 
   private move(event: PointerEvent): void {
+    if (this.grip.owns(event)) {
+      this.grip.move(event);
+      return;
+    }
     if (this.stick.owns(event)) {
       this.stick.move(event);
       return;
@@ -62,6 +78,7 @@ export class PointerInput {
   }
 
   private up(event: PointerEvent): void {
+    if (this.grip.owns(event)) this.grip.release();
     if (this.stick.owns(event)) this.stick.release();
     this.looking.delete(event.pointerId);
     this.pinch = 0;

@@ -2,7 +2,7 @@
 
 import {
   PROTOCOL, type AvatarMessage, type Catalog, type ClientMessage, type ClipMessage, type Configure, type Crossed, type Going, type Hello,
-  type Loading, type Notice, type Plan, type PoseFrame, type SceneMessage, type ServerMessage, type Settings, type Status,
+  type Loading, type Notice, type Plan, type PoseFrame, type Pushed, type SceneMessage, type ServerMessage, type Settings, type Status,
 } from "../generated/messages";
 import type { SessionWishes } from "../preferences";
 import { LeastClearance } from "../results";
@@ -28,6 +28,7 @@ export interface SessionListener {
   loading(loading: Loading): void;
   crossed(crossed: Crossed): void;
   going(going: Going): void;
+  pushed(pushed: Pushed): void;
   notice(level: Notice["level"], message: string): void;
 }
 
@@ -175,6 +176,9 @@ export class Session {
         break;
       case "going":
         listener.going(message);
+        break;
+      case "pushed":
+        listener.pushed(message);
         break;
       case "notice":
         this.decided ||= message.level === "error";

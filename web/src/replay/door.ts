@@ -3,10 +3,18 @@
 import type { AvatarMessage, PoseFrame, SceneMessage, Settings } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
 import type { Action } from "../input/keyboard";
+import type { Loose } from "../stage/loose";
 import { text } from "../texts/texts";
 import { WalkKeeper, type Circumstances } from "./keeper";
 import type { Replay, ReplayHost, ReplayState } from "./replay";
 import type { Take } from "./take";
+
+/** What is shown live. */
+export interface LiveShown {
+  readonly scene: SceneMessage | null;
+  readonly loose: Loose;
+  readonly avatar: AvatarMessage | null;
+}
 
 export class ReplayDoor {
   private readonly keeper = new WalkKeeper();
@@ -27,9 +35,9 @@ export class ReplayDoor {
   }
 
   /** Notes what is shown live from now on; a motion clip is no walk. */
-  live(scene: SceneMessage | null, avatar: AvatarMessage | null, settings: Settings | null): void {
+  live({ scene, loose, avatar }: LiveShown, settings: Settings | null): void {
     const walks = scene && avatar && settings?.clip === "";
-    this.circumstances = walks ? { scene, avatar, planner: settings.planner } : null;
+    this.circumstances = walks ? { scene, loose, avatar, planner: settings.planner } : null;
   }
 
   /** Keeps a live frame. */

@@ -1,6 +1,7 @@
 /** Keeps the walks of this page as they are shown, so that each can be played again: no server is needed for it. */
 
 import type { AvatarMessage, PoseFrame, SceneMessage } from "../generated/messages";
+import type { Loose } from "../stage/loose";
 import { moves, type Take } from "./take";
 
 /** Frames of all walks together: ten minutes; the oldest go first. */
@@ -14,6 +15,7 @@ const LEAD = 0.25;
 /** What is shown while frames come. */
 export interface Circumstances {
   readonly scene: SceneMessage;
+  readonly loose: Loose;
   readonly avatar: AvatarMessage;
   readonly planner: string;
 }

@@ -174,7 +174,7 @@ export class Replay implements PanelListener {
     const { picture } = this.host;
     this.take = take;
     if (this.other && (this.other === take || !samePlace(this.other, take))) this.setOther(null);
-    picture.showScene(take.scene);
+    picture.showScene(take.scene, take.loose);
     if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch((error: unknown) => this.host.say("error", String(error)));
     if (take.file) this.player.seek(setsOff(take) - LEAD);
     this.describe();

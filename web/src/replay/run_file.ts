@@ -2,6 +2,7 @@
 
 import { readPoseFrame, type PoseFrame, type Run } from "../generated/messages";
 import { runUrl, shownRunUrl } from "../net/endpoints";
+import { NOTHING_LOOSE } from "../stage/loose";
 import type { Take } from "./take";
 
 /** Whether a file is a recording, by its name. */
@@ -48,5 +49,5 @@ export function parseRun(answer: ArrayBuffer): ReadRun {
   }
   if (frames.length === 0) throw new Error(`${run.name} holds no frames.`);
   const { scene, avatar, planner, name } = run;
-  return { take: { id: -++count, scene, avatar, planner, file: name, frames }, run };
+  return { take: { id: -++count, scene, loose: NOTHING_LOOSE, avatar, planner, file: name, frames }, run };
 }

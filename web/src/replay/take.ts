@@ -2,6 +2,7 @@
 
 import { POSE_FLAGS, type AvatarMessage, type PoseFrame, type SceneMessage } from "../generated/messages";
 import { between, type ShownPose } from "../net/pose_timeline";
+import type { Loose } from "../stage/loose";
 
 /** One step of simulated time, seconds. */
 export const STEP = 1 / 60;
@@ -10,6 +11,8 @@ export interface Take {
   /** Unlike any other of this page. */
   readonly id: number;
   readonly scene: SceneMessage;
+  /** What was pushed meanwhile. */
+  readonly loose: Loose;
   readonly avatar: AvatarMessage;
   readonly planner: string;
   /** Where it comes from: the name of a file, or "" for a walk on this page. */

@@ -1,11 +1,12 @@
 /** The scene on the stage: floor, obstacles, start and gate, kept so that a change of colours can build it anew. */
 
-import { Group } from "three";
+import { Group, type Object3D } from "three";
 import { convexBody } from "../camera/convex_body";
 import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type PreparedBox, type Vec3 } from "../camera/spring_arm";
 import type { Form, MovingObstacle, Obstacle, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";
+import { NOTHING_LOOSE, type Loose } from "./loose";
 import { boxAt } from "./moving";
 import { Obstacles, type DrawnObstacle } from "./obstacles";
 import { PlaceModel } from "./place_model";
@@ -23,6 +24,8 @@ export class World {
   boxes: PreparedBox[] = [];
   cameraObstacles: CameraObstacles = { all: [], walls: [] };
   message: SceneMessage | null = null;
+  /** What was pushed moves by these tracks. */
+  loose: Loose = NOTHING_LOOSE;
   readonly gate = new Gate();
   private readonly ground = new Ground();
   private readonly obstacles = new Obstacles();
@@ -39,6 +42,7 @@ export class World {
 
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
     this.message = message;
+    this.loose = NOTHING_LOOSE;
     this.boxes = allObstacles(message).map(({ form, box }) => prepareBox(inBox(form, box)));
     const walls = this.boxes.filter((box) => isWall(box));
     const sight = message.model ? { sight: this.place.sight } : {};
@@ -67,11 +71,28 @@ export class World {
   /** Puts what moves to where it is at the scene's time. */
   move(time: number): void {
     const { message } = this;
-    message?.moving.forEach((track, i) => {
-      const at = message.obstacles.length + i, box = boxAt(track, time), body = this.boxes[at]?.body;
-      this.obstacles.place(at, box);
-      this.boxes[at] = prepareBox(body ? { ...box, body } : box);
-    });
+    message?.moving.forEach((track, i) => this.put(message.obstacles.length + i, boxAt(track, time)));
+    for (const [number, track] of this.loose) this.put(number, boxAt(track, time));
+  }
+
+  /** Lets things stand where they were pushed to from now on; what is no longer among them is where it was. */
+  loosen(loose: Loose): void {
+    for (const number of this.loose.keys()) {
+      const thing = this.message?.obstacles[number];
+      if (thing && !loose.has(number)) this.put(number, orientedBox(thing));
+    }
+    this.loose = loose;
+  }
+
+  /** The place of a drawn thing among the obstacles; -1 for what is none. */
+  placeOf(object: Object3D): number {
+    return this.obstacles.group.children.indexOf(object);
+  }
+
+  private put(at: number, box: OrientedBox): void {
+    const body = this.boxes[at]?.body;
+    this.obstacles.place(at, box);
+    this.boxes[at] = prepareBox(body ? { ...box, body } : box);
   }
 
   /** Brings the open field along with the avatar. */

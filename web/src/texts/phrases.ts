@@ -176,6 +176,8 @@ export const PHRASES: Readonly<Record<string, string>> = {
   "pause": "暫停",
   "hide everything but the world": "只留場景",
   "put a finger down and drag: the stick; push far out to run": "按住並拖曳：虛擬搖桿；推遠則跑步",
-  "drag to look, two fingers zoom": "拖曳環視，雙指縮放",
+  "drag to look, or a thing to push it; two fingers zoom": "拖曳以環視，拖曳物件則推動它；雙指縮放",
+  "a thing: push it over the floor; the avatar makes way": "物件：在地面上推動它；角色會讓開",
+  "take a thing in hand, again the next; arrow keys push it, Esc lets go": "抓住一個物件，再按換下一個；以方向鍵推動，按 Esc 放開",
   "everything else: time, overlays, measurements, hiding the panels": "其他功能：時間、疊加顯示、量測數據、隱藏面板",
 };

@@ -7,6 +7,8 @@ type Texts = Readonly<Record<Language, string>>;
 const said = (en: string, zhHant: string): Texts => ({ en, "zh-Hant": zhHant });
 
 export const TABLE = {
+  "push.none": said("Nothing in this scene can be pushed", "此場景中沒有可推動的物件"),
+  "push.inHand": said("{0} is in hand: arrow keys push it, G takes the next, Esc lets go", "已抓住 {0}：以方向鍵推動，按 G 換下一個，按 Esc 放開"),
   "replay.title": said("Replay", "重播"),
   "replay.open": said("Replay the last walk", "重播上一次行走"),
   "replay.none": said("Nothing to replay yet: walk a few steps first", "還沒有可重播的內容：請先走幾步"),
@@ -174,6 +176,7 @@ export const TABLE = {
   "deed.inset": said("Side view in the corner", "角落的側視圖"),
   "deed.replay": said("Replay", "重播"),
   "deed.build": said("Build mode", "建造模式"),
+  "deed.push": said("Take a thing in hand", "抓住物件"),
 } as const satisfies Readonly<Record<string, Texts>>;
 
 export type TextName = keyof typeof TABLE;

@@ -24,6 +24,8 @@ const KEYBOARD: readonly Section[] = [
     [["Q", "E"], "step to the left and right"],
     [["Shift"], "run"],
     [["click"], "on the floor: go there; any key takes over"],
+    [["drag"], "a thing: push it over the floor; the avatar makes way"],
+    [["G"], "take a thing in hand, again the next; arrow keys push it, Esc lets go"],
     [["R"], "back to the start"],
   ] },
   { title: "Look", rows: [
@@ -79,7 +81,7 @@ const GAMEPAD: Section = { title: "Gamepad", rows: [
 
 const TOUCH: Section = { title: "Touch", rows: [
   [["left half"], "put a finger down and drag: the stick; push far out to run"],
-  [["right half"], "drag to look, two fingers zoom"],
+  [["right half"], "drag to look, or a thing to push it; two fingers zoom"],
   [["tap"], "on the floor: go there"],
   [["☰"], "everything else: time, overlays, measurements, hiding the panels"],
 ] };

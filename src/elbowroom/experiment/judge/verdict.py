@@ -77,7 +77,7 @@ def judge_recording(
     recording: Recording, humanoid: Humanoid, settings: JudgeSettings | None = None, progress: Progress | None = None
 ) -> Verdict:
     """Judge what a recording shows, in its own scene; raises `InputError` where it is not valid."""
-    scene = Scene.from_dict(recording.header.scene, str(recording.path))
+    scene = recording.scene()
     return judge(ShownMotion.of(recording), humanoid, scene, settings, progress)
 
 

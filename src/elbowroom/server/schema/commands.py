@@ -54,6 +54,14 @@ class Goto:
 
 
 @dataclass(frozen=True)
+class Push:
+    """Push an obstacle over the ground, or let go of it; it stops before the body and stays where it is left."""
+
+    obstacle: Sequence  # its number among the scene's obstacles; one that is pushable
+    place: tuple[Coordinate, Coordinate] | None  # x, z, where its middle is to be; None: let go
+
+
+@dataclass(frozen=True)
 class Overlays:
     """Which extra data to send."""
 

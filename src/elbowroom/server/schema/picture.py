@@ -103,6 +103,7 @@ class SceneMessage:
     ground: Ground
     model: Model | None  # shows what stands in it, which is not among the obstacles
     obstacles: list[Obstacle]
+    pushable: list[int]  # the numbers of those of them that can be pushed
     moving: list[MovingObstacle]
     start: Place
     finish: Gate | None

@@ -110,6 +110,17 @@ class Going:
 
 
 @dataclass(frozen=True)
+class Pushed:
+    """Where an obstacle is that was pushed; told while it moves. With a new epoch all are back where they were."""
+
+    obstacle: int  # its number among the scene's obstacles
+    epoch: int  # as in the pose frames
+    time: float  # simulated, as in the pose frames
+    center: Vector  # of its origin
+    yaw: float  # radians
+
+
+@dataclass(frozen=True)
 class Notice:
     """A sentence for the user."""
 
