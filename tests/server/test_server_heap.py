@@ -2,6 +2,8 @@
 
 import gc
 import platform
+import subprocess
+import sys
 
 import numpy as np
 
@@ -24,3 +26,22 @@ def test_the_budget_counts_the_process_once_and_every_session() -> None:
     one, four = memory_budget(1), memory_budget(4)
     assert one < four < 1.5 * one
     assert four - one == 3.0 * (memory_budget(2) - one)
+
+
+def test_who_plays_in_a_stock_scene_does_not_pay_for_scipy() -> None:
+    """It takes a tenth of the server's own memory, and only places made of triangles need it."""
+    code = """
+import sys
+import elbowroom.server.app
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.control.controller import Controller
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+walk = Controller(Humanoid.default(), Scene.load("d"))
+for _ in range(5):
+    walk.step(Command(forward=1.0), 1 / 60)
+large = {"scipy.ndimage", "scipy.sparse", "scipy.spatial", "scipy.stats", "scipy.signal"}
+sys.exit(", ".join(sorted(large & set(sys.modules))) or 0)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

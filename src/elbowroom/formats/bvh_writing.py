@@ -4,11 +4,11 @@ Joints that move carry three position channels and an offset of zero: some progr
 place, others add the two, and so both put them in the same place.
 """
 
+import warnings
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from elbowroom.formats.takes import Take
 from elbowroom.geometry import quaternion
@@ -65,7 +65,7 @@ def euler_angles(rotations: Floats, order: str) -> Floats:
 
 def _angles(rotations: Floats, order: str) -> Floats:
     """Some angles (N, 3) in degrees; where the middle one is a right angle the last is zero."""
-    import warnings
+    from scipy.spatial.transform import Rotation  # slow to import
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # SciPy tells of such right angles

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.world.scene import Scene
@@ -84,6 +83,8 @@ def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
 
 def _within_floor(room: Floats32, scene: Scene, area: Rectangle, cell: float) -> Floats32:
     """The room (nz, nx) where a floor ends is no more than what is left to its edge."""
+    from scipy import ndimage  # slow to import, and not needed on a plain
+
     floor = None if scene.place is None else scene.place.floor
     if floor is None:
         return room

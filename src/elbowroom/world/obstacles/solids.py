@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from elbowroom.world.obstacles.cells import boxes_in, filled_cells
 from elbowroom.world.obstacles.clusters import distinct_rows
@@ -91,6 +89,9 @@ def _closed_parts(points: Floats, faces: Longs) -> Iterator[Longs]:
 
 def _connected(faces: Longs) -> Iterator[Longs]:
     """Triangles that hang together by their edges."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components  # slow to import, and seldom needed
+
     if not len(faces):
         return
     begin, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.errors import InputError
 from elbowroom.world.places.floors import Floor
@@ -31,6 +30,8 @@ class FloorArea:
     @classmethod
     def of(cls, floor: Floor) -> "FloorArea":
         """The area of a floor, thresholds included."""
+        from scipy import ndimage  # slow to import, and not needed on a plain
+
         cell, around = floor.columns.cell, round(_STRIDE / floor.columns.cell) + 1
         reach = round(0.5 * _STRIDE / cell)
         disc = np.hypot(*np.mgrid[-reach : reach + 1, -reach : reach + 1]) <= reach

@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.world.places.columns import Columns
 
@@ -38,6 +37,8 @@ class Floor:
     @cached_property
     def walkable(self) -> Flags:
         """(nx, nz) where a slim body may be on its way."""
+        from scipy import ndimage  # slow to import, and not needed on a plain
+
         middles = self.room >= SLIM
         reached: Flags = ndimage.distance_transform_edt(~middles) * self.columns.cell <= SLIM
         return reached & (self.room > 0.0) if middles.any() else middles
@@ -49,6 +50,8 @@ class Floor:
 
     def regions(self) -> tuple[NDArray[np.int32], list[float]]:
         """Numbers (nx, nz) from 1 of the regions that hang together for a slim body, and their sizes in m²."""
+        from scipy import ndimage  # slow to import, and not needed on a plain
+
         numbers, count = ndimage.label(self.room >= SLIM, _ALL_ROUND)
         sizes = np.bincount(numbers.reshape(-1), minlength=count + 1)[1:]
         return numbers, (sizes * self.columns.cell**2).tolist()
@@ -62,6 +65,8 @@ def floors_of(columns: Columns) -> tuple[Floor, ...]:
 
 def floor_at(columns: Columns, height: float) -> Floor:
     """The floor at a height, whatever there is of it."""
+    from scipy import ndimage  # slow to import, and not needed on a plain
+
     there = columns.grid(columns.level & (np.abs(columns.low - height) <= _TREAD))
     blocked = columns.grid((columns.high > height + _TREAD) & (columns.low < height + HEADROOM))
     free = np.pad(there & ~blocked, 1)
@@ -78,6 +83,8 @@ def ground_floor(floors: tuple[Floor, ...]) -> Floor | None:
 
 def _levels(columns: Columns) -> Iterator[float]:
     """Heights at which there is room to stand, the most spacious first."""
+    from scipy import ndimage  # slow to import, and not needed on a plain
+
     stood = standing_surfaces(columns) & _uncovered(columns)
     cells, steps = columns.cells[stood], np.round(columns.low[stood] / 0.01).astype(np.int64)
     if not len(steps):

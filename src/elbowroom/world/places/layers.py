@@ -10,8 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from elbowroom.jit import exact_kernel
 from elbowroom.world.places.columns import Columns
@@ -112,6 +110,9 @@ def without_edges(links: Links, rounds: int) -> Flags:
 
 def _regions(links: Links, inside: Flags) -> Links:
     """The regions (N,) of the surfaces that are inside, the largest first; -1 for all others."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components  # slow to import, and not needed on a plain
+
     found = np.full(len(links), -1, np.int32)
     if not inside.any():
         return found

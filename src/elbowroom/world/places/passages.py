@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.world.places.floors import Floor
 
@@ -28,6 +27,8 @@ class Passage:
 
 def passages_of(floor: Floor, most: int = 8) -> list[Passage]:
     """The narrowest passages between regions of a floor, the narrowest first."""
+    from scipy import ndimage  # slow to import, and not needed on a plain
+
     room, cell = floor.room, floor.columns.cell
     numbers, count = ndimage.label(room >= 0.5 * _WIDEST, np.ones((3, 3), bool))
     groups = _Groups((np.bincount(numbers.reshape(-1), minlength=count + 1) * cell * cell).tolist())
