@@ -1,34 +1,40 @@
-"""The downhill simplex method against SciPy's, step by step the same."""
+"""The downhill simplex method against SciPy's, step by step the same, and the volume that it makes least."""
+
+import math
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from elbowroom.body.nelder_mead import least_point
+from elbowroom.body.nelder_mead import Ends, Held, least_volume, volume
 
 SIZE, SPREAD = 1e-4, 1e-8
 
 
-def valley(x: np.ndarray) -> float:
-    """Rosenbrock's, with a kink."""
-    return float(np.sum(100.0 * (x[1:] - x[:-1] ** 2) ** 2 + np.abs(1.0 - x[:-1])))
+def some(seed: int) -> tuple[np.ndarray, Held]:
+    """A first simplex, and points to be held."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(int(rng.integers(4, 200)), 3)) * rng.uniform(0.02, 0.5, 3)
+    first = rng.normal(size=6) * 0.3
+    rank = int(rng.integers(0, len(points)))
+    return first + np.vstack([np.zeros(6), 0.2 * np.eye(6)]), Held(points, rank, 0.01)
 
 
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.parametrize("evaluations", [9, 60, 5000])
+@pytest.mark.parametrize("evaluations", [9, 60, 300, 5000])
 def test_it_finds_what_scipy_finds_to_the_last_bit(seed: int, evaluations: int) -> None:
-    rng = np.random.default_rng(seed)
-    size = int(rng.integers(2, 7))
-    first = rng.normal(size=size)
-    simplex = first + np.vstack([np.zeros(size), np.eye(size)])
+    simplex, held = some(seed)
     options = {"maxfev": evaluations, "initial_simplex": simplex, "xatol": SIZE, "fatol": SPREAD}
-    judged = minimize(valley, first, method="Nelder-Mead", options=options).x
-    assert least_point(valley, simplex, evaluations, SIZE, SPREAD).tobytes() == judged.tobytes()
+    judged = minimize(volume, simplex[0], args=(held,), method="Nelder-Mead", options=options).x
+    assert least_volume(simplex, held, Ends(evaluations, SIZE, SPREAD)).tobytes() == judged.tobytes()
 
 
-def test_it_finds_the_bottom_of_a_bowl() -> None:
-    middle = np.array([0.3, -0.2, 0.7])
-    found = least_point(
-        lambda x: float(np.sum((x - middle) ** 2)), np.vstack([np.zeros(3), np.eye(3)]), 1000, 1e-6, 1e-12
-    )
-    np.testing.assert_allclose(found, middle, atol=1e-5)
+@pytest.mark.parametrize("seed", range(12))
+def test_the_volume_is_that_of_the_capsule_that_holds_so_many_points(seed: int) -> None:
+    simplex, held = some(seed)
+    start, end = simplex[1, :3], simplex[1, 3:]
+    along = np.linspace(0.0, 1.0, 20_001)[:, None]
+    away = sorted(float(np.linalg.norm(start + along * (end - start) - point, axis=1).min()) for point in held.points)
+    radius = max(away[held.rank] - held.slack, 0.0)
+    expected = math.pi * radius**2 * (float(np.linalg.norm(end - start)) + 4.0 / 3.0 * radius)
+    assert math.isclose(volume(simplex[1], held), expected, rel_tol=1e-4, abs_tol=1e-12)

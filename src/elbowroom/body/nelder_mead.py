@@ -1,90 +1,121 @@
-"""The downhill simplex method: least values of a function of a few variables, without derivatives.
+"""The downhill simplex method, for the volume of a capsule over its two ends.
 
 J. A. Nelder & R. Mead, "A simplex method for function minimization", Computer Journal 7 (1965), with the usual
-coefficients: reflection 1, expansion 2, contraction and shrinkage 1/2. The steps are those of SciPy's, whose import
-takes longer than all the rest of a start.
+coefficients: reflection 1, expansion 2, contraction and shrinkage 1/2. The steps are those of SciPy's.
 """
 
-from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.jit import exact_kernel, helper
+
 Floats = NDArray[np.float64]
-Function = Callable[[Floats], float]
 
 
-class _SpentError(Exception):
-    """No evaluations are left."""
+class Held(NamedTuple):
+    """What a capsule must hold."""
+
+    points: Floats  # (P, 3)
+    rank: int  # all but so many of them, the nearest ones: from 0 to P-1
+    slack: float  # metres that a point may be outside and counts as held
 
 
-class _Simplex:
-    """n+1 points, the best first, and the function's values there."""
+class Ends(NamedTuple):
+    """When a search ends."""
 
-    def __init__(self, function: Function, points: Floats, evaluations: int) -> None:
-        self._function, self._left = function, evaluations
-        self.points = points.copy()
-        self.values = np.array([self._at(point) for point in self.points])
-        self.sort()
+    evaluations: int
+    size: float  # metres from the best point, with
+    spread: float  # cubic metres between the values
 
-    def _at(self, point: Floats) -> float:
-        if self._left == 0:
-            raise _SpentError
-        self._left -= 1
-        return self._function(point)
 
-    def sort(self) -> None:
-        order = np.argsort(self.values)
-        self.points, self.values = self.points[order], self.values[order]
+@exact_kernel
+def volume(ends: Floats, held: Held) -> float:
+    """Cubic metres of the slimmest capsule with these ends (6,) that holds the nearest `rank` + 1 points."""
+    points, along, squared = held.points, ends[3:] - ends[:3], 0.0
+    for i in range(3):
+        squared += along[i] * along[i]
+    squared = max(squared, 1e-18)
+    away = np.empty(points.shape[0])
+    for p in range(points.shape[0]):
+        x, y, z = points[p, 0] - ends[0], points[p, 1] - ends[1], points[p, 2] - ends[2]
+        where = min(max((x * along[0] + y * along[1] + z * along[2]) / squared, 0.0), 1.0)
+        x, y, z = x - where * along[0], y - where * along[1], z - where * along[2]
+        away[p] = x * x + y * y + z * z
+    radius = max(np.sqrt(np.partition(away, held.rank)[held.rank]) - held.slack, 0.0)
+    return float(np.pi * radius * radius * (np.sqrt(squared) + 4.0 / 3.0 * radius))
 
-    def is_small(self, size: float, spread: float) -> bool:
-        flat = np.abs(self.values[0] - self.values[1:]).max() <= spread
-        return bool(flat and np.abs(self.points[1:] - self.points[0]).max() <= size)
 
-    def step(self) -> None:
-        """Replace the worst point by a better one, or draw all points towards the best."""
-        middle, worst = np.add.reduce(self.points[:-1], 0) / (len(self.points) - 1), self.points[-1]
-        reflected = 2.0 * middle - worst
-        value = self._at(reflected)
-        if value < self.values[0]:
-            expanded = 3.0 * middle - 2.0 * worst
-            farther = self._at(expanded)
-            self._replace(*((expanded, farther) if farther < value else (reflected, value)))
-        elif value < self.values[-2]:
-            self._replace(reflected, value)
-        elif not self._contracted(middle, worst, value):
-            self._shrink()
+@helper
+def _settle(simplex: Floats, values: Floats, row: int) -> None:
+    """Move a row of points, all above which are in order, to its place by its value."""
+    point, value, at = simplex[row].copy(), values[row], row
+    while at > 0 and values[at - 1] > value:
+        simplex[at], values[at] = simplex[at - 1], values[at - 1]
+        at -= 1
+    simplex[at], values[at] = point, value
 
-    def _contracted(self, middle: Floats, worst: Floats, reflected: float) -> bool:
-        outside = reflected < self.values[-1]
-        point = 1.5 * middle - 0.5 * worst if outside else 0.5 * middle + 0.5 * worst
-        value = self._at(point)
-        better = value <= reflected if outside else value < self.values[-1]
+
+@helper
+def _is_small(simplex: Floats, values: Floats, ends: Ends) -> bool:
+    far = 0.0
+    for j in range(1, simplex.shape[0]):
+        for i in range(simplex.shape[1]):
+            far = max(far, abs(simplex[j, i] - simplex[0, i]))
+    return bool(far <= ends.size and values[-1] - values[0] <= ends.spread)
+
+
+@helper
+def _middle(simplex: Floats) -> Floats:
+    """The mean of all points but the worst."""
+    out: Floats = np.zeros(simplex.shape[1])
+    for j in range(simplex.shape[0] - 1):
+        out += simplex[j]
+    out /= simplex.shape[0] - 1
+    return out
+
+
+@exact_kernel
+def least_volume(first: Floats, held: Held, ends: Ends) -> Floats:
+    """The ends (6,) of the slimmest capsule found from a first simplex (7, 6), all of which is evaluated."""
+    simplex, values = first.copy(), np.empty(first.shape[0])
+    for j in range(first.shape[0]):
+        values[j] = volume(simplex[j], held)
+        _settle(simplex, values, j)
+    left = ends.evaluations - first.shape[0]
+    while left > 0 and not _is_small(simplex, values, ends):
+        middle, worst = _middle(simplex), simplex[-1].copy()
+        point = 2.0 * middle - worst
+        value, better = volume(point, held), True
+        left -= 1
+        if value < values[0]:
+            if left == 0:
+                break
+            farther = 3.0 * middle - 2.0 * worst
+            there = volume(farther, held)
+            left -= 1
+            if there < value:
+                point, value = farther, there
+        elif value >= values[-2]:
+            if left == 0:
+                break
+            outside, reflected = value < values[-1], value
+            point = 1.5 * middle - 0.5 * worst if outside else 0.5 * middle + 0.5 * worst
+            value = volume(point, held)
+            left -= 1
+            better = value <= reflected if outside else value < values[-1]
         if better:
-            self._replace(point, value)
-        return bool(better)
-
-    def _replace(self, point: Floats, value: float) -> None:
-        self.points[-1], self.values[-1] = point, value
-
-    def _shrink(self) -> None:
-        for j in range(1, len(self.points)):
-            self.points[j] = self.points[0] + 0.5 * (self.points[j] - self.points[0])
-            self.values[j] = self._at(self.points[j])
-
-
-def least_point(function: Function, simplex: Floats, evaluations: int, size: float, spread: float) -> Floats:
-    """The best point (n,) found from a first simplex (n+1, n), of which at least all points are evaluated.
-
-    Ends after so many `evaluations`, or when the points lie within `size` of the best and their values within `spread`.
-    """
-    found = _Simplex(function, simplex, max(evaluations, len(simplex)))
-    while not found.is_small(size, spread):
-        try:
-            found.step()
-        except _SpentError:
-            found.sort()
-            break
-        found.sort()
-    best: Floats = found.points[0]
+            simplex[-1], values[-1] = point, value
+            _settle(simplex, values, first.shape[0] - 1)
+            continue
+        for j in range(1, first.shape[0]):
+            simplex[j] = simplex[0] + 0.5 * (simplex[j] - simplex[0])
+            if left == 0:
+                break
+            values[j] = volume(simplex[j], held)
+            left -= 1
+        for j in range(1, first.shape[0]):
+            _settle(simplex, values, j)
+    best: Floats = simplex[0]
     return best

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.nelder_mead import least_point
+from elbowroom.body.nelder_mead import Ends, Held, least_volume, volume
 
 Floats = NDArray[np.float64]
 
@@ -46,8 +46,10 @@ def slimmest(points: Floats, start: Floats, end: Floats, wanted: Wanted) -> Slim
 
     One of them runs along the axis from `start` to `end`.
     """
-    found = [_search(points, guess, wanted) for guess in _first_guesses(points, start, end)]
-    best = min(found, key=lambda both: _volume(both, points, wanted))
+    rank = int(np.ceil(wanted.share * (len(points) - 1)))
+    held = Held(np.ascontiguousarray(points, np.float64), rank, wanted.slack)
+    found = [_search(held, guess, wanted.evaluations) for guess in _first_guesses(points, start, end)]
+    best = min(found, key=lambda both: volume(both, held))
     away = np.quantile(distances(points, best[:3], best[3:]), wanted.share)
     return Slim(best[:3], best[3:], max(float(away) - wanted.slack, 0.0))
 
@@ -78,19 +80,7 @@ def _half(points: Floats, direction: Floats) -> Floats:
     return half
 
 
-def _search(points: Floats, first: Floats, wanted: Wanted) -> Floats:
-    step = 0.1 * float(np.ptp(points, axis=0).max()) + 1e-6
+def _search(held: Held, first: Floats, evaluations: int) -> Floats:
+    step = 0.1 * float(np.ptp(held.points, axis=0).max()) + 1e-6
     simplex = first + np.vstack([np.zeros(6), step * np.eye(6)])
-    return least_point(lambda ends: _volume(ends, points, wanted), simplex, wanted.evaluations, 1e-4, 1e-8)
-
-
-def _volume(ends: Floats, points: Floats, wanted: Wanted) -> float:
-    """Volume of the capsule with these ends (6,) that holds what is wanted; called thousands of times."""
-    along = ends[3:] - ends[:3]
-    from_start = points - ends[:3]
-    squared = max(float(along @ along), 1e-18)
-    where = np.minimum(np.maximum(from_start @ (along / squared), 0.0), 1.0)
-    away = from_start - where[:, None] * along
-    rank = int(np.ceil(wanted.share * (len(points) - 1)))
-    radius = max(math.sqrt(np.partition(np.einsum("pi,pi->p", away, away), rank)[rank]) - wanted.slack, 0.0)
-    return math.pi * radius * radius * (math.sqrt(squared) + 4.0 / 3.0 * radius)
+    return least_volume(simplex, held, Ends(evaluations, 1e-4, 1e-8))

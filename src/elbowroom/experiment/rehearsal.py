@@ -12,6 +12,7 @@ from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.body.slim_capsule import Wanted, slimmest
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
@@ -70,6 +71,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_place()
     rehearse_ground()
     rehearse_way(humanoid)
+    rehearse_fit()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
@@ -141,6 +143,12 @@ def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:
 
 def _one_box(center: tuple[float, ...], half: tuple[float, ...]) -> Obstacles:
     return Obstacles.boxes([center], [[0.0, 0.0, 0.0, 1.0]], [half])
+
+
+def rehearse_fit() -> None:
+    """Fit a capsule, as avatars of one's own need many."""
+    points = np.random.default_rng(0).normal(size=(9, 3))
+    slimmest(points, points[0], points[1], Wanted(1.0, 0.0, 9))
 
 
 def rehearse_mesh() -> None:
