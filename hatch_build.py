@@ -65,6 +65,7 @@ def build_client() -> None:
         shutil.copytree(WEB, copy, ignore=shutil.ignore_patterns(*_NOT_SOURCES))
         run_npm(["ci", "--no-audit", "--no-fund", "--loglevel=error"], copy)
         run_npm(["run", "build", "--", "--outDir", str(output), "--emptyOutDir"], copy)
+        run_npm(["run", "build-player", "--", "--outDir", str(output / "player"), "--emptyOutDir"], copy)
         (output / ".stamp").write_text(stamp() + "\n")
         shutil.rmtree(CLIENT, ignore_errors=True)
         shutil.copytree(output, CLIENT)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from elbowroom.planning.result import LocalPlan as LocalPlan
     from elbowroom.planning.result import PlanStatus as PlanStatus
     from elbowroom.planning.root.path import RootPath as RootPath
+    from elbowroom.server.notebook import show as show
     from elbowroom.world.places.options import PlaceOptions as PlaceOptions
     from elbowroom.world.scene import Gate as Gate
     from elbowroom.world.scene import Scene as Scene
@@ -52,6 +53,7 @@ _HOMES = {
     "Scene": "world.scene",
     "natural_walk": "planning.goal",
     "register_planner": "planning.planner",
+    "show": "server.notebook",
 }
 
 

@@ -36,7 +36,7 @@ def export(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Write the motion of a recording as a file that other programs read: .bvh, .glb, .vrma,
-    .x3d, .usda, .csv or .npz.
+    .x3d, .usda, .csv or .npz; or as a page that plays by itself: .html.
 
     It holds the frames as the page shows them. BVH is in centimetres with Y up and a T-pose, unless told otherwise.
     GLB has the avatar's mesh in it where its licence allows that.
@@ -49,6 +49,9 @@ def export(
         raise InputError(f"{out}: exists; choose another name or say --overwrite")
     if scene is not None or recording is None:
         _export_scene(scene, recording, out, json=json)
+        return
+    if out.suffix.lower() in (".html", ".htm"):
+        _export_page(recording, out, avatar, json=json, quiet=quiet)
         return
     chosen = format_of(out)
     layout = chosen.layout(Wishes(root, rest, unit, up))
@@ -66,6 +69,24 @@ def export(
         _keep(out, written.data)
     notes = [*written.notes, *([f"not whole: {recorded.note}"] if recorded.note else [])]
     _report(out, chosen.title, len(written.data), animation, notes, json)
+
+
+def _export_page(recording: Path, out: Path, avatar: Path | None, *, json: bool, quiet: bool) -> None:
+    from elbowroom.control.recording import Recording
+    from elbowroom.server.standalone_page import page_of_recording
+
+    recorded = Recording(recording)
+    compile_first(quiet=quiet)
+    with progress_bar(f"Writing {out.name}", None, quiet):
+        page, notes = page_of_recording(recorded, recorded.header.avatar.load(avatar), recording.name)
+        _keep(out, data := page.encode())
+    notes = (*notes, *([f"not whole: {recorded.note}"] if recorded.note else []))
+    if json:
+        print_json({"file": str(out), "format": "HTML", "bytes": len(data), "notes": list(notes)})
+    else:
+        print_row(str(out), {"format": "HTML", "size": f"{len(data) / 1e3:.1f} kB"})
+        for note in notes:
+            print(note)
 
 
 def _export_scene(name: str | None, recording: Path | None, out: Path, *, json: bool) -> None:

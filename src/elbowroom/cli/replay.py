@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = "Examples:  elbowroom replay --show run.elbow  |  elbowroom replay run.elbow --avatar alice.vrm --json"
 DIFFERENT = 1
+_LIVE = "recorded live, where plans came when they were ready: the file shows what was shown, but is not computed again"
 
 
 def replay(
@@ -85,7 +86,7 @@ def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:
         return
     if result.difference is not None:
         print(f"different from {result.difference}")
-        print(_why(elsewhere))
+        print(_LIVE if recorded.header.live else _why(elsewhere))
     else:
         so_far = "identical" if recorded.note is None else "identical as far as it goes"
         print(f"{so_far}: {result.frames} frames, {result.seconds:.1f} s")

@@ -85,6 +85,7 @@ class RecordingHeader:
     start: RootState
     machine: dict[str, str]  # what the last bits of floating-point results may depend on
     motions: MotionSet = STOCK
+    live: bool = False  # plans came when they were ready: computed again, they would come at other moments
 
     @classmethod
     def of(cls, controller: Controller) -> "RecordingHeader":
@@ -117,6 +118,7 @@ class RecordingHeader:
             start=RootState(*(float(value) for value in document["start"])),
             machine={str(key): str(value) for key, value in document["machine"].items()},
             motions=STOCK if motions is None else MotionSet.from_dict(motions, "motions"),
+            live=bool(document.get("live", False)),
         )
 
 
@@ -135,26 +137,23 @@ def this_machine() -> dict[str, str]:
     }
 
 
-class Recorder:
-    """Appends the steps of a run to a file; a context manager.
+class StepWriter:
+    """Appends the steps of a run to an open file."""
 
-    It replaces a recording. Raises `InputError` where the path holds another kind of file, or cannot be written.
-    """
-
-    def __init__(self, path: str | Path, controller: Controller) -> None:
-        self.path = Path(path)  # of the recording
+    def __init__(self, file: BinaryIO, controller: Controller, told: RecordingHeader | None = None) -> None:
+        """`told` is the header, by default that of the controller."""
+        self._file = file
         self._pending: list[tuple[Any, ...]] = []
         self._written, self._crc = 0, 0  # steps in all chunks, and of their data
         self._things = ThingLog(controller)
-        header = RecordingHeader.of(controller).to_json()
-        try:
-            if self.path.exists() and not is_recording(self.path):
-                raise InputError(f"{self.path}: exists and is no recording; choose another name or remove it")
-            self._file: BinaryIO = self.path.open("wb")
-            self._file.write(MAGIC + _COUNT.pack(len(header)) + header + _COUNT.pack(zlib.crc32(header)))
-            self._file.flush()
-        except OSError as error:
-            raise InputError(f"{self.path}: cannot be written ({error.strerror})") from None
+        header = (told or RecordingHeader.of(controller)).to_json()
+        self._file.write(MAGIC + _COUNT.pack(len(header)) + header + _COUNT.pack(zlib.crc32(header)))
+        self._file.flush()
+
+    @property
+    def steps(self) -> int:
+        """How many steps there are."""
+        return self._written + len(self._pending)
 
     def append(self, command: Command, dt: float, frame: Frame, *, assist: bool = True, restart: bool = False) -> None:
         """Keep one step: what was asked, and the frame that `Controller.step` gave for it."""
@@ -163,7 +162,7 @@ class Recorder:
         )
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
-        self._things.note(self._written + len(self._pending))
+        self._things.note(self.steps)
         self._pending.append((*wish, frame.q, frame.root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
@@ -185,11 +184,31 @@ class Recorder:
         self._file.write(_CHUNK_HEAD.pack(mark, len(records), len(data), zlib.crc32(data)) + data)
         self._crc = zlib.crc32(data, self._crc)
 
+    def end(self) -> bytes:
+        """Write what is pending; the end that makes the file whole as far as it goes now."""
+        self.flush()
+        return _CHUNK_HEAD.pack(_END_MARK, self._written, 0, self._crc)
+
+
+class Recorder(StepWriter):
+    """Appends the steps of a run to a file of its own; a context manager.
+
+    It replaces a recording. Raises `InputError` where the path holds another kind of file, or cannot be written.
+    """
+
+    def __init__(self, path: str | Path, controller: Controller) -> None:
+        self.path = Path(path)  # of the recording
+        try:
+            if self.path.exists() and not is_recording(self.path):
+                raise InputError(f"{self.path}: exists and is no recording; choose another name or remove it")
+            super().__init__(self.path.open("wb"), controller)
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be written ({error.strerror})") from None
+
     def close(self) -> None:
         """Write what is pending and the end, and close the file."""
         if not self._file.closed:
-            self.flush()
-            self._file.write(_CHUNK_HEAD.pack(_END_MARK, self._written, 0, self._crc))
+            self._file.write(self.end())
             self._file.close()
 
     def __enter__(self) -> "Recorder":

@@ -25,6 +25,7 @@ from elbowroom.server.courses import BusyError
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.heap import hand_back
 from elbowroom.server.library import Library
+from elbowroom.server.page_key import page_key
 from elbowroom.server.reception import Reception
 from elbowroom.server.reports import scene_message
 from elbowroom.server.runs import run_response, shown_run
@@ -71,6 +72,8 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
         Route("/api/avatars", desk.take, methods=["POST"]),
         Route("/api/runs", desk.show, methods=["POST"]),
         Route("/api/run", handlers.run),
+        Route("/api/pages", desk.page, methods=["POST"]),
+        Route("/api/walk.elbow", handlers.walk),
         Route("/api/motions", desk.save, methods=["POST"]),
         Route("/avatars/{avatar}.glb", handlers.avatar),
         Route("/places/{place}.glb", handlers.place),
@@ -88,6 +91,7 @@ class _Handlers:
     def __init__(self, library: Library) -> None:
         self._library = library
         self._sessions = 0
+        self._of_pages: dict[str, Session] = {}  # by the key of the page
 
     async def health(self, request: Request) -> Response:  # noqa: ARG002
         usage = process_usage()
@@ -141,6 +145,17 @@ class _Handlers:
         except (ApartError, FullDiskError):
             return JSONResponse({"error": "the recording could not be read; the server's log says more"}, 500)
 
+    async def walk(self, request: Request) -> Response:
+        """The walk that a page shows, as a recording; `?key=` is its secret."""
+        key = page_key(request.query_params)
+        session = self._of_pages.get(key) if key else None
+        if session is None:
+            return JSONResponse({"error": "this page has no walk here"}, 404)
+        try:
+            return Response(session.recording(), media_type="application/octet-stream")
+        except InputError as error:
+            return JSONResponse({"error": str(error)}, 404)
+
     def avatar(self, request: Request) -> Response:
         try:
             avatar = self._library.avatars.get(request.path_params["avatar"])
@@ -167,10 +182,14 @@ class _Handlers:
             await socket.close(_TRY_AGAIN_LATER, reason)
             return
         self._sessions += 1
+        key, session = page_key(socket.query_params), Session(socket, self._library)
+        self._of_pages[key] = session
         try:
-            await Session(socket, self._library).run()
+            await session.run()
         finally:
             self._sessions -= 1
+            if self._of_pages.get(key) is session:
+                del self._of_pages[key]
             if self._sessions == 0:
                 await asyncio.to_thread(hand_back)
 

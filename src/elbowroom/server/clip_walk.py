@@ -61,6 +61,10 @@ class ClipWalk:
         """Nothing is pushed."""
         return {}
 
+    def recording(self) -> bytes:
+        """Raises `InputError`."""
+        raise InputError("no walk is recorded: a recorded motion plays; walk first")
+
     def push(self, number: int, place: tuple[float, float] | None) -> None:
         """Raises `InputError`."""
         del number

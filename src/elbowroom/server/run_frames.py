@@ -44,9 +44,8 @@ def posed_run(path: Path, known: dict[str, AvatarReference]) -> PosedRun:
     """
     recording = Recording(path)
     humanoid, avatar, stand_in = _avatar_of(recording.header.avatar, known)
-    shown, steps = ShownFrames.of(recording), recording.steps()
     scene = recording.scene()
-    frames = _frames(_Told(shown, steps["flags"], steps["phase"]), humanoid, scene)
+    frames = _frames(_told(recording), humanoid, scene)
     header, note = recording.header, recording.note or ""
     return PosedRun(
         told(scene).to_dict() if len(recording.things) else header.scene,
@@ -57,6 +56,16 @@ def posed_run(path: Path, known: dict[str, AvatarReference]) -> PosedRun:
         len(frames),
         b"".join(frames),
     )
+
+
+def posed_frames(recording: Recording, humanoid: Humanoid) -> list[bytes]:
+    """The frames of a recording on an avatar, packed; raises `InputError`."""
+    return _frames(_told(recording), humanoid, recording.scene())
+
+
+def _told(recording: Recording) -> "_Told":
+    shown, steps = ShownFrames.of(recording), recording.steps()
+    return _Told(shown, steps["flags"], steps["phase"])
 
 
 def _avatar_of(wanted: AvatarReference, known: dict[str, AvatarReference]) -> tuple[Humanoid, str, str]:

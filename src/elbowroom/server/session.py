@@ -86,6 +86,10 @@ class Session:
             with contextlib.suppress(AttributeError):  # where it had not begun
                 self._stage.close()
 
+    def recording(self) -> bytes:
+        """The walk that is shown, as a `.elbow` file; raises `InputError`."""
+        return self._stage.walk.recording()
+
     def _tasks(self) -> list[Coroutine[None, None, None]]:
         return [self._read(), self._play(), self._changes.run(), self._ways.run()]
 

@@ -18,6 +18,7 @@ from elbowroom.server.reception import Reception
 from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.saved_motion import save_motion
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, SceneChoice, Uploaded
+from elbowroom.server.standalone_page import page_of_sent
 from elbowroom.server.while_there import while_there
 from elbowroom.world.scene import Scene
 
@@ -71,6 +72,22 @@ class UploadDesk:
             return Response(written.data, media_type="application/octet-stream", headers=headers)
 
         return await self._reception.admitted(request, saved)
+
+    async def page(self, request: Request) -> Response:
+        """POST: a run as `schema.runs` has it, `?avatar=` the id of its avatar. Answers with a page that plays it."""
+
+        async def written(sender: Sender) -> Response:  # noqa: ARG001
+            avatar = await asyncio.to_thread(self._library.avatars.get, request.query_params.get("avatar", ""))
+            with self._reception.files() as (file, _):
+                await self._reception.receive(request, file)
+                async with self._reading:
+                    page, notes = await asyncio.to_thread(page_of_sent, file.read_bytes(), avatar)
+            headers = {"content-disposition": "attachment; filename=walk.html"}
+            if notes:
+                headers["x-elbowroom-note"] = quote("; ".join(notes))
+            return Response(page, media_type="application/octet-stream", headers=headers)
+
+        return await self._reception.admitted(request, written)
 
     async def _taken(self, request: Request, sender: Sender) -> Uploaded:
         name = request.query_params.get("name", "avatar")[:_NAME]

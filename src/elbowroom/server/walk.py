@@ -21,6 +21,7 @@ from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
 from elbowroom.server.schema.bounds import WALK_SPEEDS
+from elbowroom.server.walk_log import WalkLog
 from elbowroom.world.scene import Scene
 
 _MOTION = RootMotionSettings()
@@ -70,6 +71,7 @@ class Walk:
         self._motions = motions
         self._controller = self._made(place)
         self._controller.prepare()
+        self._log = WalkLog(self._controller)
         self.crossed = 0
         self.stuck_times = 0
         self._begin()
@@ -107,6 +109,7 @@ class Walk:
         self._controller.start = self.scene.start
         self._controller.reset()
         self._controller.assist = self.settings.assist
+        self._log.begin()
         self._begin()
 
     def adjust(self, settings: WalkSettings) -> None:
@@ -116,8 +119,9 @@ class Walk:
 
     def step(self, command: Command, dt: float) -> float | None:
         """Go on by `dt` seconds; the seconds that the crossing took if the finish was passed just now."""
-        was_stuck = self.frame.stuck
-        self.frame = self._controller.step(at_speed(command, self.settings.walk_speed), dt)
+        was_stuck, paced = self.frame.stuck, at_speed(command, self.settings.walk_speed)
+        self.frame = self._controller.step(paced, dt)
+        self._log.add(paced, dt, self.frame, assist=self._controller.assist)
         if self.frame.stuck and not was_stuck:
             self.stuck_times += 1
             self._stuck_since_start += 1
@@ -170,6 +174,10 @@ class Walk:
     def set_out(self, way: Way) -> None:
         """Go along a way, at the walking speed that is set."""
         self._controller.set_out(way, at_speed(FORWARD, self.settings.walk_speed))
+
+    def recording(self) -> bytes:
+        """What was shown since the start, as a `.elbow` file; raises `InputError`."""
+        return self._log.recording()
 
     @property
     def plans(self) -> int:

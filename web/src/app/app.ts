@@ -80,7 +80,7 @@ export class App {
     });
     this.controls = new Controls(this.controlsHost(), byId("stick", HTMLElement), this.keys);
     this.pushing = new Pushing(this.pushingHost());
-    this.pointer = new PointerInput(this.view, this.picture.camera, this.controls.stick, this.pushing.grip);
+    this.pointer = new PointerInput(this.view, this.picture.camera, [this.pushing.grip, this.controls.stick]);
     this.somewhere = new GoingSomewhere(this.view, {
       picture: this.picture, send: (message) => this.session.send(message),
       say: (level, said) => this.notices.show(level, said), walks: () => this.modes.live,

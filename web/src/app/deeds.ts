@@ -69,7 +69,7 @@ export class Deeds {
   }
 }
 
-type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build" | "push";
+type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build" | "push" | "record";
 
 /** What is done to the walk. */
 function walking({ session, modes, statusLine, finishCard, somewhere, pushing }: DeedsParts): Record<Walking, () => void> {
@@ -88,6 +88,7 @@ function walking({ session, modes, statusLine, finishCard, somewhere, pushing }:
     replay: () => void modes.toggleReplay(),
     build: () => void modes.toggleBuild(),
     push: () => pushing.next(),
+    record: () => void modes.saveRecording(),
   };
 }
 

@@ -6,6 +6,8 @@ import type { Action } from "../input/keyboard";
 import type { Session } from "../net/session";
 import type { Picture } from "../picture";
 import { ReplayDoor } from "../replay/door";
+import { saveRecording } from "../replay/recording";
+import { text } from "../texts/texts";
 import { byId } from "../ui/dom";
 import type { FinishCard } from "../ui/finish_card";
 import type { Menu } from "../ui/menu";
@@ -87,6 +89,15 @@ export class Modes {
       notices.show("error", words(error));
     } finally {
       veil.upload(null);
+    }
+  }
+
+  /** Hands over the walk so far as a recording, which replays here and elsewhere. */
+  async saveRecording(): Promise<void> {
+    try {
+      await saveRecording(this.parts.live.scene?.name ?? "walk");
+    } catch (error) {
+      this.parts.notices.show("error", text("replay.notSaved", words(error)));
     }
   }
 

@@ -1,7 +1,5 @@
 /** Mouse and touch on the view: drag a thing to push it, elsewhere to look, wheel or pinch to zoom, the stick on the left, pointer lock on request. */
 
-import type { TouchStick } from "./touch_stick";
-
 const LOOK_RATE = 0.0052;
 const TOUCH_LOOK_RATE = 0.0068;
 const WHEEL_RATE = 0.0011;
@@ -14,7 +12,7 @@ export interface LookTarget {
 
 /** Who may take a pointer that goes down, before it looks around: until it is released. */
 export interface PointerTaker {
-  take(event: PointerEvent): boolean;
+  take(event: PointerEvent, view: DOMRect): boolean;
   owns(event: PointerEvent): boolean;
   move(event: PointerEvent): void;
   release(): void;
@@ -25,8 +23,7 @@ export class PointerInput {
   private pinch = 0;
 
   constructor(
-    private readonly view: HTMLElement, private readonly camera: LookTarget, private readonly stick: TouchStick,
-    private readonly grip: PointerTaker,
+    private readonly view: HTMLElement, private readonly camera: LookTarget, private readonly takers: readonly PointerTaker[],
   ) {
     view.addEventListener("pointerdown", (event) => this.down(event));
     view.addEventListener("pointermove", (event) => this.move(event));
@@ -51,19 +48,16 @@ export class PointerInput {
     } catch {
       // A synthetic pointer has no capture; the drag works without.
     }
-    if (this.grip.take(event)) return;
-    if (this.stick.take(event, this.view.getBoundingClientRect())) return;
+    const view = this.view.getBoundingClientRect();
+    if (this.takers.some((taker) => taker.take(event, view))) return;
     this.looking.set(event.pointerId, [event.clientX, event.clientY]);
     this.pinch = 0;
   }
 
   private move(event: PointerEvent): void {
-    if (this.grip.owns(event)) {
-      this.grip.move(event);
-      return;
-    }
-    if (this.stick.owns(event)) {
-      this.stick.move(event);
+    const owner = this.takers.find((taker) => taker.owns(event));
+    if (owner) {
+      owner.move(event);
       return;
     }
     const last = this.looking.get(event.pointerId);
@@ -78,8 +72,7 @@ export class PointerInput {
   }
 
   private up(event: PointerEvent): void {
-    if (this.grip.owns(event)) this.grip.release();
-    if (this.stick.owns(event)) this.stick.release();
+    for (const taker of this.takers) if (taker.owns(event)) taker.release();
     this.looking.delete(event.pointerId);
     this.pinch = 0;
   }

@@ -31,6 +31,16 @@ export function motionUrl(avatar: string, format: string): string {
   return `api/motions?${new URLSearchParams({ avatar, format, key: pageKey() })}`;
 }
 
+/** The address that writes a run of this avatar as a page of its own. */
+export function pageUrl(avatar: string): string {
+  return `api/pages?${new URLSearchParams({ avatar, key: pageKey() })}`;
+}
+
+/** The address of the walk that is shown, as a recording. */
+export function recordingUrl(): string {
+  return `api/walk.elbow?${new URLSearchParams({ key: pageKey() })}`;
+}
+
 /** The address that takes a scene that was built. */
 export function scenesUrl(): string {
   return `api/scenes?${new URLSearchParams({ key: pageKey() })}`;

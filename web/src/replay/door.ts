@@ -7,6 +7,7 @@ import type { Loose } from "../stage/loose";
 import { text } from "../texts/texts";
 import { WalkKeeper, type Circumstances } from "./keeper";
 import type { Replay, ReplayHost, ReplayState } from "./replay";
+import { WalkStore } from "./store";
 import type { Take } from "./take";
 
 /** What is shown live. */
@@ -18,6 +19,9 @@ export interface LiveShown {
 
 export class ReplayDoor {
   private readonly keeper = new WalkKeeper();
+  private readonly store = new WalkStore(() => this.keeper.takes());
+  /** Of earlier visits; fetched when they are first wanted. */
+  private earlier: readonly Take[] | null = null;
   /** Runs out of files. */
   private readonly files: Take[] = [];
   private replay: Replay | null = null;
@@ -51,7 +55,7 @@ export class ReplayDoor {
       this.replay?.close();
       return;
     }
-    const takes = this.takes();
+    const takes = await this.every();
     const last = takes.at(-1);
     if (last) await this.open(takes, last);
     else this.host.say("info", text("replay.none"));
@@ -62,7 +66,7 @@ export class ReplayDoor {
     const { readRun, shownRun } = await import("./run_file");
     const { take, run } = await (file ? readRun(file) : shownRun());
     this.files.push(take);
-    await this.open(this.takes(), take);
+    await this.open(await this.every(), take);
     if (run.standIn) this.host.say("warning", text("replay.standIn", run.standIn));
     if (run.note) this.host.say("warning", run.note);
   }
@@ -90,8 +94,10 @@ export class ReplayDoor {
     this.replay?.repaint();
   }
 
-  private takes(): readonly Take[] {
-    return [...this.files, ...this.keeper.takes()];
+  /** All that can be replayed, the walk that is going on last. */
+  private async every(): Promise<readonly Take[]> {
+    this.earlier ??= await this.store.load();
+    return [...this.files, ...this.earlier, ...this.keeper.takes()];
   }
 
   private async open(takes: readonly Take[], shown: Take): Promise<void> {

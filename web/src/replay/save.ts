@@ -1,13 +1,16 @@
 /** Saves a run for other programs: the page sends its frames as they were shown, the server writes the file. */
 
 import type { PoseFrame } from "../generated/messages";
-import { motionUrl } from "../net/endpoints";
+import { motionUrl, pageUrl } from "../net/endpoints";
 import { download } from "./film";
 import type { Take } from "./take";
 
 /** What a run can be saved as, by the endings of the files. */
-export const SAVED_AS = ["bvh", "glb", "vrma", "x3d", "usda", "csv", "npz"] as const;
+export const SAVED_AS = ["html", "bvh", "glb", "vrma", "x3d", "usda", "csv", "npz"] as const;
 export type SavedAs = (typeof SAVED_AS)[number];
+
+/** Bytes of a pose frame before its time. */
+const TIME_AT = 8;
 
 /** Numbers of a frame before its rotations, see `server/saved_motion.py`. */
 const HEAD = 9;
@@ -24,10 +27,29 @@ export function packed({ frames }: Take): Float32Array<ArrayBuffer> {
   return numbers;
 }
 
+/** A take as the server reads a whole run: the length of its head, the head, pose frames as they came. */
+export function wholeRun({ scene, loose, avatar, planner, file, frames }: Take): Blob {
+  const standing = scene.obstacles.filter((_, i) => !loose.has(i));
+  const shown = { ...scene, obstacles: standing, moving: [...scene.moving, ...loose.values()] };
+  const head = new TextEncoder().encode(JSON.stringify({ name: file || scene.title, planner, note: "", scene: shown, avatar }));
+  const size = new DataView(new ArrayBuffer(4));
+  size.setUint32(0, head.length, true);
+  return new Blob([size.buffer, head, ...frames.map(asSent)]);
+}
+
+/** A frame as it came over the wire, but for its time. */
+function asSent({ rotations, time }: PoseFrame): ArrayBuffer {
+  const message = (rotations.buffer as ArrayBuffer).slice(0);
+  new DataView(message).setFloat64(TIME_AT, time, true);
+  return message;
+}
+
 /** Has a take written and hands the file over; what there is to say about it, or "". @throws Error with one sentence for the user */
 export async function save(take: Take, ending: SavedAs): Promise<string> {
   const headers = { "Content-Type": "application/octet-stream" };
-  const response = await fetch(motionUrl(take.avatar.id, ending), { method: "POST", headers, body: packed(take) });
+  const response = ending === "html"
+    ? await fetch(pageUrl(take.avatar.id), { method: "POST", headers, body: wholeRun(take) })
+    : await fetch(motionUrl(take.avatar.id, ending), { method: "POST", headers, body: packed(take) });
   if (!response.ok) {
     const { error } = (await response.json().catch(() => ({}))) as { error?: string };
     throw new Error(error ?? `status ${response.status}`);

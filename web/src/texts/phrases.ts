@@ -43,6 +43,8 @@ export const PHRASES: Readonly<Record<string, string>> = {
   "Replay the last walk": "重播上一次行走",
   "The address of this scene, avatar, camera, planner, speed and overlays": "包含此場景、角色、鏡頭、規劃器、速度與疊加顯示的網址",
   "Share what I see": "分享目前畫面",
+  "Save the walk (.elbow)": "儲存此次行走（.elbow）",
+  "All that was shown since the start, to replay, judge, film or export": "自起點以來顯示的一切，可重播、評判、錄影或匯出",
   "Build a scene": "建造場景",
   "build mode: place and move things, try them, send them as a file or an address": "建造模式：放置與移動物件、試走、存成檔案或網址",
   "Planner": "規劃器",

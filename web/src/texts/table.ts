@@ -7,6 +7,7 @@ type Texts = Readonly<Record<Language, string>>;
 const said = (en: string, zhHant: string): Texts => ({ en, "zh-Hant": zhHant });
 
 export const TABLE = {
+  "alone.camera": said("Next camera", "下一個鏡頭"),
   "push.none": said("Nothing in this scene can be pushed", "此場景中沒有可推動的物件"),
   "push.inHand": said("{0} is in hand: arrow keys push it, G takes the next, Esc lets go", "已抓住 {0}：以方向鍵推動，按 G 換下一個，按 Esc 放開"),
   "replay.title": said("Replay", "重播"),
