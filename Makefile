@@ -86,6 +86,7 @@ pictures: $(VENV)/developer
 	@sh tools/install_browser.sh
 	@$(BIN)/python tools/make_pictures.py
 	@$(BIN)/python tools/make_planner_pictures.py
+	@$(BIN)/python tools/make_ground_pictures.py
 	@$(BIN)/elbowroom bench plan --plots docs/images
 	@$(BIN)/elbowroom tour d --targets 8 --seed 2 --no-judge --quiet --plan docs/images/tour.png
 	@if test -n "$(AVATARS)"; then $(BIN)/elbowroom inspect --quiet --pose-sheet docs/images/pose-sheet.png $(AVATARS); \

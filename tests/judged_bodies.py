@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, limits
-from elbowroom.body.root import RootState
+from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.control.recording import ASSIST, MAGIC, STEP
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Gate, Scene
@@ -58,7 +58,7 @@ def random_boxes(rng: np.random.Generator, count: int) -> Obstacles:
 
 def gliding(posture: Floats, frames: int, speed: float, z: float = 0.0) -> tuple[Floats, Floats]:
     """A frozen posture that is pushed along +Z at 60 frames a second: configurations and root states."""
-    roots = np.zeros((frames, 7))
+    roots = np.zeros((frames, ROOT_STATE))
     roots[:, 1] = z + speed * np.arange(frames) / 60.0
     q = np.tile(posture, (frames, 1))
     q[:, :3] = roots[:, :3]

@@ -39,6 +39,7 @@ def made_recording(path: Path, humanoid: Humanoid, frames: int = 60, *, even: bo
     roots = np.concatenate(
         [1.2 * t, 0.4 * np.sin(t), 2.0 + 3.0 * t, np.full_like(t, 1.2), 0.0 * t, 0.0 * t, 0.9 * t], axis=1
     )
+    roots = np.hstack([roots, np.zeros((frames, ROOT_STATE - roots.shape[1]))])
     q[:, :3] = roots[:, :3]
     dt = np.full(frames, 1.0 / 60.0) if even else rng.uniform(0.0, 0.05, frames)
     restart = frames if even else frames // 2

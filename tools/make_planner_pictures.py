@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.report.svg import label, points, tag
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.memory.previous_plan import StartState
@@ -34,7 +35,7 @@ STYLE = "font: 13px sans-serif; fill: #333"
 
 def walk(horizon: int, begin: float) -> RootPath:
     """Straight on along +Z from `begin`."""
-    states, times = np.zeros((horizon + 1, 7)), INTERVAL * np.arange(horizon + 1.0)
+    states, times = np.zeros((horizon + 1, ROOT_STATE)), INTERVAL * np.arange(horizon + 1.0)
     states[:, 1], states[:, 3], states[:, 6] = begin + SPEED * times, SPEED, 0.9 * times
     return RootPath(0.0, INTERVAL, states)
 

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.body.dof import LOCAL
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.planning.root.path import RootPath
 
@@ -32,7 +33,7 @@ def random_uppers(rng: np.random.Generator, first: np.ndarray) -> np.ndarray:
 
 def filled_queue(rng: np.random.Generator) -> KeyFrameQueue:
     queue = KeyFrameQueue(SIZE, INTERVAL)
-    start = Playback(np.zeros(7), rng.normal(size=LOCAL), np.zeros(LOCAL))
+    start = Playback(np.zeros(ROOT_STATE), rng.normal(size=LOCAL), np.zeros(LOCAL))
     queue.splice(straight_path(0.0, start.root, 1.2), random_uppers(rng, start.upper), np.zeros(LOCAL))
     return queue
 

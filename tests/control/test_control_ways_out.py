@@ -5,6 +5,7 @@ import pytest
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.rehearsal import partial_motions, standing_path
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.planning.root.path import RootPath
@@ -34,7 +35,7 @@ def test_no_motion_is_no_way_out() -> None:
 
 
 def test_a_standing_path_stands() -> None:
-    walk = RootPath(2.0, 0.15, np.ones((6, 7)))
+    walk = RootPath(2.0, 0.15, np.ones((6, ROOT_STATE)))
     root = np.array([1.0, 2.0, 0.3, 1.0, 0.2, 0.1, 4.2])
     still = standing_path(walk, root)
     np.testing.assert_array_equal(still.times, walk.times)

@@ -8,6 +8,7 @@ import pytest
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.recording import ASSIST, RESTART, Recorder, Recording, RecordingHeader
 from elbowroom.errors import InputError
@@ -76,7 +77,7 @@ def test_a_torn_recording_is_judged_to_its_last_whole_chunk(tmp_path: Path) -> N
 
 def test_a_recording_of_nothing_is_no_clean_one(tmp_path: Path) -> None:
     path = tmp_path / "nothing.elbow"
-    write_recording(path, header(), np.zeros((0, DOF)), np.zeros((0, 7)))
+    write_recording(path, header(), np.zeros((0, DOF)), np.zeros((0, ROOT_STATE)))
     with pytest.raises(InputError, match=r"nothing\.elbow: holds no frames"):
         judge_recording(Recording(path), BODY)
 
@@ -108,7 +109,7 @@ def test_a_wrong_rate_is_refused() -> None:
 def test_smoothness_of_a_sine() -> None:
     """q = A sin(w t) has the extremes A w, A w^2, A w^3."""
     times, amplitude, omega = np.arange(600) / 60, 0.4, 3.0
-    q, roots = np.zeros((600, DOF)), np.zeros((600, 7))
+    q, roots = np.zeros((600, DOF)), np.zeros((600, ROOT_STATE))
     q[:, 7] = amplitude * np.sin(omega * times)
     roots[:, 0] = 0.5 * times**2
     figures = smoothness(ShownMotion.at_rate(q, roots))

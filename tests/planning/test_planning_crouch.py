@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
 from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -29,7 +30,7 @@ COLUMN = LOWERING - DofGroup.WAIST.at.start
 
 
 def walk(horizon: int = 16, speed: float = 0.9) -> RootPath:
-    states = np.zeros((horizon + 1, 7))
+    states = np.zeros((horizon + 1, ROOT_STATE))
     time = 0.15 * np.arange(horizon + 1)
     states[:, 1], states[:, 3], states[:, 6] = speed * time, speed, 0.8 * time
     return RootPath(0.0, 0.15, states)
@@ -107,7 +108,7 @@ def wall_before_the_knees() -> LoweredLegs:
 
 
 def standing(horizon: int = 6) -> RootPath:
-    return RootPath(0.0, 0.15, np.zeros((horizon + 1, 7)))
+    return RootPath(0.0, 0.15, np.zeros((horizon + 1, ROOT_STATE)))
 
 
 def way(depth: float) -> tuple[Floats, Floats]:

@@ -10,6 +10,7 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
@@ -36,7 +37,7 @@ def humanoid() -> Humanoid:
 
 
 def walk(speed: float = 1.1, horizon: int = 12, phase: float = 0.0) -> RootPath:
-    states = np.zeros((horizon + 1, 7))
+    states = np.zeros((horizon + 1, ROOT_STATE))
     time = 0.15 * np.arange(horizon + 1)
     states[:, 1], states[:, 3], states[:, 6] = speed * time, speed, phase + 0.9 * time
     return RootPath(0.0, 0.15, states)

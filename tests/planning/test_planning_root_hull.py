@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import leg_capsules
-from elbowroom.body.root import RootState
+from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.root.hull import ground_below, to_check
 from elbowroom.planning.root.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
@@ -25,7 +25,7 @@ def walks(seed: int, count: int) -> list[NDArray[np.float64]]:
     """Random ways of eight key states among the obstacles of the paper's scenes."""
     rng, found = np.random.default_rng(seed), []
     for _ in range(count):
-        states = np.empty((9, 7))
+        states = np.zeros((9, ROOT_STATE))
         states[0] = RootState(*rng.uniform([-0.6, 0, -3, -0.7, -0.6, -2, 0], [0.6, 4.5, 3, 2, 0.6, 2, 1]))
         steer(states, rng.uniform([-0.7, -0.6, -2.5], [2.2, 0.6, 2.5]), 0.15, BOUNDS)
         found.append(states)

@@ -291,6 +291,26 @@ def feet_standing(scale: float, roots: Floats) -> Bools:
     return standing
 
 
+@kernel
+def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Floats) -> float:
+    """Where a foot stands or stood last, and where it stands next if the root keeps its velocities; how far it is.
+
+    Ankle x, z and yaw of the flat foot in the root frame, twice, to `out` (6,). Returns the part of the swing that is
+    over, 0 for a foot that stands.
+    """
+    stride = _stride(scale, root[3], root[4], root[5])
+    cycle = root[6] + 0.5 * side
+    u, half = cycle - np.floor(cycle), 0.5 * stride.duty
+    _foot_pose(legs, stride, side, half, out)
+    x, z = out[0], out[2]
+    for k in range(2):
+        time = (u - half - k) * stride.period
+        at = 3 * k
+        out[at], out[at + 1] = _foot_on_ground(x, z, time, stride.forward, stride.lateral, stride.turn)
+        out[at + 2] = -stride.turn * time
+    return float(max(u - stride.duty, 0.0) / (1.0 - stride.duty))
+
+
 @helper
 def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float]:
     """One row of `hips_sinks`."""

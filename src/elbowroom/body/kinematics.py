@@ -19,7 +19,7 @@ from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.legs import leg_rest, leg_rotations
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.rises import raise_feet
 from elbowroom.body.skeleton import Skeleton
 
 Floats = NDArray[np.float64]
@@ -205,9 +205,16 @@ def _rows(values: ArrayLike, size: int) -> Floats:
     return array.reshape(-1, size) if array.ndim != 2 else array
 
 
+def _states(values: ArrayLike) -> Floats:
+    """Root states as rows: of ROOT_STATE numbers, or of those before the height."""
+    array = np.ascontiguousarray(values, np.float64)
+    return array[None] if array.ndim == 1 else array.reshape(-1, array.shape[-1])
+
+
 def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
     feet, drops = foot_poses(model.gait.legs, model.gait.scale, states)
+    raise_feet(model.gait.legs, states, feet, drops)
     sinks = hips_sinks(model.gait.half_leg, drops, np.ascontiguousarray(lowerings))
     return leg_rotations(model.leg_rest, feet, sinks), sinks
 
@@ -218,7 +225,7 @@ def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
     The hips' rotation is the identity: the root's heading turns the whole body.
     """
     posture = np.ascontiguousarray(q, np.float64)
-    legs = _lower_body(model, _rows(root, ROOT_STATE), posture[LOWERING : LOWERING + 1])[0][0]
+    legs = _lower_body(model, _states(root), posture[LOWERING : LOWERING + 1])[0][0]
     return posing.pose_local(model.figure, posture, legs)
 
 
@@ -228,7 +235,7 @@ def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
     It is where T-pose has it, less what the gait and the waist's lowering take.
     """
     lowering = np.ascontiguousarray(q, np.float64)[LOWERING : LOWERING + 1]
-    _, sinks = _lower_body(model, _rows(root, ROOT_STATE), lowering)
+    _, sinks = _lower_body(model, _states(root), lowering)
     position: Floats = model.offsets[0] - np.array([0.0, sinks[0, 0], sinks[0, 1]])
     return position
 
@@ -238,14 +245,14 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
 
     The first three components of `q` are ignored: the root states say where the body stands.
     """
-    states, postures = _rows(roots, ROOT_STATE), _rows(q, DOF)
+    states, postures = _states(roots), _rows(q, DOF)
     legs, sinks = _lower_body(model, states, postures[:, LOWERING])
     return posing.pose_body(model.figure, model.body.posed, postures, states, legs, sinks)[0]
 
 
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:
     """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7) and lowerings, one or (N,)."""
-    states = _rows(roots, ROOT_STATE)
+    states = _states(roots)
     legs, sinks = _lower_body(model, states, np.full(len(states), lowerings, np.float64))
     return posing.pose_legs(model.figure, model.roots.posed, states, legs, sinks)
 
@@ -267,6 +274,6 @@ def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
 
 def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the pelvis frame in the world for root states (N, 7)."""
-    states = _rows(roots, ROOT_STATE)
+    states = _states(roots)
     _, drops = foot_poses(model.gait.legs, model.gait.scale, states)
     return posing.place_pelvis(model.offsets[0], states, np.stack([drops, np.zeros(len(drops))], axis=1))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait import hips_sink
+from elbowroom.body.root import HEIGHT
 from elbowroom.jit import helper, kernel, plain
 
 Floats = NDArray[np.float64]
@@ -180,7 +181,10 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
     c, s = np.cos(root[2]), np.sin(root[2])
     ahead = hips[2] - sink[1]
     x, z = root[0] + hips[0] * c + ahead * s, root[1] - hips[0] * s + ahead * c
-    _place(joint, rotations, places, x, hips[1] - sink[0], z, root[2])
+    height = hips[1] - sink[0]
+    if len(root) > HEIGHT:
+        height += root[HEIGHT]
+    _place(joint, rotations, places, x, height, z, root[2])
 
 
 @helper

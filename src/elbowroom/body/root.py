@@ -1,15 +1,17 @@
-"""The state of the root: where the body stands, how it moves, and where in the stride it is."""
+"""The state of the root: where the body stands, how it moves, where in the stride it is, and what its feet stand on."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-ROOT_STATE = 7  # number of components of a root state array
-
 
 class RootState(NamedTuple):
-    """One root state; as an array it has shape (7,) in this order. Metres, radians, seconds."""
+    """One root state; as an array it has shape (ROOT_STATE,) in this order. Metres, radians, seconds.
+
+    Kernels take rows of 7 numbers too, which end with the phase: those stand on the plane at height 0. Elsewhere (N, 7)
+    stands for root states of either length.
+    """
 
     x: float = 0.0  # metres
     z: float = 0.0  # metres
@@ -18,7 +20,18 @@ class RootState(NamedTuple):
     lateral: float = 0.0  # velocity to the left of the heading, m/s
     turn: float = 0.0  # heading rate, rad/s
     phase: float = 0.0  # gait phase in strides (two steps), 0 = left heel strike; never wrapped along a path
+    height: float = 0.0  # of the root's frame, metres: that of the ground about it
+    climb: float = 0.0  # its rate, m/s
+    left_rise: float = 0.0  # of the ground under the left foot above the root's frame, metres
+    left_slope: float = 0.0  # of that ground ahead of the foot, radians, positive where it falls
+    right_rise: float = 0.0  # the same of the right foot
+    right_slope: float = 0.0  # and of the ground ahead of it
 
     def as_array(self) -> NDArray[np.float64]:
-        """The state as an array (7,)."""
+        """The state as an array (ROOT_STATE,)."""
         return np.array(self, dtype=np.float64)
+
+
+ROOT_STATE = len(RootState._fields)  # number of components of a root state array
+HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
+RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.strides import Strides, strides_of
 from elbowroom.geometry import quaternion
@@ -27,7 +28,7 @@ def root_track(motion: BodyMotion) -> RootTrack:
     heading = _smooth(hips_heading(motion), motion.frame_time)
     ground = _smooth(motion.hips[:, [0, 2]], motion.frame_time)
     strides = strides_of(motion, ground, heading)
-    states = np.zeros((len(motion), 7))
+    states = np.zeros((len(motion), ROOT_STATE))
     states[:, :2], states[:, 2] = ground, heading
     if len(motion) > 1:
         velocity = np.gradient(ground, motion.frame_time, axis=0)

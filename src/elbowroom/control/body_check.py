@@ -11,6 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.neighbour import Neighbour
 from elbowroom.planning.halving import begun, due, settle
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -44,6 +45,7 @@ class BodyCheck:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
+        self._footing = Footing(self.model, scene.ground)
         self._levers = body_levers(humanoid)
         self._obstacles, moving = scene.obstacles, scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
@@ -134,7 +136,7 @@ class BodyCheck:
         """
         (first, last), (begin, end), origin = frames.roots, frames.uppers, frames.roots[0][:2]
         root, upper = first + shares[:, None] * (last - first), begin + shares[:, None] * (end - begin)
-        segments = posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, first))
+        segments = self._lifted(posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, first)))
         gaps = []
         for i, time in enumerate((frames.times[0] + shares * (frames.times[1] - frames.times[0])).tolist()):
             axes = np.ascontiguousarray(segments[:, :, i : i + 1])
@@ -146,7 +148,18 @@ class BodyCheck:
 
     def _posed(self, root: Floats, upper: Floats) -> Floats32:
         """The capsules' axes (C, 6, 1) as seen from the root."""
-        return posture_capsules(self.model, configuration(root, upper)[None], self._near(root, root)[None])
+        stood = self.standing(root)
+        return self._lifted(
+            posture_capsules(self.model, configuration(root, upper)[None], self._near(stood, stood)[None])
+        )
+
+    def standing(self, root: Floats) -> Floats:
+        """A root state (ROOT_STATE,) with what the feet stand on."""
+        stood: Floats = self._footing.stood(root[None])[0][0]
+        return stood
+
+    def _lifted(self, segments: Floats32) -> Floats32:
+        return self._footing.lifted(segments, self.model.body)
 
     def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
         """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""

@@ -39,7 +39,7 @@ from elbowroom.planning.navigation.way import Way
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import UNMOVED, is_still
 from elbowroom.world.obstacles.moving import Moving
-from elbowroom.world.scene import Scene
+from elbowroom.world.scene import Scene, on_ground
 
 Floats = NDArray[np.float64]
 
@@ -180,13 +180,13 @@ class Controller:
         self._stand_at_start()
 
     def _stand_at_start(self) -> None:
-        root = self.start._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
+        root = on_ground(self.scene, self.start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
         upper = standing_posture(root)
         clearance = self._check.clearance(root, upper, 0.0)
         if clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
-        self._free = Playback(root, upper, np.zeros_like(upper))
+        self._free = Playback(self._check.standing(root), upper, np.zeros_like(upper))
         self._show(self._free, clearance)
 
     @property
@@ -410,7 +410,8 @@ class Controller:
         if ended:
             self._hold(dt)
             return
-        for posed, stance in self._holding.over(self._queue.sample(), dt):
+        for played, stance in self._holding.over(self._queue.sample(), dt):
+            posed = played._replace(root=self._check.standing(played.root))
             clearance = self._clearance_of(posed)
             if not self._assist or self._is_free(posed, clearance):
                 self._holding.end(stance)
@@ -447,7 +448,8 @@ class Controller:
         """Stay in the last good pose; the legs come to a stand where they can."""
         self._clear()
         self._next = Phase.RESET
-        still = self._holding.settle(self._shown, dt)
+        held = self._holding.settle(self._shown, dt)
+        still = held._replace(root=self._check.standing(held.root))
         clearance = self._clearance_of(still)
         if self._assist and not self._is_free(still, clearance):
             still = still._replace(root=self._shown.root)

@@ -1,14 +1,14 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 5`, a header, chunks and an end. Header: its length (uint32), UTF-8
+A `.elbow` file is the line `ELBOWROOM RECORDING 6`, a header, chunks and an end. Header: its length (uint32), UTF-8
 JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
 data (uint32 each), the data: `STEP` records. Where things were pushed, a chunk `HAND` of `THING` records stands before
 that of their steps. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All numbers are little-endian. A
 file is only ever appended to, so one that was cut off is good up to its last whole chunk.
 
-Older files are read too: in those of the format 4 nothing was pushed; in those of the format 3, 14 numbers of `q` wide,
-the head followed the waist; those of the format 2 have no end; and in those of the format 1, 13 wide, nobody lowered
-the pelvis.
+Older files are read too: in those of the format 5, with 7 numbers of the root, all ground was level; in those of the
+format 4 nothing was pushed; in those of the format 3, 14 numbers of `q` wide, the head followed the waist; those of the
+format 2 have no end; and in those of the format 1, 13 wide, nobody lowered the pelvis.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
-from elbowroom.body.root import RootState
+from elbowroom.body.root import HEIGHT, ROOT_STATE, RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
@@ -38,7 +38,8 @@ from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
-MAGIC = b"ELBOWROOM RECORDING 5\n"
+MAGIC = b"ELBOWROOM RECORDING 6\n"
+_MAGIC_5 = b"ELBOWROOM RECORDING 5\n"
 _MAGIC_4 = b"ELBOWROOM RECORDING 4\n"
 _MAGIC_3 = b"ELBOWROOM RECORDING 3\n"
 _MAGIC_2 = b"ELBOWROOM RECORDING 2\n"
@@ -59,14 +60,19 @@ STEP = np.dtype(
         ("direction", "<f8"),  # not a number where the command has none
         ("dt", "<f8"),
         ("q", "<f8", DOF),
-        ("root", "<f8", 7),
+        ("root", "<f8", ROOT_STATE),
         ("phase", "u1"),  # place in `Phase`
         ("flags", "u1"),
     ]
 )
 _Q_3 = np.arange(DofGroup.HEAD.at.start)  # the places of older files' numbers in `q`
 _Q_1 = np.delete(_Q_3, LOWERING)
-_PLACES = {MAGIC: np.arange(DOF), _MAGIC_4: np.arange(DOF), _MAGIC_3: _Q_3, _MAGIC_2: _Q_3, _MAGIC_1: _Q_1}
+_PLACES = {
+    **dict.fromkeys((MAGIC, _MAGIC_5, _MAGIC_4), np.arange(DOF)),
+    _MAGIC_3: _Q_3,
+    _MAGIC_2: _Q_3,
+    _MAGIC_1: _Q_1,
+}
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 _PHASES = tuple(Phase)
 _SAID = 200  # characters of what a header says that are repeated in a message
@@ -244,7 +250,8 @@ class Recording:
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
         magic = file.read(len(MAGIC))
         self._places = _PLACES.get(magic, np.arange(0))
-        self._has_end = magic in (MAGIC, _MAGIC_4, _MAGIC_3)
+        self._has_end = magic in (MAGIC, _MAGIC_5, _MAGIC_4, _MAGIC_3)
+        self._level = magic != MAGIC
         if not len(self._places):
             raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
         size = file.read(_COUNT.size)
@@ -263,7 +270,7 @@ class Recording:
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
         self.note, self.things = None, np.empty(0, THING)
-        stored = _stored(len(self._places))
+        stored = _stored(len(self._places), HEIGHT if self._level else ROOT_STATE)
         count, crc = 0, 0
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
@@ -296,19 +303,22 @@ class Recording:
         return walked_scene(scene, self.steps(), self.things, RESTART)
 
 
-def _stored(width: int) -> np.dtype[np.void]:
-    """`STEP` with so many numbers of `q`."""
-    return np.dtype([(name, "<f8", width) if name == "q" else (name, STEP[name]) for name in STEP.names or ()])
+def _stored(width: int, root: int) -> np.dtype[np.void]:
+    """`STEP` with so many numbers of `q` and of the root."""
+    sizes = {"q": width, "root": root}
+    return np.dtype([(name, "<f8", sizes[name]) if name in sizes else (name, STEP[name]) for name in STEP.names or ()])
 
 
 def _completed(old: Steps, places: NDArray[np.intp]) -> Steps:
     """Steps of an older format as `STEP` records; `places` are those of their numbers in `q`."""
     steps, first = np.zeros(len(old), STEP), DofGroup.ROOT.size
     for name in old.dtype.names or ():
-        if name != "q":
+        if name not in ("q", "root"):
             steps[name] = old[name]
+    steps["root"][:, : old["root"].shape[1]] = old["root"]
     steps["q"][:, places] = old["q"]
-    steps["q"][:, first:] = followed(steps["q"][:, first:])
+    if len(places) < DOF:
+        steps["q"][:, first:] = followed(steps["q"][:, first:])
     return steps
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import feet_standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.root import RootState
+from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
@@ -39,7 +39,7 @@ def row_of(
     q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
     times = np.array([frame.time for frame in frames])
     rotations, hips = posed_frames(humanoid, q, roots)
-    places = np.stack([roots[:, 0], np.zeros(len(roots)), roots[:, 1]], axis=1)
+    places = roots[:, [0, HEIGHT, 1]]
     body = Animation("", fps, humanoid.skeleton, rotations, hips, places, roots[:, 2])
     known = [_present(humanoid.skeleton, bone) for bone in SMPL_BONES]
     present = np.array([humanoid.skeleton.has(bone) for bone in SMPL_BONES])
@@ -58,7 +58,7 @@ def row_of(
         "obstacles": list(scene.obstacles.names),
         "time": times,
         "command": np.array([_wish(command) for command, _ in kept]),
-        "root": roots,
+        "root": roots[:, :HEIGHT],
         "q": q,
         "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
         "rotations": local.reshape(len(frames), -1),

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, hips_position, local_rotations
+from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.recording import Recording
 from elbowroom.errors import InputError
@@ -45,7 +46,7 @@ class Animation:
         shown = ShownFrames.of(recording)
         check_length(str(recording.path), shown.duration, humanoid, fps)
         rotations, hips = posed_frames(humanoid, shown.q, shown.roots)
-        places = np.stack([shown.roots[:, 0], np.zeros(len(shown.roots)), shown.roots[:, 1]], axis=1)
+        places = shown.roots[:, [0, HEIGHT, 1]]
         poses = Poses(shown.times, shown.jumps, rotations, hips, places, shown.roots[:, 2], shown.clock)
         return cls.of_poses(recording.path.stem, humanoid.skeleton, poses, fps)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import RootState
+from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.recorded_things import told
@@ -112,7 +112,7 @@ def _frames(told: _Told, humanoid: Humanoid, scene: Scene) -> list[bytes]:
                     phase=min(int(told.phases[i]), len(pose_frame.PHASES) - 1),
                     queue_fill=0,
                     x=root[0],
-                    y=0.0,
+                    y=root[HEIGHT],
                     z=root[1],
                     heading=root[2],
                     forward=root[3],

@@ -5,6 +5,7 @@ from time import perf_counter
 
 import numpy as np
 
+from elbowroom.body.root import HEIGHT
 from elbowroom.control.frame import Phase
 from elbowroom.control.loose import Thing
 from elbowroom.control.steering import steady
@@ -135,7 +136,7 @@ class Stage:
                 phase=_PHASES[frame.phase],
                 queue_fill=min(frame.fill, 255),
                 x=root[0],
-                y=0.0,
+                y=root[HEIGHT],
                 z=root[1],
                 heading=root[2],
                 forward=root[3],
@@ -158,7 +159,7 @@ class Stage:
         """The pose shown now, for a puppet of the avatar elsewhere."""
         frame = self.walk.frame
         x, z, heading = frame.root[:3].tolist()
-        return Moment(frame.time, (x, 0.0, z), heading, self.walk.node_pose())
+        return Moment(frame.time, (x, float(frame.root[HEIGHT]), z), heading, self.walk.node_pose())
 
     @property
     def restless(self) -> bool:

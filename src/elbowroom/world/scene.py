@@ -11,7 +11,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.formats.models.kinds import kind_by_name
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
-from elbowroom.world.ground.ground import Ground
+from elbowroom.world.ground.ground import PLAIN, Ground, eased_height
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -117,8 +117,11 @@ class Scene:
 
     @cached_property
     def ground(self) -> Ground:
-        """What feet stand on: the plane at height 0, and all that is low and flat enough to be stepped onto."""
-        return ground_of(self.obstacles, self.place.floor if self.place else None)
+        """What feet stand on: the plane at height 0, and all that is low and flat enough to be stepped onto.
+
+        In the model of a place it is the plane alone so far.
+        """
+        return PLAIN if self.place else ground_of(self.obstacles)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""
@@ -129,6 +132,13 @@ class Scene:
     def finished(self, root: RootState) -> bool:
         """Whether the avatar has crossed the finish gate."""
         return self.finish.passed(root.x, root.z)
+
+
+def on_ground(scene: Scene, root: RootState) -> RootState:
+    """A root state at the height of the ground about it, of that which is nearest to its own height."""
+    ground = scene.ground
+    height = eased_height(ground, (root.x, root.height, root.z), root.x, root.z)
+    return root if ground.plain or not math.isfinite(height) else root._replace(height=height)
 
 
 def _read(path: Path) -> Any:

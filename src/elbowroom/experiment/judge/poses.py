@@ -1,8 +1,8 @@
 """Forward kinematics once more, plain NumPy over whole arrays of poses: what `body.kinematics` is judged by.
 
 The conventions are those of the body (`body.dof`, `docs/architecture.md`), the arithmetic shares nothing with its
-kernels. Only the tables of the gait (where the feet are at a root state, `body.gait.foot_poses`) and of relaxed fingers
-are taken from there: they say what the walk is, not where the body gets to.
+kernels. Only the tables of the gait (where the feet are at a root state: `body.gait.foot_poses`, `body.rises`) and of
+relaxed fingers are taken from there: they say what the walk is, not where the body gets to.
 """
 
 from collections.abc import Mapping
@@ -15,6 +15,8 @@ from elbowroom.body.dof import DofGroup
 from elbowroom.body.gait import foot_poses, gait_shape
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.rises import raise_feet
+from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.geometry import quaternion
@@ -46,7 +48,9 @@ class Poser:
 
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
         """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7)."""
-        feet, drops = foot_poses(self._gait.legs, self._gait.scale, np.ascontiguousarray(roots, np.float64))
+        states = np.ascontiguousarray(roots, np.float64)
+        feet, drops = foot_poses(self._gait.legs, self._gait.scale, states)
+        raise_feet(self._gait.legs, states, feet, drops)
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
         (bend, twist, lowering), (nod, turn) = q[:, DofGroup.WAIST.at].T, q[:, DofGroup.HEAD.at].T
         _pose_column(self.skeleton, _SPINE_PARTS, bend, twist, rotations)
@@ -60,11 +64,15 @@ class Poser:
         return rotations, self.skeleton.positions[0] + moved
 
     def world(self, local: Floats, hips: Floats, places: Floats) -> Posed:
-        """Joints in the world for rotations (N, J, 4), hips (N, 3) and places (N, 3): x, z, heading of the root."""
+        """Joints in the world for rotations (N, J, 4), hips (N, 3) and places (N, 3 or 4) of the root.
+
+        Places are x, z, heading, and its height where it is not 0.
+        """
         rest, parents = self.skeleton.positions, self.skeleton.parents
         turns = quaternion.to_matrix(local)
         heading = quaternion.to_matrix(quaternion.about_axis(_UP, places[:, 2]))
-        ground = np.stack([places[:, 0], np.zeros(len(places)), places[:, 1]], axis=-1)
+        heights = places[:, 3] if places.shape[1] > 3 else np.zeros(len(places))
+        ground = np.stack([places[:, 0], heights, places[:, 1]], axis=-1)
         positions, rotations = np.empty((*local.shape[:2], 3)), np.empty_like(turns)
         for joint, parent in enumerate(parents):
             above = heading if parent < 0 else rotations[:, parent]
@@ -83,7 +91,7 @@ class Poser:
         a, b = place[: len(moments.first)], place[len(moments.first) :]
         local, hips = self.local(motion.q[frames], motion.roots[frames])
         share = moments.share[:, None]
-        places = motion.roots[frames, :3]
+        places = motion.roots[frames][:, [0, 1, 2, HEIGHT] if motion.roots.shape[1] > HEIGHT else [0, 1, 2]]
         return self.world(
             quaternion.slerp(local[a], local[b], share),
             hips[a] + share * (hips[b] - hips[a]),

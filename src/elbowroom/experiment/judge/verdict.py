@@ -17,6 +17,7 @@ from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.skin import Skin, skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
+from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
 
 _AT_ONCE = 240  # poses
@@ -99,18 +100,22 @@ def judge(
     of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
     of_itself = Ledger(chosen.self_tolerance)
     capsule_judges = [CapsuleJudge(humanoid, around.obstacles) for around in surroundings]
-    self_judge = SelfJudge(humanoid)
+    self_judge, soles = SelfJudge(humanoid), Soles(humanoid, poser, motion)
+    lifts = soles.of_capsules(), 0.0 if skin is None else soles.of_mesh(skin)
     mesh_judges = (
         [] if skin is None else [MeshJudge(skin, humanoid.skeleton, around.obstacles) for around in surroundings]
     )
     for first in range(0, len(moments.times), _AT_ONCE):
         some = moments.part(slice(first, first + _AT_ONCE))
         posed = poser.at(motion, some)
-        views = [around.seen(posed, motion.scene_times(some)) for around in surroundings]
-        for view, capsule_judge in zip(views, capsule_judges, strict=True):
+        bodies, surfaces = (
+            [around.seen(soles.raised(posed, lift), motion.scene_times(some)) for around in surroundings]
+            for lift in lifts
+        )
+        for view, capsule_judge in zip(bodies, capsule_judges, strict=True):
             capsule_judge.judge(view, some.times, first, of_capsules)
         self_judge.judge(posed, some.times, first, of_itself)
-        for view, mesh_judge in zip(views, mesh_judges, strict=bool(mesh_judges)):
+        for view, mesh_judge in zip(surfaces, mesh_judges, strict=bool(mesh_judges)):
             mesh_judge.judge(view, some.times, first, of_mesh)
         if progress is not None:
             progress(float(some.times[-1]))

@@ -15,7 +15,7 @@ from elbowroom.body.gait import hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, pelvis_frames
 from elbowroom.body.posing import Column
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
 from elbowroom.planning.shared import Shared
@@ -29,6 +29,7 @@ _LOWERING = LOWERING - DofGroup.WAIST.at.start - 1  # its place among the waist'
 _STRIDES, _STEP, _SPARE = 2048, 1e-3, 1.25  # strides that are measured, by changes so small; what others may do more
 _VELOCITIES = np.array([[-1.5, 3.0], [-1.0, 1.0], [-2.5, 2.5]])  # m/s ahead and to the left, rad/s
 _LOWEST = 0.7  # half leg lengths
+_KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by one, or slopes by a radian more
 
 
 def lift_of(model: BodyModel) -> float:
@@ -120,7 +121,14 @@ class BodyLevers:
             moves[at] = np.hypot(part[0], part[1]), *np.abs(part[2:]), *np.zeros(2 + MOVES - 1 - len(part))
         moves[-MOVES:] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
         farthest = (self.from_pelvis @ moves + abs(root[2]) * self.spans).max()
-        return float(np.hypot(root[0], root[1]) + self.bob @ moves + farthest)
+        way = float(np.hypot(root[0], root[1]) + self.bob @ moves + farthest)
+        return way + _raised(root) if len(root) > HEIGHT else way
+
+
+def _raised(change: Floats) -> float:
+    """No point is farther up or down by a change of the height, and of what the feet stand on."""
+    rises = np.abs(change[RISES:])
+    return float(abs(change[HEIGHT]) + _KNEES * (rises[0] + rises[2]) + _ANKLES * (rises[1] + rises[3]))
 
 
 _LEVERS: Shared[BodyLevers] = Shared()
@@ -173,7 +181,7 @@ def _stride_levers(model: BodyModel) -> tuple[Floats, Floats, Floats]:
     states[:, 6] = drawn[:, 3]
     begin, height = _seen_from_pelvis(model, states, lowerings)
     ways, bobs = [], []
-    for row in np.eye(ROOT_STATE + 1)[3:]:
+    for row in np.eye(ROOT_STATE + 1)[[3, 4, 5, 6, ROOT_STATE]]:
         after, higher = _seen_from_pelvis(model, states + _STEP * row[:-1], lowerings + _STEP * row[-1])
         ways.append(np.linalg.norm(after - begin, axis=2).max(axis=(1, 2)))
         bobs.append(np.abs(higher - height).max())

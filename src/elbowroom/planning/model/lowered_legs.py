@@ -13,7 +13,9 @@ from elbowroom.body.dof import DofGroup, limits
 from elbowroom.body.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.root.path import RootPath, ground_covered, interpolate_between, rates_at, sample_states
+from elbowroom.world.ground.ground import PLAIN, Ground
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby, Spans
 from elbowroom.world.obstacles.moving import Moving
@@ -36,10 +38,10 @@ _SHOWN = 12  # shown moments of a key interval
 class LoweredLegs:
     """Legs and pelvis of one humanoid in one scene; frozen once made."""
 
-    def __init__(self, model: BodyModel, obstacles: Obstacles) -> None:
-        self._model, self._obstacles = model, obstacles
+    def __init__(self, model: BodyModel, obstacles: Obstacles, ground: Ground = PLAIN) -> None:
+        self._model, self._obstacles, self._footing = model, obstacles, Footing(model, ground)
         self._reach, height = _extent(model)
-        self._low = obstacles.corners[:, :, 1].min(axis=1, initial=np.inf) < height
+        self._low = obstacles.corners[:, :, 1].min(axis=1, initial=np.inf) < (height if ground.plain else np.inf)
         self._sweeps: Spans | None = None
         self._interval = 1.0
 
@@ -85,9 +87,9 @@ class LoweredLegs:
         """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds."""
         if is_empty(near):
             return np.full(len(roots), np.inf, np.float32)
-        states = roots.copy()
+        states = self._footing.stood(roots)[0].copy()
         states[:, :2] -= roots[0, :2]
-        segments = leg_capsules(self._model, states, lowerings)
+        segments = self._footing.lifted(leg_capsules(self._model, states, lowerings), self._model.roots)
         return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]))
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
@@ -140,7 +142,7 @@ def _shown(states: Floats, interval: float, keys: Floats, velocities: Floats) ->
 
 def _extent(model: BodyModel) -> tuple[float, float]:
     """How far lowered legs may reach from the root on the ground, and how high they come, with a little to spare."""
-    roots = np.zeros((64, 7))
+    roots = np.zeros((64, ROOT_STATE))
     roots[:, 3], roots[:, 6] = _SPEED, np.arange(64) / 32.0
     segments = leg_capsules(model, roots, np.repeat([0.0, _DEEP], 32)).reshape(-1, 2, 3, 64)
     radii = model.roots.radii[:, None, None]

@@ -50,17 +50,20 @@ class RouteFinder:
     def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Route:
         """The route from a start along a line of travel among `obstacles`, `sight` metres of it."""
         straight = straight_route(float(start.x), float(start.z), line, sight)
-        if self.above is None and route_is_open(straight, self.half, obstacles.ground):
+        if self.above is None and self._body.footing.plain and route_is_open(straight, self.half, obstacles.ground):
             return Route(straight, detour=False, ends=False, checks=0)
-        free, checks = self._free_length(straight, line, obstacles)
+        free, checks = self._free_length(straight, line, obstacles, start.height)
         if free >= sight:
             return Route(straight, detour=False, ends=False, checks=checks)
         return self._round(straight, free, line, obstacles, sight, checks)
 
-    def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours) -> tuple[float, int]:
-        """Metres along the route before the standing figure would touch, infinite if never; how many places it saw."""
+    def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours, height: float) -> tuple[float, int]:
+        """Metres along the route before the standing figure would touch, infinite if never; how many places it saw.
+
+        The route begins at a `height`.
+        """
         points, along = route_points(route, _SPACING)
-        clear = self._body.standing_clearance(obstacles, points)
+        clear = self._body.standing_clearance(obstacles, points, height)
         if self.above is not None:
             clear = np.minimum(clear, self.above.clearance(points, line.facing))
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)

@@ -77,7 +77,7 @@ class FreeLegs:
         if not len(states):
             return np.empty(0, np.float32)
         self.checks += len(states)
-        return self._check.body.clearance(self._near, states)
+        return self._check.body.clearance(self._near, states, self._check.skin)
 
     def _to_check(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""

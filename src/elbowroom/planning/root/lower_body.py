@@ -1,5 +1,6 @@
 """What cannot bend: legs and pelvis of a humanoid among the obstacles that they can touch."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,11 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.root.hull import Ground, ground_below, stride_hull
+from elbowroom.world.ground import ground as walked
+from elbowroom.world.ground.ground import heights_along
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
@@ -22,6 +27,7 @@ _WALK, _RUN = 1.1, 2.2  # m/s
 _SPARE = 0.2  # metres: more than any clearance that is asked for
 _SPARE_HEIGHT = 0.05  # metres above the pelvis as it walks
 _HALF_DIAGONAL = 0.71  # of a square metre
+_KNEES = 0.1  # metres that legs reach farther where they climb
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
@@ -53,14 +59,18 @@ class Neighbours(NamedTuple):
 class LowerBody:
     """Legs and pelvis, and the obstacles low enough to matter to them."""
 
-    def __init__(self, humanoid: Humanoid, obstacles: Obstacles) -> None:
+    def __init__(self, humanoid: Humanoid, obstacles: Obstacles, ground: walked.Ground = walked.PLAIN) -> None:
         self.model: BodyModel = body_model(humanoid)
+        self.footing = Footing(self.model, ground)
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach = _measure(self.model)
-        corners, height = obstacles.corners, height + _SPARE_HEIGHT
+        corners, height = obstacles.corners, height + _SPARE_HEIGHT if ground.plain else math.inf
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
         self.hull = stride_hull(self.model)
+        if not ground.plain:
+            self.hull = self.hull._replace(extents=self.hull.extents + _KNEES)
+            self.reach += _KNEES
         self._obstacles, self._low = obstacles, np.flatnonzero(low)
         self.ground = ground_below(corners[low], height)
         self.grids = grids_of(self.ground.least, self.ground.most)
@@ -76,17 +86,36 @@ class LowerBody:
             self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), ground)
         return self._near[1]
 
-    def clearance(self, among: Neighbours, states: Floats) -> Floats32:
-        """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, 7); infinite where far."""
+    def clearance(self, among: Neighbours, states: Floats, spare: float = 0.0) -> Floats32:
+        """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, ROOT_STATE); infinite where far.
+
+        Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground.
+        """
         near = among.around(states[:, :2], self.reach)
         if near.empty:
             return np.full(len(states), np.inf, np.float32)
-        return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
+        if self.footing.plain:
+            return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
+        rows, found = self.footing.stood(states)
+        segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, spare)
+        clear = clearance(segments, self.radii, near.obstacles)
+        return np.where(found, clear, np.float32(-1.0))
 
-    def standing_clearance(self, among: Neighbours, places: Floats) -> Floats32:
-        """Clearance (N,) of the stance capsule at `places` (N, 2) on the ground."""
+    def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:
+        """Clearance (N,) of the stance capsule at `places` (N, 2) on a way over the ground that begins at a height.
+
+        Where the ground is not plain, it is held above all that is a step high; negative where there is no ground.
+        """
         segments = stance_segments(self.stance, places[:, 0], places[:, 1])
-        return clearance(segments, np.array([self.stance.radius]), among.obstacles)
+        radii = np.array([self.stance.radius])
+        if self.footing.plain:
+            return clearance(segments, radii, among.obstacles)
+        heights = heights_along(self.footing.ground, height, places)
+        there = np.isfinite(heights)
+        above = np.where(there, heights, height)
+        segments[0, 1] = above + self.footing.ground.step + self.stance.radius
+        segments[0, 4] = np.maximum(above + self.stance.high, segments[0, 1])
+        return np.where(there, clearance(segments.astype(np.float32), radii, among.obstacles), np.float32(-1.0))
 
 
 def _measure(model: BodyModel) -> tuple[Stance, float, float]:
@@ -99,7 +128,7 @@ def _measure(model: BodyModel) -> tuple[Stance, float, float]:
 
 def _stride(model: BodyModel, speed: float) -> Floats:
     """Greatest distance from the root aside, up and ahead of every capsule over a stride, (C, 3)."""
-    roots = np.zeros((32, 7))
+    roots = np.zeros((32, ROOT_STATE))
     roots[:, 3], roots[:, 6] = speed, np.linspace(0.0, 1.0, 32, endpoint=False)
     segments = np.abs(leg_capsules(model, roots)).reshape(len(model.roots.radii), 2, 3, 32)
     greatest: Floats = segments.max(axis=(1, 3)) + model.roots.radii[:, None]

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait import phase_rate
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
+from elbowroom.world.ground.ground import PLAIN, Ground, eased_height
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -27,6 +28,7 @@ _REST = 1e-6  # m/s and rad/s: what is slower stands
 _SIDLE = 0.6  # radians: the greatest angle between the path and the body's front when walking forward
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
+_GRADE_OVER = 0.12  # metres to either side between which the grade is taken
 _NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
 
 
@@ -52,6 +54,7 @@ class MotionBounds(NamedTuple):
     braking: float
     turn_acceleration: float
     quickness: float = 1.0  # strides of the body for one of an average adult, see `body.gait`
+    ground: Ground = PLAIN  # that the root follows
 
 
 class Travel(NamedTuple):
@@ -70,7 +73,9 @@ def wrapped(angle: float) -> float:
 
 
 @helper
-def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, quickness: float) -> None:
+def _finish_step(
+    states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds
+) -> None:
     """Write state k+1: velocities change linearly from those of state k to (vx, vz) on the ground and `turn`."""
     a, b = states[k], states[k + 1]
     sine, cosine = np.sin(a[2]), np.cos(a[2])
@@ -79,12 +84,32 @@ def _finish_step(states: Floats, k: int, vx: float, vz: float, turn: float, inte
     b[2] = a[2] + 0.5 * interval * (a[5] + turn)
     sine, cosine = np.sin(b[2]), np.cos(b[2])
     b[3], b[4], b[5] = vx * sine + vz * cosine, vx * cosine - vz * sine, turn
-    b[6] = a[6]
-    strides, rates, between = 0.0, rates_at(a, b), np.empty(ROOT_STATE)
+    b[6:] = a[6:]
+    strides, rates, between = 0.0, rates_at(a, b), np.empty(a.shape[0])
     for i in range(_PHASE_STEPS):
         interpolate_between(a, b, rates, (i + 0.5) / _PHASE_STEPS, interval, between)
         strides += phase_rate(between[3], between[4], between[5])
-    b[6] = a[6] + quickness * strides * interval / _PHASE_STEPS
+    b[6] = a[6] + bounds.quickness * strides * interval / _PHASE_STEPS
+    if b.shape[0] > HEIGHT:
+        _follow_ground(a, b, vx, vz, bounds.ground)
+
+
+@helper
+def _follow_ground(a: Floats, b: Floats, vx: float, vz: float, ground: Ground) -> None:
+    """Height and climb of state `b`, which moves with the velocity (vx, vz) over the ground; `a` is the one before."""
+    b[RISES:] = 0.0
+    b[HEIGHT], b[HEIGHT + 1] = 0.0, 0.0
+    if ground.plain:
+        return
+    b[HEIGHT] = eased_height(ground, (a[0], a[HEIGHT], a[1]), b[0], b[1])
+    speed = np.sqrt(vx * vx + vz * vz)
+    if speed > _REST:
+        here, dx, dz = (b[0], b[HEIGHT], b[1]), _GRADE_OVER * vx / speed, _GRADE_OVER * vz / speed
+        ahead, behind = (
+            eased_height(ground, here, b[0] + dx, b[1] + dz),
+            eased_height(ground, here, b[0] - dx, b[1] - dz),
+        )
+        b[HEIGHT + 1] = speed * (ahead - behind) / (2.0 * _GRADE_OVER)
 
 
 @exact_kernel
@@ -102,7 +127,7 @@ def limited_step(
     part = min(1.0, most / max(change, _STILL))
     swing = bounds.turn_acceleration * interval
     rate = a[5] + min(max(turn - a[5], -swing), swing)
-    _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds.quickness)
+    _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds)
 
 
 @exact_kernel
@@ -197,14 +222,14 @@ def stopping_states(
         longest = max(longest, np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2) / bounds.braking)
         longest = max(longest, abs(states[k, 5]) / bounds.turn_acceleration)
     steps = int(np.ceil(longest / interval)) + 1
-    out = np.empty(((states.shape[0] - 1) * steps * count, ROOT_STATE))
+    out = np.empty(((states.shape[0] - 1) * steps * count, states.shape[1]))
     owner = np.empty(out.shape[0], np.int64)
-    tail = np.empty((steps + 1, ROOT_STATE))
+    tail = np.empty((steps + 1, states.shape[1]))
     used = 0
     for k in range(1, states.shape[0]):
         if not wanted[k - 1]:
             continue
-        for c in range(ROOT_STATE):
+        for c in range(states.shape[1]):
             tail[0, c] = states[k, c]
         brake(tail, _FIRST, interval, bounds)
         for i in range(steps):
@@ -212,7 +237,7 @@ def stopping_states(
                 break
             for j in range(count):
                 shown = interpolate_root(tail[i], tail[i + 1], (j + 1.0) / count, interval)
-                for c in range(ROOT_STATE):
+                for c in range(states.shape[1]):
                     out[used, c] = shown[c]
                 owner[used] = k
                 used += 1
@@ -226,14 +251,14 @@ def dense_states(states: Floats, interval: float, spacing: float, wanted: Bools)
     They are at most `spacing` seconds apart; `wanted` (n,) says which key intervals are asked for.
     """
     count = int(np.ceil(interval / spacing))
-    out = np.empty(((states.shape[0] - 1) * count, ROOT_STATE))
+    out = np.empty(((states.shape[0] - 1) * count, states.shape[1]))
     owner, used = np.empty(out.shape[0], np.int64), 0
     for k in range(states.shape[0] - 1):
         if not wanted[k]:
             continue
         for j in range(count):
             shown = interpolate_root(states[k], states[k + 1], (j + 1.0) / count, interval)
-            for c in range(ROOT_STATE):
+            for c in range(states.shape[1]):
                 out[used, c] = shown[c]
             owner[used] = k + 1
             used += 1

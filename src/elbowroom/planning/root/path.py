@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import phase_rate
-from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
@@ -55,9 +55,10 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
 
     Place and heading follow the cubic Hermite curves through both states' places and velocities; the velocities are
     those curves' derivatives, in the axes of the heading reached. The gait phase runs from `a` to `b` at a rate that
-    changes linearly between the cadences of the two states, so it never runs backwards.
+    changes linearly between the cadences of the two states, so it never runs backwards. The height goes as places do;
+    what the feet stand on is left for who puts them there.
     """
-    out = np.empty(ROOT_STATE)
+    out = np.empty(a.shape[0])
     interpolate_between(a, b, rates_at(a, b), u, interval, out)
     return out
 
@@ -85,6 +86,10 @@ def interpolate_between(
     if first + last > 0.0:
         done = u * (2.0 * first + (last - first) * u) / (first + last)
     out[6] = a[6] + (b[6] - a[6]) * done
+    if out.shape[0] > HEIGHT:
+        out[HEIGHT:] = 0.0
+        if a.shape[0] > HEIGHT:
+            out[HEIGHT], out[HEIGHT + 1] = _hermite(a[HEIGHT], a[HEIGHT + 1], b[HEIGHT], b[HEIGHT + 1], u, interval)
 
 
 @exact_kernel
@@ -117,12 +122,12 @@ def ground_covered(states: Floats) -> tuple[float, float, float, float]:
 @exact_kernel
 def sample_states(states: Floats, interval: float, times: Floats) -> Floats:
     """States (N, 7) at `times` (N,) after the first of `states` (n+1, 7); the ends hold outside."""
-    out = np.empty((times.shape[0], ROOT_STATE))
+    out = np.empty((times.shape[0], states.shape[1]))
     last = states.shape[0] - 1
     for i in range(times.shape[0]):
         position = min(max(times[i] / interval, 0.0), float(last))
         if last == 0:
-            for j in range(ROOT_STATE):
+            for j in range(states.shape[1]):
                 out[i, j] = states[0, j]
         else:
             k = min(int(position), last - 1)

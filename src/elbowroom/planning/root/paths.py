@@ -42,10 +42,10 @@ class RootPaths:
         self, humanoid: Humanoid, scene: Scene, settings: RootPlannerSettings, above: Above | None = None
     ) -> None:
         self.settings = settings
-        body, motion = LowerBody(humanoid, scene.obstacles), settings.motion
+        body, motion = LowerBody(humanoid, scene.obstacles, scene.ground), settings.motion
         strides = quickness(body.model.gait.scale)
         self.bounds = MotionBounds(
-            motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides
+            motion.turn_rate, motion.acceleration, motion.braking, motion.turn_acceleration, strides, scene.ground
         )
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
         self._routes = RouteFinder(settings, body, above)
@@ -112,7 +112,7 @@ class RootPaths:
         """Along a line of travel."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
-        if not self._moving.tracks and self._routes.above is None:
+        if not self._moving.tracks and self._routes.above is None and self.bounds.ground.plain:
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)

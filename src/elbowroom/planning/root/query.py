@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.body.root import HEIGHT, ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.ahead import Route, RouteFinder
 from elbowroom.planning.root.evasion import Evasion
@@ -168,7 +168,7 @@ class RootQuery:
             if not self._legs.touches(states):
                 return states
         states = np.repeat(self._blank()[:1], self.horizon + 1, axis=0)
-        states[:, 3:6] = 0.0
+        states[:, 3:6] = states[:, HEIGHT + 1] = 0.0
         return states
 
     def steered(self, wanted: Floats) -> Answer:

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.cost import Prices, lost_on_line
 from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, route_is_open, to_check
@@ -51,12 +50,12 @@ def straight_walk(
     and x and z of the end of the route.
     """
     who, x, z = walker, start[0], start[1]
-    states = np.empty((stretch.horizon + 1, ROOT_STATE))
+    states = np.empty((stretch.horizon + 1, start.shape[0]))
     ground, route = ground_near(who.ground, who.grids, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
     ends = not route_is_open(route, who.half, ground)
     if ends:
         return False, states, False, 0.0, 0.0, 0.0
-    for c in range(ROOT_STATE):
+    for c in range(start.shape[0]):
         states[0, c] = start[c]
     travel = Travel(pace * speed, line.facing, line.turns, ends)
     follow(states, route, travel, stretch.interval, who.bounds)

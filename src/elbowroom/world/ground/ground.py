@@ -25,6 +25,7 @@ _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
+_EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
 _UNEVEN = 0.01  # metres: a sole that would have more air under it lies level
 
 
@@ -128,3 +129,39 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
     if abs(grade) > _GRADE or tilted - highest[0] - grade * sole.back > _UNEVEN:
         return level, 0.0
     return tilted, -math.atan(grade)
+
+
+@exact_kernel
+def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
+    """How high a body is that walks there from `start` (x, height, z): the mean of the ground about the place.
+
+    Minus infinity where there is none. What is not reached step by step from the middle counts as what is before it.
+    """
+    if ground.plain:
+        return 0.0
+    middle = height_along(ground, start, x, z)
+    total = middle
+    for i in range(_AROUND):
+        angle, near = 2.0 * math.pi * (i + 0.5) / _AROUND, middle
+        for j in range(_RINGS):
+            away = _EASED * (j + 1.0) / _RINGS
+            found = height_at(ground, x + away * math.sin(angle), z + away * math.cos(angle), near)
+            if found > _NONE:
+                near = found
+            total += near
+    return total / (1.0 + _AROUND * _RINGS)
+
+
+@exact_kernel
+def heights_along(ground: Ground, height: float, places: Floats) -> Floats:
+    """The ground at places (N, 2), x and z, as one comes to each from the one before, the first at about a `height`.
+
+    Minus infinity where there is none; from there one comes at the height before.
+    """
+    out, near, x, z = np.empty(places.shape[0]), height, places[0, 0], places[0, 1]
+    for n in range(places.shape[0]):
+        out[n] = height_along(ground, (x, near, z), places[n, 0], places[n, 1])
+        if out[n] > _NONE:
+            near = out[n]
+        x, z = places[n, 0], places[n, 1]
+    return out

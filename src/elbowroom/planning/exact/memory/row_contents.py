@@ -3,25 +3,25 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-_FIRST = 3  # of a root state: before it are the place and the heading
+_FIRST = 3  # of a root state: before it are the place and the heading; the height ends it
 _NATURAL = 1e-6  # radians from the goal
-CONTENT = ROOT_STATE - _FIRST  # numbers of a row beside those of the upper body
+CONTENT = HEIGHT - _FIRST  # numbers of a row beside those of the upper body
 
 
 @exact_kernel
 def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
-    """The bits of root states (n+1, 7) without place and heading, and beside them of `uppers` (n+1, K).
+    """The bits of root states (n+1, 7 or more) without place, heading and height, and beside them of `uppers` (n+1, K).
 
     They begin the rows `out` (n+1, CONTENT + K or more).
     """
     for t in range(out.shape[0]):
-        set_bits(states[t, _FIRST:], out[t])
+        set_bits(states[t, _FIRST:HEIGHT], out[t])
         set_bits(uppers[t], out[t, CONTENT:])
 
 

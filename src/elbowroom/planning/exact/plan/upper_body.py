@@ -49,7 +49,7 @@ class UpperBodyPlanner:
         self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._refinement = RefinementSettings()
         self.reset()
-        self._legs = LoweredLegs(self.model.body, scene.obstacles)
+        self._legs = LoweredLegs(self.model.body, scene.obstacles, scene.ground)
 
     @property
     def model(self) -> UpperBodyModel:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait import quickness, walk_into
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.posing import place_pelvis_into
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.model.levers import MOVES, ROTATION, lift_of
@@ -25,6 +26,7 @@ Longs = NDArray[np.int64]
 Ends = tuple[Floats, Floats, Floats, Floats]  # posture, velocity, posture, velocity: of a key interval
 
 SWEEP = 12  # parts of a key interval between two looks
+_KNOWN = RISES  # numbers of a root state that its way depends on
 _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is smaller
 
 
@@ -64,7 +66,7 @@ class LimbSweeps(NamedTuple):
 def new_root_sweeps(count: int) -> RootSweeps:
     """Room for the ways of `count` key intervals."""
     return RootSweeps(
-        new_cache_index(count, 16),
+        new_cache_index(count, 2 + 2 * _KNOWN),
         np.empty((count, SWEEP + 1, 3)),
         np.empty((count, SWEEP + 1, 4)),
         np.empty((count, SWEEP)),
@@ -112,7 +114,7 @@ def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -
 class RootScratch(NamedTuple):
     """Room to find the way of a root in."""
 
-    key: Floats  # (16,)
+    key: Floats  # (2 + 2 _KNOWN,)
     states: Floats  # (SWEEP+1, 7)
     sinks: Floats  # (SWEEP+1, 2) as in `hips_sinks`
     drops: Floats  # (SWEEP+1,)
@@ -124,8 +126,8 @@ class RootScratch(NamedTuple):
 def root_sweeps(ways: RootSweeps, chain: KinematicChain, states: Floats, interval: float, stamps: Floats) -> Longs:
     """The slots (n,) of the root ways between states (n+1, 7); stamps (n,) tell apart what moves meanwhile."""
     scratch = RootScratch(
-        np.empty(16),
-        np.empty((SWEEP + 1, 7)),
+        np.zeros(2 + 2 * _KNOWN),
+        np.empty((SWEEP + 1, ROOT_STATE)),
         np.zeros((SWEEP + 1, 2)),
         np.empty(SWEEP + 1),
         np.empty(6),
@@ -143,9 +145,9 @@ def _root_sweep(
 ) -> int:
     """The slot of the root way from state `a` to `b`."""
     key, states = scratch.key, scratch.states
-    key[0], key[15] = interval, stamp
-    for i in range(7):
-        key[1 + i], key[8 + i] = a[i], b[i]
+    key[0], key[-1] = interval, stamp
+    for i in range(min(_KNOWN, a.shape[0])):
+        key[1 + i], key[1 + _KNOWN + i] = a[i], b[i]
     known = find(ways.entries, key)
     if known >= 0:
         return int(known)
@@ -161,6 +163,15 @@ def _root_sweep(
 
 
 @helper
+def _bend(a: Floats, b: Floats, interval: float) -> float:
+    """The greatest acceleration of the height on the way from state `a` to `b`."""
+    if a.shape[0] <= HEIGHT:
+        return 0.0
+    rise, first, last = (b[HEIGHT] - a[HEIGHT]) / interval, a[HEIGHT + 1], b[HEIGHT + 1]
+    return float(max(abs(6.0 * rise - 4.0 * first - 2.0 * last), abs(6.0 * rise - 2.0 * first - 4.0 * last)) / interval)
+
+
+@helper
 def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: float, sway: Floats) -> None:
     a, b = states[0], states[SWEEP]
     part = interval / SWEEP
@@ -168,7 +179,7 @@ def _root_sway(chain: KinematicChain, states: Floats, places: Floats, interval: 
     jerk_x, jerk_z = _jerk(a[0], ax, b[0], bx, interval), _jerk(a[1], az, b[1], bz, interval)
     jerk, jerk_turn = np.hypot(jerk_x, jerk_z), _jerk(a[2], a[5], b[2], b[5], interval)
     stride = quickness(chain.scale) * max(first, last)
-    bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2
+    bob = _BOB * chain.scale * (4.0 * np.pi * stride) ** 2 + _bend(a, b, interval)
     speed = np.hypot(a[3], a[4])
     for i in range(SWEEP):
         one, two = states[i], states[i + 1]

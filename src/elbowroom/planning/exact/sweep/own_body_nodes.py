@@ -179,7 +179,7 @@ def _check(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, plac
         t = rows[fresh[n]]
         for j in range(uppers.shape[1]):
             postures[n, _LOCAL + j] = uppers[t, j]
-        for j in range(3, ROOT_STATE):
+        for j in range(3, min(ROOT_STATE, states.shape[1])):
             roots[n, j] = states[t, j]
     capsules, chests, turns = posed_body(it.body, postures, roots)
     for n in range(fresh.shape[0]):

@@ -212,7 +212,9 @@ def _gaps(
         for j in range(keys.shape[1]):
             a, b, m, e = keys[k, j], keys[k + 1, j], interval * rates[k, j], interval * rates[k + 1, j]
             postures[n, first + j] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - e + u * (2.0 * (a - b) + m + e)))
-        roots[n, 3:] = interpolate_root(states[k], states[k + 1], u, interval)[3:]
+        shown = interpolate_root(states[k], states[k + 1], u, interval)
+        for j in range(3, shown.shape[0]):
+            roots[n, j] = shown[j]
     capsules, _, _ = posed_body(parts.body, postures, roots)
     gaps = np.empty((count, parts.first.shape[0]), np.float32)
     for p in range(parts.first.shape[0]):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.posing import place_pelvis_into
+from elbowroom.body.root import RISES
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import admit, find
@@ -46,7 +47,7 @@ class Carrier(NamedTuple):
     places: Floats  # (SWEEP+1, 3)
     turns: Floats  # (SWEEP+1, 4)
     sway: Floats  # (SWEEP,) metres
-    states: Floats  # (16,) the root way's key
+    states: Floats  # the root way's key
     heights: Floats  # (SWEEP+1, 3) the root way's places
     waist: Floats  # the waist's way's key; not used where the limb is the waist
 
@@ -96,7 +97,7 @@ def _frames_between(
     The pelvis' height is read between the looks; it bends by less than `ENOUGH` counts in there.
     """
     states, heights, places, shares = carrier.states, carrier.heights, scratch.places, scratch.shares
-    interval, begin, end = states[0], states[1:8], states[8:15]
+    interval, begin, end = states[0], states[1 : 1 + RISES], states[1 + RISES : 1 + 2 * RISES]
     rates = rates_at(begin, end)
     for n in range(count):
         interpolate_between(begin, end, rates, shares[n], interval, scratch.states[n])

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
@@ -68,7 +69,7 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
         np.empty((count, BLOCK), np.float32),
         np.empty((count, BLOCK), np.float32),
         np.empty((BLOCK, size)),
-        np.empty((BLOCK, 7)),
+        np.empty((BLOCK, ROOT_STATE)),
         np.zeros((BLOCK, 2)),
         np.empty((BLOCK, 3)),
         np.empty((BLOCK, 4)),

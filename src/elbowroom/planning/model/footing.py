@@ -1,0 +1,166 @@
+"""How the feet of a walk stand on the ground: what rises under them, and how much of them may be in it.
+
+Where a foot stands, and where it will, follows from the root's state (`gait.stood_places`). It stands on the highest
+ground under its sole; on its way it goes from the one height to the other, higher where something is in between.
+
+A capsule round a foot reaches a little below the sole, at heel strike more. What it gets below level ground in a walk
+it may get below any: feet are held against obstacles as much higher, so they may stand on them, and touch nothing else.
+"""
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait import stood_places
+from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.jit import exact_kernel, helper
+from elbowroom.world.ground.ground import Ground, Sole, height_along, sole_on
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+IN_GROUND = 0.003  # metres that a sole may be in what it stands on
+_NONE = -math.inf
+_PHASES, _SPEEDS = 64, (0.0, 0.4, 0.8, 1.1, 1.6)  # of walks in which it is measured how deep feet get; m/s
+_OVER, _BESIDE = 0.03, 0.02  # metres above an edge, and before and behind it, that a swinging foot keeps
+_LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
+_LOOKS, _QUICK = 11, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
+_LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
+_UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
+
+
+class Footing:
+    """The feet of one body on the ground of one scene; frozen."""
+
+    def __init__(self, model: BodyModel, ground: Ground) -> None:
+        self._model, self.ground = model, ground
+
+    @property
+    def plain(self) -> bool:
+        """Whether all feet stand on the plane."""
+        return self.ground.plain
+
+    def stood(self, states: Floats) -> tuple[Floats, Bools]:
+        """Root states (N, ROOT_STATE) with what the feet stand on in them, and in which there is ground for both (N,).
+
+        The states themselves on plain ground.
+        """
+        if self.ground.plain:
+            return states, np.ones(len(states), np.bool_)
+        rows = states.copy()
+        return rows, set_rises(self.ground, self._model.gait.legs, self._model.gait.scale, self._sole, rows)
+
+    def feet(self, capsules: CapsuleSet) -> Bools:
+        """Which of the capsules (C,) are round feet and toes."""
+        return np.isin(capsules.joints, self._model.figure.legs[:, 2:])
+
+    def lifted(self, segments: Floats32, capsules: CapsuleSet, spare: float = 0.0) -> Floats32:
+        """Capsules (C, 6, N) with those of the feet as high as they are held against obstacles.
+
+        The same on plain ground. `spare` metres higher, for who asks for so much clearance.
+        """
+        if self.ground.plain:
+            return segments
+        feet, higher = self.feet(capsules), segments.copy()
+        for end in (1, 4):
+            higher[feet, end] += np.float32(self.depth + IN_GROUND + spare)
+        return higher
+
+    @cached_property
+    def depth(self) -> float:
+        """How far the capsules of the feet get below the plane in walks on it, metres."""
+        states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
+        states[:, 3] = np.repeat(_SPEEDS, _PHASES)
+        states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
+        roots = self._model.roots
+        feet = self.feet(roots)
+        ends = leg_capsules(self._model, states)[feet][:, [1, 4]]
+        return max(0.0, -float((ends - roots.radii[feet][:, None, None]).min()))
+
+    @cached_property
+    def _sole(self) -> Sole:
+        """The rectangle over which the capsules of a standing foot lie, about its ankle."""
+        roots, legs = self._model.roots, self._model.gait.legs
+        feet = self.feet(roots)
+        ends = leg_capsules(self._model, np.zeros((1, ROOT_STATE)))[feet].reshape(-1, 2, 3).astype(np.float64)
+        radii, ankle = roots.radii[feet][:, None], legs[:, 5].mean()
+        aside = np.abs(np.abs(ends[:, :, 0]) - np.abs(legs[:, 3]).mean()) + radii
+        return Sole(
+            float((ankle - ends[:, :, 2] + radii).max()),
+            float((ends[:, :, 2] + radii - ankle).max()),
+            float(aside.max()),
+        )
+
+
+@helper
+def _eased(x: float) -> float:
+    t = min(max(x, 0.0), 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+@helper
+def _raised(w: float) -> float:
+    """How much of its height over an edge a foot has when the part `w` of its swing is over."""
+    return _eased(w / _QUICK) * _eased((1.0 - w) / _QUICK)
+
+
+@helper
+def _climbed(w: float, rise: float) -> float:
+    """How much of the way up or down it has gone by then: up early, down late."""
+    return _eased(w / _UP) if rise > 0.0 else _eased((w - _DOWN) / (1.0 - _DOWN))
+
+
+@exact_kernel
+def _stand(ground: Ground, sole: Sole, root: Floats, x: float, z: float, yaw: float) -> tuple[float, float]:
+    """Height and slope of the ground under a foot at a place in the root's frame; minus infinity without any."""
+    sine, cosine = math.sin(root[2]), math.cos(root[2])
+    wx, wz = root[0] + x * cosine + z * sine, root[1] - x * sine + z * cosine
+    near = height_along(ground, (root[0], root[HEIGHT], root[1]), wx, wz)
+    if near == _NONE:
+        return near, 0.0
+    return sole_on(ground, sole, (wx, near, wz), root[2] + yaw)
+
+
+@exact_kernel
+def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -> tuple[float, float]:
+    """Height and slope of a swinging foot between the `places` (6,) where it stood and will, the part `w` of it over.
+
+    It goes from one place to the other as the cycle has it, at rest over the ground at both ends.
+    """
+    begin, first = _stand(ground, sole, root, places[0], places[1], places[2])
+    end, last = _stand(ground, sole, root, places[3], places[4], places[5])
+    if min(begin, end) == _NONE:
+        return _NONE, 0.0
+    part, higher = _climbed(w, end - begin), 0.0
+    longer = Sole(sole.back + _BESIDE, sole.ahead + _BESIDE, sole.aside)
+    for k in range(1, _LOOKS):
+        u = k / _LOOKS
+        gone = _eased(u)
+        x, z = places[0] + gone * (places[3] - places[0]), places[1] + gone * (places[4] - places[1])
+        over, _ = _stand(ground, longer, root, x, z, places[2] + gone * (places[5] - places[2]))
+        lacks = over - begin - _climbed(u, end - begin) * (end - begin)
+        if lacks > _LEVEL:
+            higher = max(higher, (lacks + _OVER) / max(_raised(u), _LEAST))
+    height = begin + part * (end - begin) + min(higher, _MOST) * _raised(w)
+    return height, first + part * (last - first)
+
+
+@exact_kernel
+def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Floats) -> Bools:
+    """Write to root states (N, ROOT_STATE) what their feet stand on; in which of them there is ground for both (N,)."""
+    found, places = np.ones(roots.shape[0], np.bool_), np.empty(6)
+    for n in range(roots.shape[0]):
+        root = roots[n]
+        for side in range(2):
+            w, at = stood_places(legs, scale, root, side, places), RISES + 2 * side
+            if w > 0.0:
+                height, slope = _swung(ground, sole, root, places, w)
+            else:
+                height, slope = _stand(ground, sole, root, places[0], places[1], places[2])
+            found[n] = found[n] and height > _NONE
+            root[at], root[at + 1] = height - root[HEIGHT] if height > _NONE else 0.0, slope
+    return found

@@ -1,0 +1,99 @@
+"""Walks over ground that is not a plane, straight on and judged by coal: sills, kerbs, ramps and stairs."""
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import HEIGHT, RISES
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.verdict import judge
+from elbowroom.planning.command import Command
+from elbowroom.world.ground.ground import height_along
+from elbowroom.world.scene import Scene
+
+AVATAR = Humanoid.default()
+FORWARD = Command(forward=1.0)
+WIDE = 1.8  # metres between the walls
+WALLS = [{"type": "box", "center": [side, 1.2, 4.0], "size": [0.2, 2.4, 12.0]} for side in (-1.0, 1.0)]
+
+
+def box(begin: float, top: float, length: float) -> dict[str, Any]:
+    return {"type": "box", "center": [0.0, 0.5 * top, begin + 0.5 * length], "size": [WIDE, top, length]}
+
+
+def ramp(degrees: float) -> list[dict[str, Any]]:
+    top, half, run = math.tan(math.radians(degrees)) * 2.0, 0.5 * WIDE, 2.0
+    points = [[x, y, z] for x in (-half, half) for y, z in ((0.0, 0.0), (0.0, run), (top, run))]
+    return [{"type": "hull", "points": points, "center": [0.0, 0.0, 2.0]}, box(4.0, top, 3.0)]
+
+
+def stair(rise: float, tread: float, steps: int) -> list[dict[str, Any]]:
+    treads = [box(2.0 + tread * i, rise * (i + 1), tread) for i in range(steps)]
+    return [*treads, box(2.0 + tread * steps, rise * steps, 4.0)]
+
+
+PLACES: dict[str, list[dict[str, Any]]] = {
+    **{f"a sill of {height} cm": [box(3.0, 0.01 * height, 0.1)] for height in (1, 5, 10, 20)},
+    "a kerb": [box(2.5, 0.15, 2.0)],
+    "a ramp of 15 degrees": ramp(15.0),
+    "a stair of 17 by 28 cm": stair(0.17, 0.28, 4),
+}
+LONGEST = {"a ramp of 15 degrees": 12.0, "a stair of 17 by 28 cm": 20.0}  # seconds; of all others 9
+
+
+def scene_of(name: str) -> Scene:
+    return Scene.of("ground", [*WALLS, *PLACES[name]], finish=(0.0, 6.5))
+
+
+@cache
+def walked(name: str) -> list[Frame]:
+    scene = scene_of(name)
+    controller, frames = Controller(AVATAR, scene), list[Frame]()
+    while not scene.finished(controller.root) and len(frames) < 60 * LONGEST.get(name, 9.0):
+        frames.append(controller.step(FORWARD, 1 / 60))
+    return frames
+
+
+def roots_of(name: str) -> np.ndarray:
+    return np.stack([frame.root for frame in walked(name)])
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_it_is_crossed_straight_and_in_time(name: str) -> None:
+    scene, roots = scene_of(name), roots_of(name)
+    assert scene.finished(type(scene.start)(*roots[-1].tolist()))
+    assert not any(frame.touching for frame in walked(name))
+    assert np.abs(roots[:, 0]).max() < (0.3 if "stair" in name else 0.02)
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_another_library_finds_nothing_touched_but_the_ground_under_soles(name: str) -> None:
+    motion = ShownMotion.at_rate(np.stack([frame.q for frame in walked(name)]), roots_of(name))
+    verdict = judge(motion, AVATAR, scene_of(name))
+    assert verdict.clean, (verdict.capsules.contacts[:3], verdict.mesh and verdict.mesh.contacts[:3])
+    assert verdict.itself.touching == 0
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_the_root_follows_the_ground_and_no_foot_is_under_it(name: str) -> None:
+    ground, roots = scene_of(name).ground, roots_of(name)
+    below, height = [], 0.0
+    for x, z in roots[:, :2].tolist():
+        height = height_along(ground, (x, height, z - 0.02), x, z)
+        below.append(height)
+    assert np.abs(roots[:, HEIGHT] - below).max() < 0.22
+    assert abs(roots[-1, HEIGHT] - below[-1]) < 0.01
+    assert np.abs(np.diff(roots[:, HEIGHT])).max() < 0.02, "it does not jump"
+    assert (roots[:, HEIGHT, None] + roots[:, [RISES, RISES + 2]]).min() > -1e-6
+
+
+def test_on_the_plane_nothing_rises() -> None:
+    controller = Controller(AVATAR, Scene.load("d"))
+    roots = np.stack([controller.step(FORWARD, 1 / 60).root for _ in range(60)])
+    assert not roots[:, HEIGHT:].any()
