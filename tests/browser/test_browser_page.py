@@ -186,3 +186,15 @@ def test_the_page_fits_a_phone(open_page: Open, viewport: tuple[int, int]) -> No
     live.page.tap("#menu-button")
     live.page.tap("#help-button")
     live.page.wait_for_selector("#help[open]")
+
+
+def test_the_first_load_travels_in_less_than_700_kilobytes(open_page: Open) -> None:
+    live = open_page("scene=d")
+    live.wait("s.scene === 'd' && s.avatarLoaded")
+    sizes = live.page.evaluate("""
+        performance.getEntries().filter((e) => ["resource", "navigation"].includes(e.entryType))
+          .map(({ name, encodedBodySize }) => [new URL(name).pathname, encodedBodySize])
+    """)
+    code = [(path, size) for path, size in sizes if not path.endswith(".glb")]
+    assert len(code) > 4
+    assert 100_000 < sum(size for _, size in code) < 700_000, code

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import Scope
+from starlette.types import ASGIApp, Scope
 from starlette.websockets import WebSocket
 
 from elbowroom import __version__
@@ -40,6 +41,7 @@ from elbowroom.world.scene import Scene
 LOG = logging.getLogger("elbowroom.server")
 
 MAX_SESSIONS = 8
+_WORTH_COMPRESSING = 1024  # bytes
 _TRY_AGAIN_LATER = 1013  # close code
 
 HOW_TO_BUILD = "The page is not built. In a checkout run `make env`; or install the package again with pip."
@@ -78,7 +80,7 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
         Route("/avatars/{avatar}.glb", handlers.avatar),
         Route("/places/{place}.glb", handlers.place),
         WebSocketRoute("/ws", handlers.session),
-        Mount("/", _Page(directory=client_folder(), html=True)) if client_is_built() else Route("/", _missing_page),
+        Mount("/", _page()) if client_is_built() else Route("/", _missing_page),
     ]
     if not client_is_built():
         LOG.warning(HOW_TO_BUILD)
@@ -204,6 +206,11 @@ def _has_the_file(request: Request, avatar: StoredAvatar) -> bool:
     """Whether the client is on this machine or on the one that sent the file: what it sees then is not handed out."""
     client = request.client
     return client is not None and (is_loopback(client.host) or client.host == avatar.sender.address)
+
+
+def _page() -> ASGIApp:
+    """The built client, compressed on its way."""
+    return GZipMiddleware(_Page(directory=client_folder(), html=True), _WORTH_COMPRESSING)
 
 
 class _Page(StaticFiles):

@@ -164,6 +164,7 @@ export class App {
       look: (yaw, pitch) => this.picture.camera.turn(yaw, pitch),
       cameraHeading: () => this.picture.camera.heading,
       steering: () => this.taste.steering,
+      openMenu: (open) => this.menu.showByPad(open),
     };
   }
 }

@@ -4,6 +4,7 @@ import type { Input } from "../generated/messages";
 import { Gamepads } from "./gamepad";
 import type { KeyMap } from "./key_map";
 import { Keyboard, type Action } from "./keyboard";
+import { PadFocus } from "./pad_focus";
 import { commandsDiffer, mergeIntents, NO_INTENT, steer, type Command, type Intent, type SteeringMode } from "./steering";
 import { TouchStick } from "./touch_stick";
 
@@ -17,18 +18,20 @@ export interface ControlsHost {
   look(yaw: number, pitch: number): void;
   cameraHeading(): number;
   steering(): SteeringMode;
+  openMenu(open: boolean): void;
 }
 
 export class Controls {
   readonly stick: TouchStick;
   private readonly keyboard: Keyboard;
-  private readonly gamepads = new Gamepads();
+  private readonly gamepads: Gamepads;
   private padIntent: Intent = NO_INTENT;
   private sent: Command = steer(NO_INTENT, "camera", 0);
   private sentAt = -Infinity;
   private sequence = 0;
 
   constructor(private readonly host: ControlsHost, stickRing: HTMLElement, keys: KeyMap) {
+    this.gamepads = new Gamepads(new PadFocus({ openMenu: (open) => host.openMenu(open), back: () => host.action("escape") }));
     this.keyboard = new Keyboard(keys, (action) => host.action(action), () => this.flush());
     this.stick = new TouchStick(stickRing, () => this.flush());
   }

@@ -16,7 +16,7 @@ export interface PadButton {
 export const PAD_BUTTONS: readonly PadButton[] = [
   { number: 0, name: "A", deed: "run" },
   { number: 7, name: "RT", deed: "run" },
-  { number: 10, name: "L3", deed: "run" },
+  { number: 10, name: "L3", deed: "pause" },
   { number: 4, name: "LB", deed: "stepLeft" },
   { number: 5, name: "RB", deed: "stepRight" },
   { number: 11, name: "R3", deed: "recenter" },
@@ -25,7 +25,7 @@ export const PAD_BUTTONS: readonly PadButton[] = [
   { number: 2, name: "X", deed: "assist" },
   { number: 3, name: "Y", deed: "cameraMode" },
   { number: 8, name: "Back", deed: "reset" },
-  { number: 9, name: "Start", deed: "pause" },
+  { number: 9, name: "Start", deed: "menu" },
   { number: 13, name: "↓", deed: "slow" },
   { number: 15, name: "→", deed: "step" },
   { number: 12, name: "↑", deed: "overlays" },
@@ -48,8 +48,17 @@ export function connectedPad(): Gamepad | null {
   return navigator.getGamepads?.().find((pad) => pad?.connected && pad.mapping === "standard") ?? null;
 }
 
+/** Who works panels by the buttons of a pad. */
+export interface PadPanels {
+  /** @returns the buttons that it has used, which do nothing else */
+  take(down: ReadonlySet<number>, fresh: ReadonlySet<number>, now: number): ReadonlySet<number>;
+}
+
 export class Gamepads {
   private down = new Set<number>();
+
+  /** @param panels works what is up by buttons, before anything else does */
+  constructor(private readonly panels: PadPanels | null = null) {}
 
   /** Reads the first connected standard gamepad. */
   poll(): GamepadReading {
@@ -60,9 +69,12 @@ export class Gamepads {
     }
     const [right, back] = radialDeadZone(pad.axes[0] ?? 0, pad.axes[1] ?? 0);
     const look = radialDeadZone(pad.axes[2] ?? 0, pad.axes[3] ?? 0);
-    const held = PAD_BUTTONS.filter(({ number }) => pad.buttons[number]?.pressed);
+    const down = new Set(pad.buttons.flatMap(({ pressed }, number) => (pressed ? [number] : [])));
+    const fresh = new Set([...down].filter((number) => !this.down.has(number)));
+    const used = this.panels?.take(down, fresh, performance.now() / 1000) ?? new Set<number>();
+    const held = PAD_BUTTONS.filter(({ number }) => down.has(number) && !used.has(number));
     const pressed = held.flatMap(({ number, deed }) => (this.down.has(number) || isHeldDeed(deed) ? [] : [deed]));
-    this.down = new Set(held.map(({ number }) => number));
+    this.down = down;
     const on = (deed: PadDeed) => held.some((button) => button.deed === deed);
     const strafe = Number(on("stepLeft")) - Number(on("stepRight"));
     return { intent: { right, forward: back === 0 ? 0 : -back, strafe, run: on("run") }, look, pressed };

@@ -98,6 +98,7 @@ export class Pushing {
   }
 
   private show(number: number | null): void {
+    this.host.picture.world.hold(number);
     const name = number === null ? undefined : this.things?.scene.obstacles[number]?.name;
     if (name !== undefined) this.host.say("info", text("push.inHand", name));
   }

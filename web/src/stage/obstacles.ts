@@ -31,12 +31,15 @@ export interface DrawnObstacle {
 export class Obstacles {
   readonly group = new Group();
   private marked: ReadonlySet<number> = new Set();
+  private held: number | null = null;
   private glow = 0;
+  private heldGlow = 0;
 
   /** Replaces all obstacles; `rich` ones have physically based surfaces. */
   build(obstacles: readonly DrawnObstacle[], palette: Palette, rich: boolean): void {
     this.clear();
     this.glow = palette.touching;
+    this.heldGlow = palette.accent;
     obstacles.forEach((obstacle, i) => {
       const chosen = palette.obstacles[i % palette.obstacles.length] ?? 0x888888;
       const colour = obstacle.color ? Number.parseInt(obstacle.color.slice(1), 16) : chosen;
@@ -59,10 +62,16 @@ export class Obstacles {
     this.glowMarked();
   }
 
+  /** Lets the one glow that is in hand, by number. */
+  hold(number: number | null): void {
+    this.held = number;
+    this.glowMarked();
+  }
+
   private glowMarked(): void {
     this.group.children.forEach((child, i) => {
       const { material } = child as ObstacleMesh;
-      material.emissive.setHex(this.marked.has(i) ? this.glow : 0x000000);
+      material.emissive.setHex(this.marked.has(i) ? this.glow : i === this.held ? this.heldGlow : 0x000000);
       material.emissiveIntensity = GLOW;
     });
   }

@@ -84,6 +84,11 @@ export class World {
     this.loose = loose;
   }
 
+  /** Lets the obstacle glow that is in hand. */
+  hold(number: number | null): void {
+    this.obstacles.hold(number);
+  }
+
   /** The place of a drawn thing among the obstacles; -1 for what is none. */
   placeOf(object: Object3D): number {
     return this.obstacles.group.children.indexOf(object);

@@ -43,6 +43,8 @@ export const PHRASES: Readonly<Record<string, string>> = {
   "Replay the last walk": "重播上一次行走",
   "The address of this scene, avatar, camera, planner, speed and overlays": "包含此場景、角色、鏡頭、規劃器、速度與疊加顯示的網址",
   "Share what I see": "分享目前畫面",
+  "press the left stick: pause": "按下左搖桿：暫停",
+  "menu, card, replay: the cross goes through them, A presses, B goes back": "選單、結果、重播：以十字鍵移動與調整，A 鍵確認，B 鍵返回",
   "Save the walk (.elbow)": "儲存此次行走（.elbow）",
   "All that was shown since the start, to replay, judge, film or export": "自起點以來顯示的一切，可重播、評判、錄影或匯出",
   "Build a scene": "建造場景",

@@ -70,6 +70,11 @@ export class Menu {
     this.listener.menuCovers(open && !this.narrow.matches ? this.panel.offsetWidth : 0);
   }
 
+  /** Opens the menu for a gamepad; where it covers nothing it stays open afterwards. */
+  showByPad(open: boolean): void {
+    if (open || this.narrow.matches) this.setOpen(open);
+  }
+
   showCatalog(catalog: Catalog): void {
     this.offered = catalog.scenes.map(({ name }) => name);
     this.courses.showCatalog(catalog);

@@ -1,0 +1,86 @@
+"""All of the page by gamepad alone."""
+
+from collections.abc import Callable
+
+from live_page import LivePage
+
+Open = Callable[..., LivePage]
+
+A, B, START, DOWN, RIGHT = 0, 1, 9, 13, 15
+
+PAD = """
+window.pad = { axes: [0, 0, 0, 0], down: [] };
+navigator.getGamepads = () => [{
+  connected: true, mapping: "standard", id: "stub", index: 0, timestamp: 0, axes: window.pad.axes,
+  buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: window.pad.down.includes(i), touched: false, value: 0 })),
+}];
+"""
+TWO_FRAMES = "async () => { for (let k = 0; k < 2; k += 1) await new Promise(requestAnimationFrame); }"
+
+
+def press(live: LivePage, *buttons: int) -> None:
+    """Press buttons one after the other, each for two frames."""
+    for button in buttons:
+        live.page.evaluate(f"window.pad.down = [{button}]")
+        live.page.evaluate(TWO_FRAMES)
+        live.page.evaluate("window.pad.down = []")
+        live.page.evaluate(TWO_FRAMES)
+
+
+def focused(live: LivePage) -> str:
+    found: str = live.page.evaluate("document.activeElement.id")
+    return found
+
+
+def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
+    live = open_page("scene=a", viewport=(640, 480), script=PAD)
+    live.wait("s.scene === 'a'")
+    press(live, START)
+    live.page.wait_for_selector("#menu:not(.closed)")
+    assert focused(live) == "scene"
+    press(live, RIGHT)
+    live.wait("s.scene !== 'a'")
+    for _ in range(60):
+        press(live, DOWN)
+        if focused(live) == "overlay-capsules":
+            break
+    press(live, A)
+    live.wait("s.overlays.includes('capsules')")
+    for _ in range(60):
+        press(live, DOWN)
+        if focused(live) == "help-button":
+            break
+    press(live, A)
+    live.page.wait_for_selector("#help[open]")
+    press(live, B)
+    live.page.wait_for_selector("#help:not([open])", state="attached")
+    press(live, B)
+    live.page.wait_for_selector("#menu.closed", state="attached")
+
+
+def test_finish_card_and_timeline_are_worked_by_the_pad(open_page: Open) -> None:
+    live = open_page("scene=doorway&speed=1.6", viewport=(1000, 600), script=PAD)
+    live.wait("s.scene === 'doorway'")
+    live.page.evaluate("window.pad.axes = [0, -1, 0, 0]")
+    live.wait("s.crossed === 1")
+    live.page.evaluate("window.pad.axes = [0, 0, 0, 0]")
+    live.page.wait_for_selector("#finish:not([hidden])")
+    for _ in range(8):
+        press(live, DOWN)
+        if focused(live) == "finish-replay":
+            break
+    press(live, A)
+    live.wait("s.replay && s.replay.duration > 1")
+    live.page.focus("#replay input[type=range]")
+    press(live, A)
+    before = live.state()["replay"]["time"]
+    press(live, RIGHT)
+    assert live.state()["replay"]["time"] > before
+    live.page.focus("#replay-play")
+    playing = live.state()["replay"]["playing"]
+    press(live, A)
+    live.wait(f"s.replay.playing !== {str(playing).lower()} || s.replay.time > {before + 0.4}")
+    press(live, B)
+    live.wait("s.replay === null")
+    press(live, 8)
+    live.wait("s.root.z < 0.2")
