@@ -8,7 +8,7 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.loose import FASTEST, pushable
+from elbowroom.control.loose import FASTEST, pushable, scene_without
 from elbowroom.control.recorded_things import told
 from elbowroom.control.recording import Recorder, Recording
 from elbowroom.control.replay import replay
@@ -94,6 +94,14 @@ def test_what_was_pushed_is_in_the_way_where_it_was_left_and_back_after_a_reset(
 def test_only_what_is_upright_and_small_is_pushed_and_only_over_the_ground() -> None:
     walker = controller()
     assert pushable(walker.scene) == (0, 1, 2)
+    low: list[dict[str, Any]] = [
+        {"type": "box", "center": [0.0, 0.08, 2.0], "size": [1.0, 0.16, 0.4]},
+        {"type": "cylinder", "center": [1.5, 0.05, 2.0], "radius": 0.3, "height": 0.1},
+    ]
+    kerb = Scene.of("kerb", [*low, THINGS[0]], finish=(0.0, 6.0))
+    assert not kerb.ground.plain
+    assert pushable(kerb) == (2,)
+    assert scene_without(kerb, frozenset({2})).ground.plain is False
     for number in (3, 17, -1):
         with pytest.raises(InputError, match="push"):
             walker.push(number, (0.0, 0.0))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
+from elbowroom.world.ground.ground import STEEPEST, STEP
 from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Shape, Sphere, extents_of
@@ -71,8 +72,10 @@ def thing_of(scene: Scene, number: int) -> Thing:
         raise InputError(f"obstacle {number} of scene {scene.name}: there is nothing that can be pushed by this number")
     obstacles = scene.obstacles
     name, shape, turn = obstacles.standing_names[number], obstacles.shapes[number], obstacles.rotations[number]
-    if not _can_be_pushed(shape, turn):
-        raise InputError(f"obstacle {name} of scene {scene.name}: only what is upright and small can be pushed")
+    if not _can_be_pushed(shape, obstacles.centers[number], turn):
+        raise InputError(
+            f"obstacle {name} of scene {scene.name}: only what is upright, small and no ground can be pushed"
+        )
     matrix = quaternion.to_matrix(turn)
     yaw = math.atan2(matrix[0, 2], matrix[2, 2])
     return Thing(name, shape, yaw, obstacles.centers[number].copy(), np.zeros(2))
@@ -82,14 +85,19 @@ def pushable(scene: Scene) -> tuple[int, ...]:
     """The numbers of all standing obstacles that can be pushed; none in the model of a place."""
     if scene.place is not None:
         return ()
-    every = enumerate(zip(scene.obstacles.shapes, scene.obstacles.rotations, strict=True))
-    return tuple(number for number, (shape, turn) in every if _can_be_pushed(shape, turn))
+    obstacles = scene.obstacles
+    every = enumerate(zip(obstacles.shapes, obstacles.centers, obstacles.rotations, strict=True))
+    return tuple(number for number, told in every if _can_be_pushed(*told))
 
 
-def _can_be_pushed(shape: Shape, turn: Floats) -> bool:
-    """Whether a shape is small, and stands upright when it is turned so."""
-    across = 2.0 * float(np.hypot(*extents_of(shape)[[0, 2]]))
-    return isinstance(shape, _SHAPES) and across <= WIDEST and quaternion.to_matrix(turn)[1, 1] >= 1.0 - _UPRIGHT
+def _can_be_pushed(shape: Shape, center: Floats, turn: Floats) -> bool:
+    """Whether a shape at a place is small, stands upright when it is turned so, and is nothing that one stands on."""
+    half = extents_of(shape)
+    if not isinstance(shape, _SHAPES) or 2.0 * float(np.hypot(half[0], half[2])) > WIDEST:
+        return False
+    dome = half[0] * (1.0 - math.cos(STEEPEST)) if isinstance(shape, Sphere | Capsule) else 0.0
+    lowest = float(center[1] + half[1] - dome)  # of what is level enough on top to be ground
+    return lowest > STEP and quaternion.to_matrix(turn)[1, 1] >= 1.0 - _UPRIGHT
 
 
 def scene_without(scene: Scene, numbers: frozenset[int]) -> Scene:
