@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import LOWERING
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.neighbour import Neighbour
@@ -136,7 +137,7 @@ class BodyCheck:
         """
         (first, last), (begin, end), origin = frames.roots, frames.uppers, frames.roots[0][:2]
         root, upper = first + shares[:, None] * (last - first), begin + shares[:, None] * (end - begin)
-        segments = self._lifted(posture_capsules(self.model, np.hstack([root[:, :3], upper]), self._near(root, first)))
+        segments = self._capsules(np.hstack([root[:, :3], upper]), self._near(root, first))
         gaps = []
         for i, time in enumerate((frames.times[0] + shares * (frames.times[1] - frames.times[0])).tolist()):
             axes = np.ascontiguousarray(segments[:, :, i : i + 1])
@@ -149,17 +150,17 @@ class BodyCheck:
     def _posed(self, root: Floats, upper: Floats) -> Floats32:
         """The capsules' axes (C, 6, 1) as seen from the root."""
         stood = self.standing(root)
-        return self._lifted(
-            posture_capsules(self.model, configuration(root, upper)[None], self._near(stood, stood)[None])
-        )
+        return self._capsules(configuration(root, upper)[None], self._near(stood, stood)[None])
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with what the feet stand on."""
         stood: Floats = self._footing.stood(root[None])[0][0]
         return stood
 
-    def _lifted(self, segments: Floats32) -> Floats32:
-        return self._footing.lifted(segments, self.model.body)
+    def _capsules(self, postures: Floats, roots: Floats) -> Floats32:
+        """The capsules' axes (C, 6, N), those of the feet as high as they are held against what they stand on."""
+        segments = posture_capsules(self.model, postures, roots)
+        return self._footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
 
     def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
         """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""

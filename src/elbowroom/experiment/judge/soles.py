@@ -2,66 +2,62 @@
 
 In a walk on level ground a foot is on it, and a little of what stands for it is in it: of the capsule, which is larger
 than the foot, and of the mesh where a heel strikes. Where feet stand on obstacles the same is allowed, and 3 mm more,
-straight up: feet and toes are held against what stands as much higher as they get below level ground in the walking
-cycle. So raised they must be free, like everything else; only the soles may be in what they stand on.
+straight up: at each moment feet and toes are held against what stands as much higher as they are below level ground in
+the same stride there. So raised they must be free, like everything else; only the soles may be in what they stand on.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT, ROOT_STATE
+from elbowroom.body.root import HEIGHT
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
-from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.experiment.judge.skin import Skin
 
 Floats = NDArray[np.float64]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
-_FEET = ("leftFoot", "leftToes", "rightFoot", "rightToes")
-_SPEEDS, _PHASES = np.linspace(0.0, 1.6, 5), np.linspace(0.0, 1.0, 64, endpoint=False)  # m/s, strides
+_SIDES = ("left", "right")
 
 
 class Soles:
     """How much higher the feet of one avatar are held against obstacles, in one motion."""
 
     def __init__(self, humanoid: Humanoid, poser: Poser, motion: ShownMotion) -> None:
-        self._feet = [poser.skeleton.index(bone) for bone in _FEET if poser.skeleton.has(bone)]
-        self._used = motion.roots.shape[1] > HEIGHT and bool(np.abs(motion.roots[:, HEIGHT:]).max(initial=0.0) > 0.0)
-        self._walked = _walked(poser) if self._used else None
-        self._humanoid = humanoid
+        skeleton, self._poser, self._humanoid = poser.skeleton, poser, humanoid
+        self._feet = [
+            [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)] for side in _SIDES
+        ]
+        self._level: ShownMotion | None = None  # the same strides on the plane; None where they are on it already
+        if motion.roots.shape[1] > HEIGHT and np.abs(motion.roots[:, HEIGHT:]).max(initial=0.0) > 0.0:
+            roots = motion.roots.copy()
+            roots[:, HEIGHT:] = 0.0
+            self._level = replace(motion, roots=roots)
 
-    def of_capsules(self) -> float:
-        """For the collision body, metres; 0 where all that is shown stands on the plane at height 0."""
-        if self._walked is None:
-            return 0.0
-        shapes = CapsuleShapes(self._humanoid)
-        placed, feet = shapes.placed(self._walked), np.isin(self._humanoid.capsules.joints, self._feet)
-        lowest = placed.middles[..., 1] - np.abs(placed.half_axes[..., 1]) - shapes.radii
-        return IN_GROUND + max(0.0, -float(lowest[:, feet].min()))
-
-    def of_mesh(self, skin: Skin) -> float:
-        """The same for the mesh."""
-        if self._walked is None:
-            return 0.0
-        vertices = np.flatnonzero(np.isin(skin.joints[:, 0], self._feet))
-        lowest = skin.vertices(self._walked, vertices)[..., 1].min(initial=0.0)
-        return IN_GROUND + max(0.0, -float(lowest))
-
-    def raised(self, posed: Posed, lift: float) -> Posed:
-        """Poses with the feet so much higher, metres."""
-        if lift <= 0.0:
+    def raised(self, posed: Posed, moments: Moments, skin: Skin | None = None) -> Posed:
+        """The poses at some moments with the feet as high as those of the capsules are held, or those of a skin."""
+        if self._level is None:
             return posed
-        positions = posed.positions.copy()
-        positions[:, self._feet, 1] += lift
+        level, positions = self._poser.at(self._level, moments), posed.positions.copy()
+        for joints in self._feet:
+            lowest = self._capsules_over(level, joints) if skin is None else _skin_over(level, skin, joints)
+            positions[:, joints, 1] += (IN_GROUND + np.maximum(-lowest, 0.0))[:, None]
         return Posed(positions, posed.rotations)
 
+    def _capsules_over(self, posed: Posed, joints: list[int]) -> Floats:
+        """The height (N,) of the lowest point of the capsules on some joints."""
+        shapes = CapsuleShapes(self._humanoid)
+        placed, which = shapes.placed(posed), np.isin(self._humanoid.capsules.joints, joints)
+        heights = placed.middles[..., 1] - np.abs(placed.half_axes[..., 1]) - shapes.radii
+        lowest: Floats = heights[:, which].min(axis=1)
+        return lowest
 
-def _walked(poser: Poser) -> Posed:
-    """Walks on the plane."""
-    roots = np.zeros((len(_SPEEDS) * len(_PHASES), ROOT_STATE))
-    roots[:, 3], roots[:, 6] = np.repeat(_SPEEDS, len(_PHASES)), np.tile(_PHASES, len(_SPEEDS))
-    local, hips = poser.local(np.zeros((len(roots), DOF)), roots)
-    return poser.world(local, hips, roots[:, :3])
+
+def _skin_over(posed: Posed, skin: Skin, joints: list[int]) -> Floats:
+    """The height (N,) of the lowest vertex that follows some joints most."""
+    lowest: Floats = skin.vertices(posed, np.flatnonzero(np.isin(skin.joints[:, 0], joints)))[..., 1].min(axis=1)
+    return lowest

@@ -101,16 +101,16 @@ def judge(
     of_itself = Ledger(chosen.self_tolerance)
     capsule_judges = [CapsuleJudge(humanoid, around.obstacles) for around in surroundings]
     self_judge, soles = SelfJudge(humanoid), Soles(humanoid, poser, motion)
-    lifts = soles.of_capsules(), 0.0 if skin is None else soles.of_mesh(skin)
     mesh_judges = (
         [] if skin is None else [MeshJudge(skin, humanoid.skeleton, around.obstacles) for around in surroundings]
     )
     for first in range(0, len(moments.times), _AT_ONCE):
         some = moments.part(slice(first, first + _AT_ONCE))
         posed = poser.at(motion, some)
+        times = motion.scene_times(some)
         bodies, surfaces = (
-            [around.seen(soles.raised(posed, lift), motion.scene_times(some)) for around in surroundings]
-            for lift in lifts
+            [around.seen(body, times) for around in surroundings]
+            for body in (soles.raised(posed, some), posed if skin is None else soles.raised(posed, some, skin))
         )
         for view, capsule_judge in zip(bodies, capsule_judges, strict=True):
             capsule_judge.judge(view, some.times, first, of_capsules)

@@ -3,15 +3,15 @@
 Where a foot stands, and where it will, follows from the root's state (`gait.stood_places`). It stands on the highest
 ground under its sole; on its way it goes from the one height to the other, higher where something is in between.
 
-A capsule round a foot reaches a little below the sole, at heel strike more. What it gets below level ground in a walk
-it may get below any: feet are held against obstacles as much higher, so they may stand on them, and touch nothing else.
+A capsule round a foot reaches a little below the sole, at heel strike more. As deep as it is below level ground in the
+same stride it may be below any: feet are held against obstacles as much higher, so they may stand on them, no more.
 """
 
 import math
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait import stood_places
 from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules
@@ -25,10 +25,9 @@ Bools = NDArray[np.bool_]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
-_PHASES, _SPEEDS = 64, (0.0, 0.4, 0.8, 1.1, 1.6)  # of walks in which it is measured how deep feet get; m/s
-_OVER, _BESIDE = 0.03, 0.02  # metres above an edge, and before and behind it, that a swinging foot keeps
+_OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, that a swinging foot keeps
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
-_LOOKS, _QUICK = 11, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
+_LOOKS, _QUICK = 25, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
 _LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
 
@@ -54,38 +53,44 @@ class Footing:
         rows = states.copy()
         return rows, set_rises(self.ground, self._model.gait.legs, self._model.gait.scale, self._sole, rows)
 
-    def feet(self, capsules: CapsuleSet) -> Bools:
+    def _feet(self, capsules: CapsuleSet) -> Bools:
         """Which of the capsules (C,) are round feet and toes."""
         return np.isin(capsules.joints, self._model.figure.legs[:, 2:])
 
-    def lifted(self, segments: Floats32, capsules: CapsuleSet, spare: float = 0.0) -> Floats32:
-        """Capsules (C, 6, N) with those of the feet as high as they are held against obstacles.
+    def lifted(
+        self,
+        segments: Floats32,
+        capsules: CapsuleSet,
+        states: Floats,
+        lowerings: ArrayLike = 0.0,
+        spare: float = 0.0,
+    ) -> Floats32:
+        """Capsules (C, 6, N) of root states (N, 7) and lowerings, those of the feet as high as they are held.
 
-        The same on plain ground. `spare` metres higher, for who asks for so much clearance.
+        `spare` metres higher, for who asks for so much clearance. The same on plain ground.
         """
         if self.ground.plain:
             return segments
-        feet, higher = self.feet(capsules), segments.copy()
+        higher, lifts = segments.copy(), self._lifts(states, lowerings) + np.float32(spare)
         for end in (1, 4):
-            higher[feet, end] += np.float32(self.depth + IN_GROUND + spare)
+            higher[self._feet(capsules), end] += lifts
         return higher
 
-    @cached_property
-    def depth(self) -> float:
-        """How far the capsules of the feet get below the plane in walks on it, metres."""
-        states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
-        states[:, 3] = np.repeat(_SPEEDS, _PHASES)
-        states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
-        roots = self._model.roots
-        feet = self.feet(roots)
-        ends = leg_capsules(self._model, states)[feet][:, [1, 4]]
-        return max(0.0, -float((ends - roots.radii[feet][:, None, None]).min()))
+    def _lifts(self, states: Floats, lowerings: ArrayLike) -> Floats32:
+        """How far each capsule of the feet (F,) is below the plane in the same strides on it (N,), and 3 mm: (F, N)."""
+        level, roots = states.copy(), self._model.roots
+        level[:, HEIGHT:] = 0.0
+        feet = self._feet(roots)
+        ends = leg_capsules(self._model, level, lowerings)[feet][:, [1, 4]]
+        below = roots.radii[feet][:, None] - ends.min(axis=1)
+        lifts: Floats32 = np.maximum(below, np.float32(0.0)) + np.float32(IN_GROUND)
+        return lifts
 
     @cached_property
     def _sole(self) -> Sole:
         """The rectangle over which the capsules of a standing foot lie, about its ankle."""
         roots, legs = self._model.roots, self._model.gait.legs
-        feet = self.feet(roots)
+        feet = self._feet(roots)
         ends = leg_capsules(self._model, np.zeros((1, ROOT_STATE)))[feet].reshape(-1, 2, 3).astype(np.float64)
         radii, ankle = roots.radii[feet][:, None], legs[:, 5].mean()
         aside = np.abs(np.abs(ends[:, :, 0]) - np.abs(legs[:, 3]).mean()) + radii

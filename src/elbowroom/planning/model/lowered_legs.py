@@ -89,7 +89,9 @@ class LoweredLegs:
             return np.full(len(roots), np.inf, np.float32)
         states = self._footing.stood(roots)[0].copy()
         states[:, :2] -= roots[0, :2]
-        segments = self._footing.lifted(leg_capsules(self._model, states, lowerings), self._model.roots)
+        segments = self._footing.lifted(
+            leg_capsules(self._model, states, lowerings), self._model.roots, states, lowerings
+        )
         return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]))
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:

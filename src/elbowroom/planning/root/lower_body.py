@@ -97,7 +97,7 @@ class LowerBody:
         if self.footing.plain:
             return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
         rows, found = self.footing.stood(states)
-        segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, spare)
+        segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, rows, spare=spare)
         clear = clearance(segments, self.radii, near.obstacles)
         return np.where(found, clear, np.float32(-1.0))
 

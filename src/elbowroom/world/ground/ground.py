@@ -26,7 +26,7 @@ _GRADE = math.tan(STEEPEST)
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
-_UNEVEN = 0.01  # metres: a sole that would have more air under it lies level
+_UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
 
 
 class Ground(NamedTuple):
@@ -126,7 +126,10 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
     for i in range(_ALONG):
         level = max(level, highest[i])
         tilted = max(tilted, highest[i] - grade * (length * i / (_ALONG - 1) - sole.back))
-    if abs(grade) > _GRADE or tilted - highest[0] - grade * sole.back > _UNEVEN:
+    air = 0.0
+    for i in range(_ALONG):
+        air = max(air, tilted + grade * (length * i / (_ALONG - 1) - sole.back) - highest[i])
+    if abs(grade) > _GRADE or air > _UNEVEN:
         return level, 0.0
     return tilted, -math.atan(grade)
 
