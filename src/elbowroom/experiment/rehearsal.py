@@ -30,6 +30,7 @@ from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
 from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
@@ -38,14 +39,14 @@ from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.ground.ground import Sole, height_along, sole_on
+from elbowroom.world.ground.ground import heights_along
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.solids import inner_boxes
 from elbowroom.world.places.columns import surface_keys
 from elbowroom.world.places.layers import link_surfaces
-from elbowroom.world.scene import Scene
+from elbowroom.world.scene import Scene, on_ground
 
 _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
 _BESIDE = ((0.35, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
@@ -69,7 +70,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_product()
     rehearse_mesh()
     rehearse_place()
-    rehearse_ground()
+    rehearse_ground(humanoid)
     rehearse_way(humanoid)
     rehearse_fit()
     path.sample(path.times)
@@ -123,11 +124,12 @@ def rehearse_place() -> None:
     link_surfaces(cell, np.zeros(1), np.array([0, 1]), 1, 1, 0.1)
 
 
-def rehearse_ground() -> None:
-    """Stand on a low box."""
-    ground = _scene_with((0.0, 0.05, 1.0), (0.5, 0.05, 0.5)).ground
-    height_along(ground, (0.0, 0.0, 0.0), 0.0, 1.0)
-    sole_on(ground, Sole(0.1, 0.1, 0.1), (0.0, 0.0, 1.0), 0.0)
+def rehearse_ground(humanoid: Humanoid) -> None:
+    """Stand before a low box, and follow the ground onto it."""
+    scene = _scene_with((0.0, 0.05, 1.0), (0.5, 0.05, 0.5))
+    Footing(body_model(humanoid), scene.ground).stood(np.zeros((1, ROOT_STATE)))
+    heights_along(scene.ground, 0.0, np.array([[0.0, 0.0], [0.0, 1.0]]))
+    on_ground(scene, RootState())
 
 
 def rehearse_way(humanoid: Humanoid) -> None:
