@@ -207,6 +207,14 @@ def test_wrong_specs_are_one_line(tmp_path: Path, given: Any, words: str) -> Non
     assert outcome.stderr.count("\n") == 1
 
 
+def test_a_cut_spec_says_where_it_ends(tmp_path: Path) -> None:
+    path = tmp_path / "spec.json"
+    path.write_text('{"walks": 3,\n "seed": ')
+    outcome = CliRunner().invoke(app, ["dataset", str(path), "-o", str(tmp_path / "out")])
+    assert outcome.exit_code == 2
+    assert outcome.stderr == f"elbowroom: {path}: line 2, column 10: not JSON: Expecting value\n"
+
+
 def test_from_the_command_line(tmp_path: Path) -> None:
     path, out = tmp_path / "spec.json", tmp_path / "out"
     path.write_text(json.dumps({"walks": 9, "seconds": 1, "places": ["empty"]}))

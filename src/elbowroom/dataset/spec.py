@@ -10,6 +10,7 @@ from elbowroom.dataset.hands import HANDS
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.levels import level_of
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
+from elbowroom.world.json_place import read_json
 
 COURSES = "gauntlet:"
 STOCK = "stock"
@@ -62,14 +63,7 @@ class DatasetSpec:
     @classmethod
     def load(cls, path: Path) -> "DatasetSpec":
         """Read a JSON file; raises `InputError` that names the file. Files in it are found beside it."""
-        try:
-            if path.stat().st_size > _MOST_BYTES:
-                raise InputError(f"{path}: is longer than {_MOST_BYTES} bytes")
-            given = json.loads(path.read_text("utf-8"))
-        except OSError as error:
-            raise InputError(f"{path} cannot be read: {error.strerror}") from None
-        except (ValueError, RecursionError):
-            raise InputError(f"{path}: is no JSON") from None
+        given = read_json(path, _MOST_BYTES)
         try:
             return cls.of(given)._beside(path.parent)
         except InputError as error:

@@ -119,7 +119,7 @@ def parse_json(text: str, source: str) -> Any:
     except json.JSONDecodeError as error:
         raise InputError(f"{source}: line {error.lineno}, column {error.colno}: not JSON: {error.msg}") from error
     except RecursionError:
-        raise InputError(f"{source}: nested too deeply for a scene; a scene needs five levels") from None
+        raise InputError(f"{source}: nested too deeply; five levels are enough") from None
     except InputError:
         raise
     except ValueError as error:
