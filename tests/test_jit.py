@@ -1,7 +1,10 @@
 """The three kinds of compiled functions, and what they ask of Numba."""
 
 import ast
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -91,3 +94,17 @@ def test_fast_and_exact_mathematics_are_told_apart() -> None:
     for value in values:
         expected += value
     assert total(values) == pytest.approx(expected, abs=0.0)
+
+
+@pytest.mark.parametrize(("told_before", "warnings"), [(False, 1), (True, 0)])
+def test_who_can_keep_no_kernels_hears_it_once(told_before: bool, warnings: int) -> None:
+    code = (
+        "import elbowroom.kernel_cache as kept; kept._is_writable = lambda folder: False; "
+        "import elbowroom.body.gait, elbowroom.body.posing"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    if told_before:
+        environment["NUMBA_CACHE_DIR"] = os.devnull
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert done.stderr.count("RuntimeWarning: no folder for compiled kernels") == warnings
+    assert done.stderr.count("set NUMBA_CACHE_DIR") == warnings

@@ -8,7 +8,10 @@ The options and the habits that go with them were measured: unsigned loop indice
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
 """
 
+import os
+import warnings
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -79,5 +82,15 @@ def _compiled(function: Function, **options: Any) -> Function:
     if folder is not None and hasattr(dispatcher, "_cache"):  # a plain function, where Numba is told not to compile
         name = name_of(Path(code.co_filename), function.__qualname__, code.co_firstlineno)
         dispatcher._cache = KeptKernel(dispatcher._cache, folder, name)
+    elif folder is None:
+        _tell_that_none_are_kept()
     _kernels.append(dispatcher)
     return cast(Function, dispatcher)
+
+
+@cache
+def _tell_that_none_are_kept() -> None:
+    """Once; a command has told it already, and has set the variable to no folder at all."""
+    if os.environ.get("NUMBA_CACHE_DIR") != os.devnull:
+        text = "no folder for compiled kernels can be written to: every start compiles them anew, which takes minutes"
+        warnings.warn(f"{text}; set NUMBA_CACHE_DIR", RuntimeWarning, stacklevel=4)
