@@ -3,25 +3,30 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-_FIRST = 3  # of a root state: before it are the place and the heading; the height ends it
+_FIRST = 3  # of a root state: before it are the place and the heading
+_STRIDE = HEIGHT - _FIRST  # numbers from there to the phase
 _NATURAL = 1e-6  # radians from the goal
-CONTENT = HEIGHT - _FIRST  # numbers of a row beside those of the upper body
+_LEVEL = 1e-3  # metres, or radians: ground under a foot that is as good as level
+CONTENT = _STRIDE + ROOT_STATE - RISES  # numbers of a row beside those of the upper body
 
 
 @exact_kernel
 def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
-    """The bits of root states (n+1, 7 or more) without place, heading and height, and beside them of `uppers` (n+1, K).
+    """The bits of root states (n+1, 7 or more) without place, heading, height and climb, and beside them of `uppers`.
 
-    They begin the rows `out` (n+1, CONTENT + K or more).
+    These are (n+1, K) and begin the rows `out` (n+1, CONTENT + K or more).
     """
     for t in range(out.shape[0]):
         set_bits(states[t, _FIRST:HEIGHT], out[t])
+        out[t, _STRIDE:CONTENT] = 0
+        if states.shape[1] > RISES:
+            set_bits(states[t, RISES:], out[t, _STRIDE:])
         set_bits(uppers[t], out[t, CONTENT:])
 
 
@@ -34,9 +39,14 @@ def set_bits(values: Floats, out: Longs) -> None:
 
 
 @exact_kernel
-def is_natural(upper: Floats, goals: Floats) -> bool:
-    """Whether groups side by side (K,) are as their goals have them, the first of `goals` (LOCAL,)."""
-    farthest = 0.0
+def is_natural(upper: Floats, goals: Floats, state: Floats) -> bool:
+    """Whether groups side by side (K,) are as their goals have them, the first of `goals` (LOCAL,), on level ground.
+
+    Only there, where a root `state` (7 or more,) has no rise or slope, is it known that the goals do not touch.
+    """
+    uneven, farthest = 0.0, 0.0
+    for i in range(RISES, state.shape[0]):
+        uneven = max(uneven, abs(state[i]))
     for j in range(upper.shape[0]):
         farthest = max(farthest, abs(upper[j] - goals[j]))
-    return farthest < _NATURAL
+    return farthest < _NATURAL and uneven < _LEVEL

@@ -117,7 +117,7 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     depths = extras.shape[0]
     natural, contents = np.empty(depths, np.bool_), np.empty((depths, it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
-        natural[t] = is_natural(uppers[t], task.walk[t])
+        natural[t] = is_natural(uppers[t], task.walk[t], states[t])
     set_contents(states, uppers, contents)
     rows, fresh = np.empty(depths, np.int64), np.empty(depths, np.int64)
     rows = rows[: _rows_to_check(natural, needed, rows)]

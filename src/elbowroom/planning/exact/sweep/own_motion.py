@@ -101,7 +101,7 @@ def _proven(
 ) -> tuple[Floats, Indices]:
     """See `OwnMotion.proven`."""
     gaps, groups = np.full(keys.shape[0] - 1, np.inf), np.full(keys.shape[0] - 1, -1)
-    chosen = _beside(keys, goals)
+    chosen = _beside(keys, goals, states)
     if not chosen.shape[0]:
         return gaps, groups
     width = CONTENT + 2 * LOCAL
@@ -129,11 +129,14 @@ def _proven(
 
 
 @exact_kernel
-def _beside(keys: Floats, goals: Floats) -> Indices:
-    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) is not as the goals (n+1, LOCAL) have it."""
-    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0])
+def _beside(keys: Floats, goals: Floats, states: Floats) -> Indices:
+    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) is not as the goals (n+1, LOCAL) have it.
+
+    Or where a foot of root states (n+1, 7 or more) is not on level ground.
+    """
+    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0], states[0])
     for k in range(chosen.shape[0]):
-        before, natural = natural, is_natural(keys[k + 1], goals[k + 1])
+        before, natural = natural, is_natural(keys[k + 1], goals[k + 1], states[k + 1])
         if not (before and natural):
             chosen[count] = k
             count += 1
