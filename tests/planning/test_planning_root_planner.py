@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, leg_capsules
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.root import RootState
+from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
@@ -86,7 +86,7 @@ def test_a_path_starts_exactly_in_the_state_given() -> None:
     plan = RootPlanner(BODY, scene_of()).plan(start, FORWARD, 4, 0.25, start_time=7.5)
     assert RootState(*plan.path.states[0]) == start
     assert plan.path.start_time == 7.5
-    assert plan.path.states.shape == (5, 7)
+    assert plan.path.states.shape == (5, ROOT_STATE)
 
 
 @pytest.mark.parametrize("x", [-0.3, 0.0, 0.2])
