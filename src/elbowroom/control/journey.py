@@ -83,7 +83,7 @@ class Journey:
         wanted = math.atan2(aim[0] - here[0], aim[1] - here[1])
         if self._direction is None or abs(math.remainder(wanted - self._direction, math.tau)) > _STRAYED:
             self._direction = wanted
-        share = min(max(away / _SLOWS, _SLOWEST), 1.0) if aim == self.goal else 1.0
+        share = min(max(away / _SLOWS, _SLOWEST), 1.0) if math.dist(aim, self.goal) < _THERE else 1.0
         return replace(self._pace, forward=share * self._pace.forward, direction=self._direction)
 
     def _next_aim(self, here: Place) -> Place | None:

@@ -18,6 +18,7 @@ _BESIDE = 0.6  # metres: who stands where a map has no room looks so far for the
 _DEARER = 0.3  # metres by which the straight line may be dearer than the way that was found
 _NOBODY = -1  # a start that no point is: costs to all points
 _BEYOND = 4.0  # metres off the way to which costs are known
+_SAME = 1e-6  # metres: places nearer to each other are one
 
 
 class NoWayError(InputError):
@@ -70,9 +71,10 @@ class Way:
 
     def corners(self, start: Place, far: float = 3.0) -> Floats:
         """The places (m, 2), x and z, at which the way from a start turns, both ends included."""
-        places = [start]
-        while places[-1] != self.goal and (after := self.aim(places[-1], far)) not in (None, places[-1]):
+        places, after = [start], self.aim(start, far)
+        while after is not None and math.dist(after, places[-1]) > _SAME:
             places.append(after)
+            after = self.aim(after, far)
         return np.array(places)
 
     def _in_grid(self, place: Place) -> tuple[float, float]:
