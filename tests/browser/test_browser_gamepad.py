@@ -32,6 +32,15 @@ def focused(live: LivePage) -> str:
     return found
 
 
+def go_down_to(live: LivePage, element: str) -> None:
+    """Press the cross downwards until an element has the focus."""
+    for _ in range(60):
+        press(live, DOWN)
+        if focused(live) == element:
+            return
+    raise AssertionError(f"{element} is not reached")
+
+
 def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
     live = open_page("scene=a", viewport=(640, 480), script=PAD)
     live.wait("s.scene === 'a'")
@@ -40,16 +49,10 @@ def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
     assert focused(live) == "scene"
     press(live, RIGHT)
     live.wait("s.scene !== 'a'")
-    for _ in range(60):
-        press(live, DOWN)
-        if focused(live) == "overlay-capsules":
-            break
+    go_down_to(live, "overlay-capsules")
     press(live, A)
     live.wait("s.overlays.includes('capsules')")
-    for _ in range(60):
-        press(live, DOWN)
-        if focused(live) == "help-button":
-            break
+    go_down_to(live, "help-button")
     press(live, A)
     live.page.wait_for_selector("#help[open]")
     press(live, B)

@@ -90,6 +90,7 @@ def test_a_recording_that_was_cut_is_exported_as_far_as_it_goes_and_says_so(made
     ("arguments", "word"),
     [
         (["-o", "walk.doc"], "walk.doc: nothing is written as 'doc': choose .bvh"),
+        (["-o", "walk.doc"], ".x3d, or .html for a page that plays it"),
         (["-o", "walk"], "without an ending"),
         (["-o", "walk.bvh", "--up", "x"], "up: 'x'"),
         (["-o", "walk.bvh", "--unit", "mile"], "unit: 'mile'"),

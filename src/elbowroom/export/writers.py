@@ -73,7 +73,10 @@ def format_of(path: Path) -> Format:
     """The format of a file by its ending; raises `InputError` for others."""
     ending = path.suffix.lower().removeprefix(".")
     if ending not in FORMATS:
-        raise InputError(f"{path}: nothing is written as {ending or 'a file without an ending'!r}: choose {_ENDINGS}")
+        wanted = repr(ending or "a file without an ending")
+        raise InputError(
+            f"{path}: nothing is written as {wanted}: choose {_ENDINGS}, or .html for a page that plays it"
+        )
     return FORMATS[ending]
 
 
