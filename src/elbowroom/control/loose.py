@@ -1,16 +1,18 @@
 """Obstacles that a hand pushes over the ground while somebody walks there.
 
 What was taken in hand once is loose until the walk is put back to its start. It follows the hand at a bounded speed,
-stays upright over the scene's ground, and stops before the body that is shown: so who stands still is never touched.
+stays upright over the scene's ground, and stops before the body that is shown: so who stands still is never touched. It
+stops before walls, what moves by itself and other things too (`thing_room.py`), or goes along them.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.control.thing_room import ThingRoom
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.ground.ground import STEEPEST, STEP
@@ -27,7 +29,7 @@ ACCELERATION = 6.0  # m/s²
 WIDEST = 2.5  # metres across: what is larger stays where it is
 FORESEEN = 0.6  # seconds for which what moves is taken to go on as it does
 _STILL = 1e-3  # m/s and m: slower, nearer is there
-_SHARES = (1.0, 0.5, 0.25)  # of a step, where all of it would lead too near to the body
+_SHARES = (1.0, 0.5, 0.25)  # of a step, where all of it would lead too near to the body or into something
 _UPRIGHT = 1e-6  # by how much the Y axis of an upright thing may be off
 _SHAPES = (Box, Sphere, Capsule, Cylinder)
 
@@ -111,6 +113,21 @@ def scene_without(scene: Scene, numbers: frozenset[int]) -> Scene:
     return replace(scene, obstacles=standing)
 
 
+def _at_rest(things: Iterable[Thing], time: float) -> Moving:
+    times = np.array([time, time + 1.0])
+    return Moving(tuple(thing.track(times, np.array([thing.place] * 2)) for thing in things))
+
+
+def _slower(velocity: Floats) -> Iterator[Floats]:
+    """A velocity, slower ones, those along x and z alone, and at last none."""
+    for share in _SHARES:
+        yield share * velocity
+    if velocity.all():
+        yield np.array([velocity[0], 0.0])
+        yield np.array([0.0, velocity[1]])
+    yield np.zeros(2)
+
+
 class Loose:
     """The things that are loose in a scene, and the hand."""
 
@@ -118,6 +135,7 @@ class Loose:
         """None is loose yet."""
         self._scene = scene
         self._things: dict[int, Thing] = {}
+        self._still: tuple[frozenset[int], Scene] | None = None  # what was loose at the last `scene()`, and it
         self.hand: Hand | None = None
 
     def __len__(self) -> int:
@@ -149,7 +167,10 @@ class Loose:
 
     def scene(self) -> Scene:
         """What stands still."""
-        return scene_without(self._scene, frozenset(self._things))
+        numbers = frozenset(self._things)
+        if self._still is None or self._still[0] != numbers:
+            self._still = numbers, scene_without(self._scene, numbers)
+        return self._still[1]
 
     def surroundings(self, time: float) -> Scene:
         """The scene as it is at a time: the things come after all else that moves, and stand where they are."""
@@ -161,8 +182,7 @@ class Loose:
 
     def at_rest(self, time: float) -> Moving:
         """The things where they are, as if they stood from `time` on."""
-        times = np.array([time, time + 1.0])
-        return Moving(tuple(thing.track(times, np.array([thing.place] * 2)) for thing in self._things.values()))
+        return _at_rest(self._things.values(), time)
 
     def advance(self, time: float, dt: float, leaves_alone: Callable[[Moving, float], bool]) -> Moving:
         """Go on by `dt` seconds from `time`; how the things move meanwhile.
@@ -171,18 +191,22 @@ class Loose:
         """
         tracks, times = [], np.array([time, time + dt])
         for number, thing in self._things.items():
-            velocity, here = self._wanted(number, thing, dt), np.array(thing.place)
-            if not (thing.moves or velocity.any()):
-                tracks.append(thing.track(times, np.array([here, here])))
-                continue
-            way = dt * float(np.hypot(*velocity))
-            for share in (*_SHARES, 0.0):
-                track = thing.track(times, np.array([here, here + share * dt * velocity]))
-                if share <= 0.0 or leaves_alone(Moving((track,)), share * way):
+            wanted, here = self._wanted(number, thing, dt), np.array(thing.place)
+            room = self._room(number, time + dt) if wanted.any() else None
+            for velocity in _slower(wanted):
+                track = thing.track(times, np.array([here, here + dt * velocity]))
+                way = dt * float(np.hypot(*velocity))
+                if room is None or way <= 0.0 or (room.lets(track) and leaves_alone(Moving((track,)), way)):
                     break
-            self._things[number] = replace(thing, center=track.centers[1].copy(), velocity=share * velocity)
+            if thing.moves or velocity.any():
+                self._things[number] = replace(thing, center=track.centers[1].copy(), velocity=velocity)
             tracks.append(track)
         return Moving(tuple(tracks))
+
+    def _room(self, number: int, time: float) -> ThingRoom:
+        """What a thing must not enter."""
+        others = {other: thing for other, thing in self._things.items() if other != number}
+        return ThingRoom(self.scene().obstacles, _at_rest(others.values(), time), time)
 
     def foreseen(self, now: float, time: float, clear: Callable[[Moving], bool]) -> Moving:
         """Where the things will be, as far as their motion `now` tells: on for a while, then they stand.
