@@ -14,6 +14,8 @@ from elbowroom.control.recording import Recorder, Recording
 from elbowroom.control.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.server.pose_frame import parse
+from elbowroom.server.run_frames import posed_frames
 from elbowroom.world.moving_format import MAX_KEYS
 from elbowroom.world.scene import Scene
 
@@ -136,3 +138,36 @@ def test_a_push_is_recorded_played_again_bit_for_bit_and_told_as_a_track(tmp_pat
     few = Scene.from_dict(told(scene).to_dict()).obstacles.moving.tracks[-1]
     assert len(few.times) < MAX_KEYS
     assert few.poses(times)[0] == pytest.approx(centers, abs=5e-3)
+
+
+def test_a_run_that_began_anew_after_a_push_is_told_as_one_scene_as_it_was(tmp_path: Path) -> None:
+    fan = {"type": "box", "name": "fan", "size": [0.3, 1.0, 0.3], "repeat": "loop"}
+    quarter = [{"center": [3.0 + k, 0.5, 3.0], "yaw": 1.5 * k, "seconds": 0.31} for k in (0, 1, 2)]
+    scene = Scene.of("anew", THINGS, finish=(0.0, 6.0), moving=[{**fan, "track": quarter}])
+    walker, path, shown = Controller(Humanoid.default(), scene), tmp_path / "anew.elbow", []
+    with Recorder(path, walker) as recorder:
+        for step in range(200):
+            anew = step in (90, 150)
+            if anew:
+                walker.reset()
+            if step in (20, 100):
+                walker.push(step // 100, (0.4, 2.0))
+            command = Command(forward=1.0)
+            frame = walker.step(command, STEP)
+            recorder.append(command, STEP, frame, restart=anew)
+            shown.append((walker.surroundings.obstacles.moving.poses(frame.time), dict(walker.things), frame))
+    recording = Recording(path)
+    told_scene, clock = recording.scene(), recording.clock(recording.steps())
+    moving = told_scene.obstacles.moving
+    assert moving.names == ("fan", "crate", "column")
+    centers, yaws = moving.poses(clock.ends)
+    for step, ((around, turned), things, _) in enumerate(shown):
+        assert centers[step, 0] == pytest.approx(around[0, 0], abs=1e-6)
+        assert np.cos(yaws[step, 0] - turned[0, 0]) == pytest.approx(1.0, abs=1e-9)
+        for number in (0, 1):
+            place = things[number].center if number in things else scene.obstacles.centers[number]
+            assert centers[step, 1 + number] == pytest.approx(place, abs=1e-6)
+    frames = [parse(frame) for frame in posed_frames(recording, Humanoid.default())]
+    assert [one.clearance for one in frames] == pytest.approx([frame.clearance for *_, frame in shown], abs=1e-5)
+    assert Scene.from_dict(told(told_scene).to_dict()).obstacles.moving.names == moving.names
+    assert replay(recording, Humanoid.default()).identical

@@ -8,9 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.control.controller import Controller
-from elbowroom.control.loose import Thing, scene_without, thing_of
-from elbowroom.errors import InputError
-from elbowroom.world.limits import FARTHEST
 from elbowroom.world.moving_format import MAX_KEYS
 from elbowroom.world.obstacles.moving import Moving, Track
 from elbowroom.world.scene import Scene
@@ -43,6 +40,7 @@ class ThingLog:
     def note(self, step: int) -> None:
         """What is new after this step."""
         hand = self._controller.hand
+        self._last = {number: told for number, told in self._last.items() if number in self._controller.things}
         for number, thing in self._controller.things.items():
             held = hand is not None and hand.number == number
             told = (held, hand.place if held and hand is not None else thing.place, thing.place)
@@ -71,43 +69,6 @@ def same_places(controller: Controller, rows: Iterable[Any]) -> bool:
     things = controller.things
     found = ((things.get(int(row["number"])), row["at"]) for row in rows)
     return all(thing is not None and thing.place == (float(at[0]), float(at[1])) for thing, at in found)
-
-
-def walked_scene(scene: Scene, steps: NDArray[np.void], things: Things, restart: int) -> Scene:
-    """The scene of a run as it was: what was pushed moves as it did. `restart` is the flag of steps that begin anew.
-
-    Raises `InputError` where a run began anew after something was pushed: such a scene has no single time.
-    """
-    if not len(things):
-        return scene
-    anew = np.flatnonzero((steps["flags"] & restart) != 0)
-    first = int(anew[-1]) if len(anew) else 0
-    if first > things["step"].min():
-        raise InputError(f"scene {scene.name}: the walk began anew after something was pushed: it has no single scene")
-    if things["step"].max() >= len(steps) or not (np.abs(things["at"]) <= FARTHEST).all():
-        raise InputError(f"scene {scene.name}: what was pushed is told of steps that are missing, or beyond the world")
-    clock = np.concatenate([[0.0], np.cumsum(np.where(np.arange(len(steps)) >= first, steps["dt"], 0.0))])
-    numbers = np.unique(things["number"]).tolist()
-    tracks = [_track(thing_of(scene, number), clock, things[things["number"] == number]) for number in numbers]
-    still = scene_without(scene, frozenset(numbers))
-    moving = still.obstacles.moving + Moving(tuple(tracks))
-    return replace(still, obstacles=replace(still.obstacles, moving=moving))
-
-
-def _track(thing: Thing, clock: Floats, rows: Things) -> Track:
-    """Its way, by the clock (N+1,) before and after each step."""
-    times, places = [0.0], [thing.place]
-    for row in rows:
-        begin, end = float(clock[row["step"]]), float(clock[row["step"] + 1])
-        if begin > times[-1]:
-            times.append(begin)
-            places.append(places[-1])
-        if end > times[-1]:
-            times.append(end)
-            places.append((float(row["at"][0]), float(row["at"][1])))
-    if len(times) == 1:
-        times, places = [0.0, 1.0], places * 2
-    return thing.track(np.array(times), np.array(places))
 
 
 def told(scene: Scene) -> Scene:

@@ -32,8 +32,9 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
-from elbowroom.control.recorded_things import THING, ThingLog, Things, walked_scene
+from elbowroom.control.recorded_things import THING, ThingLog, Things
 from elbowroom.control.settings import ControlSettings
+from elbowroom.control.walked_scene import SceneClock, walked_scene
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -299,8 +300,12 @@ class Recording:
 
     def scene(self) -> Scene:
         """The scene as it was while this was recorded: what was pushed moves as it did then; raises `InputError`."""
-        scene = Scene.from_dict(self.header.scene, str(self.path))
-        return walked_scene(scene, self.steps(), self.things, RESTART)
+        scene, clock = Scene.from_dict(self.header.scene, str(self.path)), self.clock(self.steps())
+        return walked_scene(scene, clock, self.things)
+
+    def clock(self, steps: Steps) -> SceneClock:
+        """The time of `scene` at all steps, which were read just before."""
+        return SceneClock.of(np.asarray(steps["dt"], np.float64), (steps["flags"] & RESTART) != 0, self.things)
 
 
 def _stored(width: int, root: int) -> np.dtype[np.void]:

@@ -25,6 +25,7 @@ class ShownFrames:
     q: Floats  # (N, DOF) see `body.dof`
     roots: Floats  # (N, ROOT_STATE) see `body.root`
     jumps: NDArray[np.bool_]  # (N,) the frame does not follow from the one before it
+    clock: Floats  # (N,) the scene's own time
 
     @classmethod
     def of(cls, recording: Recording) -> "ShownFrames":
@@ -40,19 +41,12 @@ class ShownFrames:
         if not good.all():
             frame = int(np.argmin(good))
             raise InputError(f"{recording.path}: frame {frame} is damaged: a pose or a time step is out of range")
-        return cls(np.cumsum(dt), q, roots, (steps["flags"] & RESTART) != 0)
+        return cls(np.cumsum(dt), q, roots, (steps["flags"] & RESTART) != 0, recording.clock(steps).ends)
 
     @property
     def duration(self) -> float:
         """Seconds from the first frame to the last."""
         return float(self.times[-1] - self.times[0])
-
-    @property
-    def clock(self) -> Floats:
-        """The scene's own time (N,): it begins anew with a restart."""
-        before = np.concatenate([[0.0], self.times[:-1]])
-        clock: Floats = self.times - np.maximum.accumulate(np.where(self.jumps, before, 0.0))
-        return clock
 
     def at_rate(self, fps: float) -> tuple[Ints, Ints, Floats]:
         """`even_moments` of these frames."""

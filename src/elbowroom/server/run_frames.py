@@ -93,11 +93,10 @@ def _frames(told: _Told, humanoid: Humanoid, scene: Scene) -> list[bytes]:
     last = np.append(np.diff(shown.times) > 0.0, True)
     size = pose_frame.HEAD_SIZE + 16 * len(humanoid.skeleton.names) + 24 * len(humanoid.capsules.names)
     sparsely = max(1, -(-int(last.sum()) * size // MAX_BYTES))
-    started = np.maximum.accumulate(np.where(shown.jumps, shown.times, shown.times[0]))
     epochs, passed = np.cumsum(shown.jumps), _passed(shown, scene)
     frames: list[bytes] = []
     for i in np.flatnonzero(last)[::sparsely].tolist():
-        q, root, sim_time = shown.q[i], shown.roots[i], float(shown.times[i] - started[i])
+        q, root, sim_time = shown.q[i], shown.roots[i], float(shown.clock[i])
         posed = poser.node_pose(q, root)
         frames.append(
             pose_frame.pack(

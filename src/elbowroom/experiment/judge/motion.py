@@ -64,9 +64,8 @@ class ShownMotion:
         _check(recording.path, q.reshape(-1, DOF), roots.reshape(-1, ROOT_STATE), dt)
         jumps = (steps["flags"] & RESTART) != 0
         jumps[0] = True
-        times = np.cumsum(dt)
-        before = np.maximum.accumulate(np.where(jumps, times - dt, 0.0))  # the scene's time begins anew with a restart
-        return cls(times, q, roots, jumps, (steps["flags"] & ASSIST) != 0, times - before)
+        assisted, clock = (steps["flags"] & ASSIST) != 0, recording.clock(steps).ends
+        return cls(np.cumsum(dt), q, roots, jumps, assisted, clock)
 
     def moments(self, rate: float) -> Moments:
         """Every frame, and as many even steps between neighbours as make at least `rate` poses a second.
