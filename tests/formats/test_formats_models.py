@@ -1,5 +1,6 @@
 """Models of any format become one glTF: recognised by content, files beside them bounded, damage told in one line."""
 
+import contextlib
 from pathlib import Path
 
 import numpy as np
@@ -112,6 +113,16 @@ def test_what_is_damaged_or_unknown_is_told_in_one_line(name: str, data: bytes) 
         parse_model(data, name)
     assert str(told.value).startswith(name)
     assert "\n" not in str(told.value)
+
+
+def test_what_the_library_thinks_of_a_damaged_file_is_not_printed(capfd: pytest.CaptureFixture[str]) -> None:
+    box = bytes(trimesh.creation.box().export(file_type="stl"))
+    with pytest.raises(InputError):
+        parse_model(b"solid " + box[6:80] + b"\xff\xff\xff\x7f" + box[84:], "cut.stl")
+    wide = "solid a\nfacet normal 0 0 0\nouter loop\n" + "vertex 1e300 0 -1e300\n" * 3 + "endloop\nendfacet\nendsolid a"
+    with contextlib.suppress(InputError):
+        parse_model(wide.encode(), "wide.stl")
+    assert capfd.readouterr() == ("", "")
 
 
 def test_a_file_that_is_too_large_is_refused_unread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -114,11 +114,19 @@ def _is_number(value: object) -> bool:
 
 
 def parse_json(text: bytes, name: str) -> dict[str, Any]:
-    """A JSON object from untrusted bytes; `name` stands for the file in messages. Raises `InputError`."""
+    """A JSON object from untrusted bytes; `name` stands for the file in messages. Raises `InputError`.
+
+    Its numbers are finite, and a member that is null is none: so whoever passes it on can count on both.
+    """
     if len(text) > _MAX_JSON_BYTES:
         raise InputError(f"{name}: the JSON part has {len(text) >> 20} MB: at most {_MAX_JSON_BYTES >> 20} MB are read")
     try:
-        value = json.loads(text.decode("utf-8-sig").rstrip("\x00 \t\r\n"), parse_constant=_not_a_number)
+        value = json.loads(
+            text.decode("utf-8-sig").rstrip("\x00 \t\r\n"),
+            object_pairs_hook=_present,
+            parse_float=_finite,
+            parse_constant=_not_a_number,
+        )
     except RecursionError:
         raise InputError(f"{name}: the JSON part is nested too deeply") from None
     except ValueError as error:
@@ -149,6 +157,17 @@ def _fault(text: bytes, error: ValueError) -> str:
 
 class _NoNumberError(ValueError):
     """A word that stands for no number in JSON."""
+
+
+def _present(members: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {name: value for name, value in members if value is not None}
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise _NoNumberError(f"{digits[:20]} is too large a number")
+    return number
 
 
 def _not_a_number(word: str) -> NoReturn:

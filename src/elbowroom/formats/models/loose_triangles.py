@@ -1,8 +1,14 @@
 """OBJ, STL and PLY as glTF, read by trimesh: formats that know neither a unit nor which way is up."""
 
 import io
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import Gltf, parse_gltf
@@ -19,15 +25,30 @@ def parse_loose_triangles(data: bytes, kind: ModelKind, name: str, folder: Path 
     options: dict[str, Any] = {"split_objects": True, "split_groups": True} if kind is ModelKind.OBJ else {}
     load: Any = trimesh.load_scene  # which takes whatever can be asked for files as `beside` can
     try:
-        scene = load(io.BytesIO(data), file_type=kind.name.lower(), resolver=beside, process=False, **options)
-        if not any(len(getattr(mesh, "faces", ())) for mesh in scene.geometry.values()):
-            raise InputError(f"{name}: there are no triangles in this {kind.value} file")
-        glb = scene.export(file_type="glb")
+        with _silent():
+            scene = load(io.BytesIO(data), file_type=kind.name.lower(), resolver=beside, process=False, **options)
+            if not any(len(getattr(mesh, "faces", ())) for mesh in scene.geometry.values()):
+                raise InputError(f"{name}: there are no triangles in this {kind.value} file")
+            glb = scene.export(file_type="glb")
     except InputError:
         raise
     except Exception as error:  # whatever the library raises, the file is not what it should be
         raise InputError(f"{name}: is no {kind.value} file that can be read ({_in_short(error)})") from None
     return parse_gltf(glb, name), tuple(beside.missing)
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Whatever the library thinks of a damaged file is told by us, in one line."""
+    log = logging.getLogger("trimesh")
+    before = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        log.setLevel(before)
 
 
 def _in_short(error: Exception) -> str:

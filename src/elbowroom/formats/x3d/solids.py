@@ -67,8 +67,9 @@ def _stretched(mesh: Mesh, scale: Floats) -> Mesh:
     """The mesh scaled along the axes; normals turn the other way."""
     if mesh.normals is None:
         return replace(mesh, points=mesh.points * scale)
-    normals = mesh.normals / scale
-    unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    with np.errstate(all="ignore"):  # a scale may be next to nothing
+        normals = mesh.normals / scale
+        unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     return replace(mesh, points=mesh.points * scale, normals=unit)
 
 

@@ -1,12 +1,12 @@
 """What a viewer shows of a place: a GLB in the scene's own metres and axes, its ground at height 0."""
 
-import json
 import re
 import struct
 from typing import Any
 
 import numpy as np
 
+from elbowroom.formats.fields import parse_json
 from elbowroom.formats.packing import pack_glb, write_glb
 from elbowroom.world.places.place import Place
 
@@ -24,9 +24,10 @@ _TINTS = (
 
 def shown_glb(place: Place, ground: float) -> bytes:
     """The GLB of a place without what is dropped; raises `InputError` for references to files elsewhere."""
+    place.model.gltf.root.at("materials").items()  # a list: some are added to it below
     packed = pack_glb(place.model.gltf)
     (length,) = struct.unpack_from("<I", packed, 12)
-    content = json.loads(packed[_HEAD : _HEAD + length])
+    content = parse_json(packed[_HEAD : _HEAD + length], place.name)
     binary = packed[_HEAD + length + 8 :]
     nodes = content["nodes"]
     for node in place.dropped:
@@ -56,7 +57,7 @@ def _paint(content: dict[str, Any]) -> None:
             bare.setdefault(node["mesh"], re.split(r"[\d_.:-]", node.get("name", ""), maxsplit=1)[0])
     kinds: dict[str, int] = {}
     for mesh, name in bare.items():
-        for primitive in content["meshes"][mesh]["primitives"]:
+        for primitive in content["meshes"][mesh].get("primitives", ()):
             if "material" not in primitive:
                 if name not in kinds:
                     kinds[name] = len(content.setdefault("materials", []))
