@@ -167,7 +167,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         ("elbowroom", f"{facts['elbowroom']} on Python {facts['python']}, {facts['system']}"),
         ("packages", ", ".join(f"{name} {found or 'MISSING'}" for name, found in facts["packages"].items())),
         ("processor", f"{processor['name']}, {processor['cores']} cores, vectors of {processor['vector_bits']} bits"),
-        ("kernels", f"{kernels['kept']} of {kernels['known']} compiled and kept in {', '.join(kernels['folders'])}"),
+        ("kernels", f"{kernels['kept']} of {kernels['known']} compiled and kept in {_where(kernels['folders'])}"),
         ("page", f"built, {client['megabytes']} MB" if client["built"] else "not built"),
         ("wheel", f"{wheel['file'] or 'packed from here'}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})"),
         *_session_rows(facts.get("session")),
@@ -176,6 +176,13 @@ def _as_text(facts: dict[str, Any]) -> str:
         *(("fault", fault) for fault in facts["faults"]),
     ]
     return "\n".join(f"{name:<10} {text}" for name, text in rows)
+
+
+def _where(folders: list[str]) -> str:
+    """Folders as one would tell them: numba keeps the kernels of each source in one of its own."""
+    if len(folders) < 2:
+        return folders[0] if folders else "no place: none can be written to"
+    return f"{len(folders)} folders of {os.path.commonpath(folders)}"
 
 
 def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:

@@ -76,11 +76,21 @@ async def _end(process: asyncio.subprocess.Process) -> None:
     assert process.stdin is not None
     assert process.stdout is not None
     with contextlib.suppress(ProcessLookupError):
-        process.kill()
+        _kill(process)
     process.stdin.close()
     while await process.stdout.read(_CHUNK):
         pass
     await process.wait()
+
+
+def _kill(process: asyncio.subprocess.Process) -> None:
+    """As `Process.kill`, which up to Python 3.12 asks first how the process ended, and so may take the answer from
+    asyncio's own watcher: that then warns of an unknown child.
+    """
+    if sys.platform == "win32":
+        process.kill()
+    elif process.returncode is None:
+        os.kill(process.pid, signal.SIGKILL)
 
 
 def _made(answer: bytes, code: int, name: str, bounds: Bounds) -> Any:
