@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.errors import InputError
+from elbowroom.world.places import columns as cutting
 from elbowroom.world.places.columns import columns_of
 from elbowroom.world.places.inspection import facts_of
 from elbowroom.world.places.options import PlaceOptions
@@ -141,6 +142,29 @@ def test_columns_are_where_points_of_the_triangles_lie(seed: int) -> None:
     least, most = found.bounds
     assert columns.low.min() >= least[1] - 0.011
     assert columns.high.max() <= most[1] + 0.011
+
+
+def test_copies_of_a_thing_in_one_place_are_looked_over_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    floor, table = TWO_ROOMS["Floor"], TWO_ROOMS["Table"]
+    once, often = (place({"Floor": floor} | {f"Table {i}": table for i in range(copies)}) for copies in (1, 500))
+    looked: list[int] = []
+    real = cutting.surface_keys
+
+    def noted(triangles: cutting.Floats, cell: float, shape: tuple[int, int]) -> cutting.Ints | None:
+        looked.append(len(triangles))
+        return real(triangles, cell, shape)
+
+    monkeypatch.setattr(cutting, "surface_keys", noted)
+    few, many = columns_of(once), columns_of(often)
+    assert looked == [24, 24]
+    np.testing.assert_array_equal(few.cells, many.cells)
+    np.testing.assert_array_equal(few.high, many.high)
+
+
+def test_too_much_surface_is_refused_soon() -> None:
+    layers = np.tile(np.array([[[0.0, 0.0, 0.0], [600.0, 0.0, 0.0], [0.0, 0.0, 600.0]]]), (400, 1, 1))
+    layers[:, :, 1] = np.arange(400)[:, None]
+    assert cutting.surface_keys(layers, 1.0, (600, 600), most=1_000_000) is None
 
 
 def test_floors_are_found_with_what_can_be_walked_on() -> None:

@@ -55,12 +55,13 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
     shape = (int(wide / cell) + 1, int(deep / cell) + 1)
     standing = [part for part in place.parts if part.stands]
     triangles = np.concatenate([np.empty((0, 3, 3)), *(part.vertices[part.faces] for part in standing)])
+    triangles = np.unique(triangles.reshape(-1, 9), axis=0).reshape(-1, 3, 3)  # copies of a thing in one place are one
     found, count = [np.empty(0, np.int64)], 0
     for start in range(0, len(triangles), _AT_ONCE):
         progress(start / len(triangles))
         keys = surface_keys(triangles[start : start + _AT_ONCE] - least, cell, shape)
-        count += len(keys)
-        if count > _MOST_SURFACES:
+        count += _MOST_SURFACES + 1 if keys is None else len(keys)
+        if keys is None or count > _MOST_SURFACES:
             raise InputError(f"{place.name}: has too much surface to be looked over; is its unit right (--scale)?")
         found.append(keys)
     keys = np.unique(np.concatenate(found))
@@ -77,21 +78,29 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
     )
 
 
-def surface_keys(triangles: Floats, cell: float, shape: tuple[int, int]) -> Ints:
-    """What triangles (T, 3, 3) put over cells, each as one number: cell, lowest step, steps above it, whether level."""
+def surface_keys(triangles: Floats, cell: float, shape: tuple[int, int], most: int = _MOST_SURFACES) -> Ints | None:
+    """What triangles (T, 3, 3) put over cells, each as one number: cell, lowest step, steps above it, whether level.
+
+    None if they put more than `most` there.
+    """
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.sqrt(np.einsum("ti,ti->t", normals, normals))
     level = (np.abs(normals[:, 1]) >= _LEVEL * size) & (size > 0.0)
     scale = np.array([cell, _STEP, cell])
-    count = _fill(triangles / scale, level, *shape, np.empty(0, np.int64))
+    count = _fill(triangles / scale, level, *shape, most, np.empty(0, np.int64))
+    if count > most:
+        return None
     out = np.empty(count, np.int64)
-    _fill(triangles / scale, level, *shape, out)
+    _fill(triangles / scale, level, *shape, most, out)
     return np.unique(out)
 
 
 @exact_kernel
-def _fill(triangles: Floats, level: Flags, width: int, depth: int, out: Ints) -> int:
-    """Write the numbers of `surface_keys` for triangles in cells and steps, as far as `out` holds; how many."""
+def _fill(triangles: Floats, level: Flags, width: int, depth: int, most: int, out: Ints) -> int:
+    """Write the numbers of `surface_keys` for triangles in cells and steps, as far as `out` holds; how many.
+
+    It ends soon after `most`.
+    """
     count = 0
     strip, piece, part = np.empty((9, 3)), np.empty((9, 3)), np.empty((9, 3))
     for t in range(len(triangles)):
@@ -111,6 +120,8 @@ def _fill(triangles: Floats, level: Flags, width: int, depth: int, out: Ints) ->
                 if count < len(out):
                     out[count] = _number(piece[:left, 1], ix * depth + iz, level[t])
                 count += 1
+            if count > most:
+                return count
     return count
 
 
