@@ -4,7 +4,15 @@ from numpy.typing import NDArray
 
 from elbowroom.body import kinematics
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
-from elbowroom.body.gait import STANDARD_LEG, foot_poses, hips_sinks, phase_rate, quickness, stride_length
+from elbowroom.body.gait import (
+    STANDARD_LEG,
+    feet_standing,
+    foot_poses,
+    hips_sinks,
+    phase_rate,
+    quickness,
+    stride_length,
+)
 from elbowroom.body.kinematics import BodyModel, body_model
 from elbowroom.body.legs import leg_rotations
 from elbowroom.body.proportions import proportional_humanoid
@@ -57,7 +65,7 @@ def legs(model: BodyModel, roots: Floats, lowering: float = 0.0) -> Floats:
 
 
 def sole_points(height: float, roots: Floats, lowering: float = 0.0) -> tuple[BodyModel, Floats]:
-    """World places (n, 2, 3, 3) of heel, ball and toe tip of both feet, by forward kinematics."""
+    """World places (n, 2, 3, 3) of heel, sole under the toes' joint and toe tip of both feet, by forward kinematics."""
     humanoid = proportional_humanoid(height)
     model, skeleton = body_model(humanoid), humanoid.skeleton
     out = np.empty((len(roots), 2, 3, 3))
@@ -67,9 +75,9 @@ def sole_points(height: float, roots: Floats, lowering: float = 0.0) -> tuple[Bo
     places, turns = joint_frames(skeleton, local, hips, roots)
     for i, side in enumerate(("left", "right")):
         foot, toes = skeleton.index(f"{side}Foot"), skeleton.index(f"{side}Toes")
-        ankle, (ball, heel) = float(skeleton.positions[foot, 1]), model.gait.legs[i, 6:8]
+        ankle, above, heel = skeleton.positions[foot, 1], skeleton.positions[toes, 1], model.gait.legs[i, 7]
         out[:, i, 0] = places[:, foot] + quaternion.rotate(turns[:, foot], [0.0, -ankle, -heel])
-        out[:, i, 1] = places[:, foot] + quaternion.rotate(turns[:, foot], [0.0, -ankle, ball])
+        out[:, i, 1] = places[:, toes] + quaternion.rotate(turns[:, toes], [0.0, -above, 0.0])
         out[:, i, 2] = out[:, i, 1] + quaternion.rotate(turns[:, toes], [0.0, 0.0, 0.035 * height])
     return model, out
 
@@ -81,20 +89,13 @@ def test_the_standing_foot_stands_still_on_the_ground(motion: tuple[float, float
     model, soles = sole_points(height, roots)
     feet, _ = foot_poses(model.gait.legs, model.gait.scale, roots)
     assert soles[..., 1].min() > -0.01
-    cycle = np.mod(roots[:, 6, None] + np.array([0.0, 0.5]), 1.0)
-    stride = (
-        np.hypot(motion[0], motion[1])
-        / (quickness(height / 1.72) * phase_rate(*motion))
-        / model.gait.legs[0, 8:10].sum()
-    )
-    on_ground = 0.93 * min(0.62, 1.02 / max(stride, 0.1))  # at least this part of the cycle
+    standing = feet_standing(model.gait.scale, roots)
     for side in range(2):
-        starts = np.flatnonzero(np.diff(cycle[:, side]) < 0.0) + 1
-        for start in starts:
-            stance = start + np.flatnonzero(cycle[start : start + 100, side] < on_ground)
+        changes = np.flatnonzero(np.diff(standing[:, side])) + 1
+        for stance in np.split(np.arange(len(roots)), changes):
             pitch = feet[stance, side, 4]
             for point, carries in ((0, pitch <= 0.0), (1, pitch >= 0.0)):
-                held = soles[stance[carries], side, point]
+                held = soles[stance[carries & standing[stance, side]], side, point]
                 if len(held):
                     assert np.ptp(held[:, [0, 2]], axis=0).max() < 0.01
                     assert abs(held[:, 1]).max() < 0.01
@@ -204,8 +205,9 @@ def test_crouching_legs_keep_to_the_range_of_their_joints(motion: tuple[float, f
         thigh, shin = rotations[:, :, 0], rotations[:, :, 1]
         feet, _ = foot_poses(model.gait.legs, model.gait.scale, roots)
         flat = np.abs(feet[..., 4]) < np.deg2rad(5.0)
-        lean = quaternion.rotate(quaternion.multiply(thigh, shin), [0.0, 1.0, 0.0])[flat]
-        assert np.arccos(lean[:, 1]).max() < np.deg2rad(58.0)
+        lean = quaternion.rotate(quaternion.multiply(thigh, shin), [0.0, 1.0, 0.0])
+        bent = np.arccos(lean[..., 1]) - feet[..., 4]
+        assert bent[flat].max() < np.deg2rad(64.0 if motion[0] > 2.0 else 58.0)  # a run's stance reaches farther back
 
 
 def test_going_down_is_smooth() -> None:

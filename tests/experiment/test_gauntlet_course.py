@@ -23,15 +23,15 @@ from odd_bodies import Body, box_body, ring_body
 PINNED = {
     (1, 0): "af0881faaef583ae4d54bc355d8b4fa06b9cfb07c45ad007aa6f6aed2bb02512",
     (2, 7): "9da3c271133133310a6680e2c69d9806cf9012f929fe08b078c5921a61523c40",
-    (3, 1): "d01bf1813e2154b1fdc1844a69e8a1a5985d8cdaf8c34dae1572f0894efa03b0",
-    (4, 3): "d2ead42e9084d71a4d67cd10f56520877e2e59223e8386b4e9ebf77fc3dfc0b6",
+    (3, 1): "b421ffab473b3749b51c9105e16692e22a3ee7c431294b8430db66f81c8e813e",
+    (4, 3): "632e4606dcfae32f50e6733d9294eae33f63d71104c984e32dd31fcdaaa7a155",
     (5, 2): "a1c70a367da16fa691643fdca9fffe0b1672dde566c28b43026f7de6bad2a94c",
 }
 # The stock avatar: these change with its collision body too.
 PINNED_STOCK = {
-    (1, 0): "622eb4a145b0419dbf2a90630839477528cdce9be439a9ee84837ad03a92c4ce",
-    (3, 1): "bc0e80f92a6f1aefcecc1ba4230551913b85ec622c951c56311304ae8e9f7a32",
-    (5, 2): "e70c7a74a6d4849a533f7fee20da4f6994aeaea1da32bd4f5124ac15203f7a84",
+    (1, 0): "7d54775665ca72f32b6899c04a0dbbb414921e6313167e664faf6d324751fdd4",
+    (3, 1): "415cb5bde3414061ce66ac537e8e797a5f2247706a918aa257d94ebba4e8ef9a",
+    (5, 2): "20b0aeec9a086b01ad5498e61e5ffcc86d963054bbc1774b446cefb6db21789d",
 }
 
 

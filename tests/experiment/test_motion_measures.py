@@ -59,11 +59,14 @@ def test_a_foot_that_rolls_from_heel_to_toe_does_not_slide() -> None:
     assert slides(points, np.ones(60, np.bool_))[0] < 2e-4
 
 
-def test_a_foot_stands_by_its_looks_from_its_rest_until_it_is_lifted() -> None:
-    x = np.concatenate([np.linspace(-0.5, 0.0, 20), np.zeros(20), np.linspace(0.02, 0.5, 20)])
-    height = np.concatenate([np.full(20, 0.002), np.zeros(25), np.full(15, 0.05)])
-    standing = standing_by_looks(foot(x, height), RATE)
+def test_a_foot_stands_by_its_looks_from_its_first_rest_to_its_last() -> None:
+    slip = np.linspace(0.0, 0.02, 6)
+    x = np.concatenate([np.linspace(-0.5, 0.0, 20), np.zeros(10), slip, np.full(10, 0.02), np.linspace(0.04, 0.5, 14)])
+    height = np.concatenate([np.full(20, 0.002), np.zeros(30), np.full(10, 0.05)])
+    sole = foot(x, height)
+    standing = standing_by_looks(sole, RATE)
     assert list(stretches(standing)) == [slice(19, 45)]
+    assert slides(sole, standing) == pytest.approx([0.02])
     assert not standing_by_looks(foot(x, height + 0.006), RATE).any()
 
 

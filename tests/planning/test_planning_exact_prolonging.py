@@ -128,7 +128,7 @@ def hurried(query: MotionQuery) -> MotionQuery:
 
 @pytest.mark.parametrize("otherwise", [moved_arm, faster_arm, aside, late, turned, hurried])
 def test_who_is_elsewhere_or_wants_something_else_is_planned_for_anew(otherwise, humanoid: Humanoid) -> None:  # type: ignore[no-untyped-def]
-    scene = Scene.load("c")
+    scene = Scene.load("b")
     planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
 
     def query_under_way() -> MotionQuery:

@@ -8,15 +8,18 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, colu
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.planning.exact.lattice.tangents import smooth_tangents
 from elbowroom.planning.exact.sweep.motion_bounds import configurations_at
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts, parts_of
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.halving import ENOUGH
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath
+from elbowroom.world.ground.ground import PLAIN
+from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 T, LOOKS, FAR = 0.15, 2000, 99  # seconds, of a key interval; in it; so many key intervals ahead
@@ -28,6 +31,8 @@ HUMANOID = proportional_humanoid(1.72)
 MODEL = body_model(HUMANOID)
 PAIRS = self_pairs(MODEL)
 PARTS = own_parts(MODEL, PAIRS, body_levers(HUMANOID))
+ON_PLANE = Footing(MODEL, PLAIN)
+ARMS = np.r_[columns_of(DofGroup.LEFT_ARM), columns_of(DofGroup.RIGHT_ARM)]
 WAIST = SEARCH_ORDER.index(DofGroup.WAIST)
 
 
@@ -50,11 +55,12 @@ def swung(seed: int, horizon: int = 12) -> tuple[RootPath, Floats, Floats]:
     return path, keys, np.concatenate(rates, axis=1)
 
 
-def looked_at(path: RootPath, keys: Floats, rates: Floats, k: int) -> Floats:
+def looked_at(path: RootPath, keys: Floats, rates: Floats, k: int, footing: Footing = ON_PLANE) -> Floats:
     """The least gap of each group at many moments of a key interval."""
     shares = np.linspace(0.0, 1.0, LOOKS)
     shown = configurations_at((keys[k], rates[k], keys[k + 1], rates[k + 1]), T, shares)
-    gaps: Floats = self_clearances(MODEL, PAIRS, path.sample((k + shares) * T), shown).min(axis=1)
+    roots, _ = footing.stood(path.sample((k + shares) * T))
+    gaps: Floats = self_clearances(MODEL, PAIRS, roots, shown).min(axis=1)
     return gaps
 
 
@@ -74,6 +80,27 @@ def test_what_is_proven_is_so_at_every_moment_and_no_contact_is_made_up(wild: fl
             near += 0.0 < each.min() < 0.02
     assert min(touching, near) > 5
     assert free > 5 or wild
+
+
+def test_legs_are_where_the_ground_has_them_at_every_moment() -> None:
+    treads = [{"type": "box", "center": [0.0, 0.1 * n, 0.3 * n], "size": [3.0, 0.2 * n, 0.3]} for n in range(1, 9)]
+    footing = Footing(MODEL, Scene.of("stair", treads, finish=(0.0, 3.0)).ground)
+    high = touching = 0
+    for seed in range(4):
+        path, keys, _ = swung(seed)
+        states = np.pad(path.states, ((0, 0), (0, ROOT_STATE - 7)))
+        states[:, HEIGHT] = 0.2 / 0.3 * states[:, 1]
+        path = RootPath(0.0, T, footing.stood(states)[0])
+        keys[:, ARMS] = [-1.0, 0.0, 0.0, 0.3, -1.0, 0.0, 0.0, 0.3]
+        keys[:, columns_of(DofGroup.WAIST)] = [0.9, 0.0, 0.2]
+        gaps, groups = OwnMotion(PARTS, footing.underfoot).proven(path, keys, np.zeros_like(keys), keys + ASIDE)
+        for k in range(path.horizon):
+            each = looked_at(path, keys, np.zeros_like(keys), k, footing)
+            assert gaps[k] < ENOUGH or gaps[k] <= each.min() + ROUNDING
+            assert gaps[k] >= ENOUGH or each[groups[k]] < PROVABLE
+            touching += gaps[k] < ENOUGH
+            high += gaps[k] < looked_at(path, keys, np.zeros_like(keys), k).min() - 0.01
+    assert min(high, touching) > 5
 
 
 def test_far_ahead_no_less_is_asked_for() -> None:

@@ -12,7 +12,7 @@ Ints = NDArray[np.int64]
 
 # Degrees that thigh (forward), knee and toes of both legs are bent: standing, in mid-stride (left, right), crouching.
 _STANDING = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-_AHEAD, _BEHIND = (30.0, 12.0, 0.0), (-18.0, 35.0, 50.0)
+_AHEAD, _BEHIND = (30.0, 12.0, 25.0), (-18.0, 35.0, 62.0)
 _CROUCHING = ((55.0, 90.0, 0.0), (55.0, 90.0, 0.0))
 _POSES = (_STANDING, (_AHEAD, _BEHIND), (_BEHIND, _AHEAD), _CROUCHING)
 

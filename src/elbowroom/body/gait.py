@@ -1,12 +1,13 @@
 """A plain walking cycle tied to the root's motion: cadence, foot paths and the bob of the pelvis.
 
-The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included.
-The swing foot returns on a cubic that meets the stance foot's velocity at both ends. Everything is a function of the
-root state alone; with the speed every excursion goes to zero, so that a body at rest stands with its feet together.
-Only the hips are free to come lower than the walk has them: `hips_sinks`.
+The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included. It
+comes down on its heel, lies flat, and rolls over the joint of the toes, which stay where they are. The swing foot
+returns on a cubic that meets the stance foot's velocity at both ends. How the foot rolls and the hips go up and down is
+fitted so that the knee, which follows from both, goes through a stride as people's do (docs/motion.md). Everything is
+a function of the root state alone; with the speed every excursion goes to zero, so that a body at rest stands with its
+feet together. Only the hips are free to come lower than the walk has them: `hips_sinks`.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -20,8 +21,9 @@ Bools = NDArray[np.bool_]
 
 STANDARD_LEG = 0.491 * 1.72  # metres: thigh and shin of an average adult, see `proportions`
 
-# Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin.
-_HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN = 0, 3, 6, 7, 8, 9
+# Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin,
+# height of the toes' joint above the sole.
+_HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN, _TOES = 0, 3, 6, 7, 8, 9, 10
 
 _STATURE = 1.72  # metres, of the standard leg
 _CADENCE = 64.8 / 60.0  # strides/s at one stature per second
@@ -29,18 +31,27 @@ _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and str
 _PACE = 0.57  # power of a body's size by which its strides are quicker at the same speed
 _STILL = 1e-3  # m/s: below, the phase rests
 _LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
-_DUTY, _REACH = 0.62, 1.02  # stance fraction of the cycle; longest stance path in leg lengths, beyond it the body runs
-_HEEL_STRIKE, _TOE_OFF = math.radians(18.0), math.radians(42.0)  # foot pitch
-_LIFT = 0.05  # metres, of the swinging foot on a standard leg
-_MID_DROP = 0.4  # pelvis drop in mid-stance as a part of that in double support
+_DUTY, _DUTY_LOSS = 0.6425, 0.0353  # stance part of the cycle at standstill, and how much less per m/s (Kirtley 1985)
+_REACH = 1.4  # longest stance path in leg lengths, beyond it the body runs
+_STEP = 1.26  # metres, of a standard leg's stride at 1.1 m/s: the pitch of the foot and the bob are its
+_LONGEST = 1.25  # of that: what is longer lifts and pitches the foot no more
+_HEEL_STRIKE, _TOE_OFF = 0.292, 0.92  # radians of foot pitch
+_FLAT, _RISE = 0.16, 0.45  # of the stance: from when on the foot is flat, and its heel rises
+_ROLL, _ROLLING = 4.0, 0.5  # how late the heel rises, and how fast it still does so at toe-off
+_LIFT, _EARLY = 0.056, 0.6  # metres, of the swinging foot on a standard leg, and how much more of it comes early
+_ROUND = 0.0225  # how gently heel and ball change places in the swing
+_RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
+_BEHIND = 0.062  # metres that a standard leg's stance lies behind the hips
+_BOB, _LOWEST = 0.0292, 0.0132  # metres, of the hips' way up and down, and the phase at which they are lowest
+_BOB_ASIDE = 2.4  # metres, of the same in steps aside, for the square of how wide they are
 _SETBACK = 0.5  # how far lowered hips go back, against how far they go down; less, and the shins lean too far
-_STRETCH, _STRIDE_STRETCH = 0.999, 0.994  # how straight the longest leg of the cycle gets, standing and walking
+_STRETCH, _STRIDE_STRETCH = 0.999, 0.9981  # how straight the longest leg of the cycle gets, standing and walking
 
 
 class GaitShape(NamedTuple):
     """What the walking cycle needs of a body."""
 
-    legs: Floats  # (2, 10) left and right leg, metres
+    legs: Floats  # (2, 11) left and right leg, metres
     scale: float  # leg length / that of an average adult
     half_leg: float  # half the length of thigh and shin together, metres: the unit of the lowering
 
@@ -52,8 +63,9 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
     for side in ("left", "right"):
         hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
         thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
-        ball = at[f"{side}Toes"][2] - ankle[2] if skeleton.has(f"{side}Toes") else 0.15 * (thigh + shin)
-        rows.append([*hip, *ankle, max(float(ball), 0.01), 0.08 * (thigh + shin), thigh, shin])
+        leg, toes = thigh + shin, at.get(f"{side}Toes", ankle + np.array([0.0, -ankle[1], 0.18 * (thigh + shin)]))
+        ball, above = max(float(toes[2] - ankle[2]), 0.01), float(min(max(toes[1], 0.0), 0.5 * ankle[1]))
+        rows.append([*hip, *ankle, ball, 0.092 * leg, thigh, shin, above])
     legs = np.array(rows)
     leg = float((legs[:, _THIGH] + legs[:, _SHIN]).mean())
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
@@ -101,9 +113,10 @@ def stride_length(speed: float) -> float:
 
 
 @helper
-def _stance_part(stride: float, scale: float) -> float:
-    """The part of the cycle that a foot stands: less where strides of this length outgrow the legs."""
-    return float(_DUTY * (1.0 + (_DUTY / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
+def _stance_part(speed: float, stride: float, scale: float) -> float:
+    """The part of the cycle that a foot stands: less at speed, and where strides of this length outgrow the legs."""
+    duty = _DUTY - _DUTY_LOSS * speed / np.sqrt(scale)
+    return float(duty * (1.0 + (duty / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
 
 
 @helper
@@ -114,18 +127,27 @@ def _smooth(x: float) -> float:
 
 
 @helper
+def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
+    """Cubic from `a` to `b` over w in [0, 1]."""
+    rest = 1.0 - w
+    return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
+
+
+@helper
 def _pitch_ahead(u: float, duty: float) -> float:
-    """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off."""
-    strike, lift = -_HEEL_STRIKE, _TOE_OFF
+    """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off into the swing."""
     if u < duty:
-        return strike * (1.0 - _smooth(u / (0.2 * duty))) + lift * _smooth((u - 0.55 * duty) / (0.45 * duty))
-    return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
+        x = min(max((u / duty - _RISE) / (1.0 - _RISE), 0.0), 1.0)
+        rise = x**_ROLL * (1.0 + (_ROLL - _ROLLING) * (1.0 - x))
+        return float(_TOE_OFF * rise - _HEEL_STRIKE * (1.0 - _smooth(u / (_FLAT * duty))))
+    rolling = _TOE_OFF * _ROLLING / (duty * (1.0 - _RISE)) * (1.0 - duty)
+    return _hermite(_TOE_OFF, rolling, -_HEEL_STRIKE, 0.0, (u - duty) / (1.0 - duty))
 
 
 @helper
 def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
-    strike, lift = 0.5 * _TOE_OFF, -0.6 * _HEEL_STRIKE
+    strike, lift = 0.37, -0.19
     if u < duty:
         return strike * (1.0 - _smooth(u / (0.3 * duty))) + lift * _smooth((u - 0.7 * duty) / (0.3 * duty))
     return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
@@ -146,13 +168,6 @@ def _foot_on_ground(
     return px * np.cos(angle) - pz * np.sin(angle), px * np.sin(angle) + pz * np.cos(angle)
 
 
-@helper
-def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
-    """Cubic from `a` to `b` over w in [0, 1]."""
-    rest = 1.0 - w
-    return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
-
-
 class _Stride(NamedTuple):
     """What a root's velocities make of the cycle."""
 
@@ -162,7 +177,8 @@ class _Stride(NamedTuple):
     speed: float
     period: float  # seconds
     duty: float  # stance part of the cycle
-    ahead: float  # how long the stride is, 1.2 at most; negative: backward
+    ahead: float  # how long the stride is, 1.25 at most; negative: backward
+    aside: float  # a quarter of the way to the left in a stride, for a standard leg, metres
     effort: float  # 0 at rest, 1 for long strides
     scale: float
 
@@ -171,26 +187,25 @@ class _Stride(NamedTuple):
 def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Stride:
     period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
-    duty = _stance_part(speed * period, scale)
-    ahead = min(max(forward * period / (1.1 * scale), -1.2), 1.2)
+    duty = _stance_part(speed, speed * period, scale)
+    ahead = min(max(forward * period / (_STEP * scale), -_LONGEST), _LONGEST)
     travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
     effort = travel * travel / (0.5 + travel * travel)
-    return _Stride(forward, lateral, turn, speed, period, duty, ahead, effort, scale)
+    return _Stride(forward, lateral, turn, speed, period, duty, ahead, 0.25 * lateral * period / scale, effort, scale)
 
 
 @kernel
 def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
-    forward, lateral, turn, _, period, duty, ahead, effort, scale = stride
+    forward, lateral, turn, _, period, duty, ahead, aside, effort, scale = stride
     outward = 1.0 if side == 0 else -1.0
-    aside = lateral * period / (4.0 * scale)
     x0 = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0)) + outward * scale * (
         np.sqrt(aside * aside + 1e-4) - 1e-2
     )
     x0 += outward * 0.02 * scale * min(abs(turn) * period, 1.5)
-    z0 = legs[side, _ANKLE + 2] - 0.055 * scale * max(ahead, 0.0)
+    z0 = legs[side, _ANKLE + 2] - _BEHIND * scale * max(ahead, 0.0)
     half = 0.5 * duty * period
-    lift, fade = 0.0, 1.0
+    lift, gentle, relaxed = 0.0, 0.0, 0.0
     if u < duty:
         time = (u - 0.5 * duty) * period
         x, z = _foot_on_ground(x0, z0, time, forward, lateral, turn)
@@ -205,21 +220,25 @@ def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) 
         bump = 16.0 * (w * (1.0 - w)) ** 2
         sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
         x -= min(max(sag, -0.1 * scale), 0.1 * scale) * bump
-        lift = _LIFT * scale * effort * bump
-        fade = 1.0 - bump
+        lift = _LIFT * scale * effort * bump * (1.0 + _EARLY * (1.0 - 2.0 * w))
+        gentle, relaxed = _ROUND * ahead * ahead * bump, _RELAXED * bump
     if ahead >= 0.0:
         pitch = ahead * _pitch_ahead(u, duty)
     else:
         pitch = -ahead * _pitch_back(u, duty)
+    height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
+    sine, cosine = np.sin(pitch), np.cos(pitch)
+    size = np.sqrt(sine * sine + gentle)
+    toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
     pivot = legs[side, _BALL] if pitch > 0.0 else -legs[side, _HEEL]
-    height = legs[side, _ANKLE + 1]
-    along = pivot + height * np.sin(pitch) - pivot * np.cos(pitch)
+    along = height * sine - above * toes_down + pivot * (1.0 - cosine)
+    over_toes = above * (1.0 - cosine) if pitch > 0.0 else 0.0
     out[0] = x + along * np.sin(yaw)
-    out[1] = height * np.cos(pitch) + pivot * np.sin(pitch) + lift
+    out[1] = height * cosine + legs[side, _BALL] * toes_down + legs[side, _HEEL] * toes_up + over_toes + lift
     out[2] = z + along * np.cos(yaw)
     out[3] = yaw
     out[4] = pitch
-    out[5] = -max(pitch, 0.0) * fade
+    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
 
 
 @helper
@@ -231,15 +250,26 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
+@helper
+def _bob(stride: _Stride, phase: float) -> float:
+    """How far the hips are below the highest place of their stride: they are lowest while both feet stand."""
+    long, wide = stride.ahead**4, stride.aside**2
+    ahead = _BOB * 2.0 * long / (1.0 + long) * (0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - _LOWEST)))
+    aside = _BOB_ASIDE * wide * (0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - 0.5 * (stride.duty - 0.5))))
+    return float(stride.scale * (ahead + aside))
+
+
 @kernel
-def _longest_drop(legs: Floats, stride: _Stride, foot: Floats) -> float:
-    """How far the pelvis must come down for both feet to reach the ground all through the stance; `foot` is scratch."""
+def _highest(legs: Floats, stride: _Stride, foot: Floats) -> float:
+    """How far the hips are below T-pose where they are highest, so that feet reach the ground; `foot` is scratch."""
     stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
     low = 0.0
     for side in range(2):
-        for u in (0.0, stride.duty * (1.0 - 1e-9)):
+        for u in (0.0, 0.5 * stride.duty, 0.7 * stride.duty, 0.85 * stride.duty, stride.duty * (1.0 - 1e-9), 0.96):
             _foot_pose(legs, stride, side, u, foot)
-            low = max(low, _needed_drop(legs, side, foot, stretch))
+            if u > stride.duty:
+                foot[0] = legs[side, _HIP]  # aside a swinging foot may stay short of its way
+            low = max(low, _needed_drop(legs, side, foot, stretch) - _bob(stride, u))
     return low
 
 
@@ -254,15 +284,12 @@ def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Fl
         forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
         if low < 0.0 or forward != stride.forward or lateral != stride.lateral or turn != stride.turn:
             stride = _stride(scale, forward, lateral, turn)
-            low = _longest_drop(legs, stride, scratch)
+            low = _highest(legs, stride, scratch)
         if wanted:
             for side in range(2):
                 cycle = phase + 0.5 * side
                 _foot_pose(legs, stride, side, cycle - np.floor(cycle), feet[n, side])
-        weight = 0.5 + 0.5 * np.cos(2.0 * np.pi * (stride.duty - 0.5))
-        peak = low * (1.0 - _MID_DROP * (1.0 - weight)) / weight
-        double_support = 0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - 0.5 * (stride.duty - 0.5)))
-        drops[n] = _MID_DROP * low + (peak - _MID_DROP * low) * double_support
+        drops[n] = low + _bob(stride, phase)
 
 
 @kernel

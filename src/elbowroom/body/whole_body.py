@@ -13,6 +13,7 @@ from elbowroom.body.dof import LOWERING
 from elbowroom.body.gait import foot_poses, hips_sinks
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.legs import leg_rotations
+from elbowroom.body.rises import raise_feet
 from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
@@ -43,6 +44,7 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
     And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
     """
     feet, drops = foot_poses(body.gait_legs, body.scale, roots)
+    raise_feet(body.gait_legs, roots, feet, drops)
     sinks = hips_sinks(body.half_leg, drops, q[:, LOWERING].copy())
     legs = leg_rotations(body.leg_rest, feet, sinks)
     return posing.pose_body(body.figure, body.capsules, q, roots, legs, sinks)

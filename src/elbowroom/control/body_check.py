@@ -21,7 +21,7 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_HALVINGS = 7  # of the time between two frames: the bound on a foot in its stride is many times what it moves
+_HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _BOTH = np.array([0.0, 1.0])  # the frames themselves

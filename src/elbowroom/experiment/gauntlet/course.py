@@ -26,6 +26,7 @@ from elbowroom.world.scene import Scene
 from elbowroom.world.scene_format import FORMAT, VERSION
 
 _ATTEMPTS = 200
+_LOOKS = 4  # every fourth sample of a certificate is held against the body itself
 _SPEED = (0.8, 1.1)  # m/s
 _START = 1.7  # metres from the start to the first passage
 _TO_TWIST = 1.9  # metres of way before a doorway: the arms have to come down from wherever they are
@@ -99,6 +100,8 @@ class CourseMaker:
         if motion is None:
             return None
         certificate = certify(line, motion, draw.between(_SPEED), level.margin)
+        if not self._is_clear_of_itself(certificate):
+            return None
         swept, stances = self.body.certificate(certificate, line), self.body.stances(line)
         groups: list[list[Placed]] = []
         for passage in passages:
@@ -122,6 +125,10 @@ class CourseMaker:
             fingerprint=hashlib.sha256(json.dumps(drawn, sort_keys=True).encode()).hexdigest(),
             limit=_TIME + line.length / _PACE,
         )
+
+    def _is_clear_of_itself(self, certificate: Certificate) -> bool:
+        """Whether the body keeps off itself in the very strides of a certificate; a motion is drawn before they are."""
+        return bool(self.check.clear(certificate.roots[::_LOOKS], certificate.uppers[::_LOOKS]).all())
 
 
 @lru_cache(maxsize=1)

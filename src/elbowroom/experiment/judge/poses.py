@@ -57,7 +57,7 @@ class Poser:
         _pose_column(self.skeleton, _NECK_PARTS, nod, turn, rotations)
         _pose_arm(self.skeleton, "left", 1.0, q[:, DofGroup.LEFT_ARM.at], rotations)
         _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
-        lowered = 0.25 * self._gait.legs[:, -2:].sum() * lowering[:, None]
+        lowered = 0.25 * self._gait.legs[:, 8:10].sum() * lowering[:, None]
         moved = -(drops[:, None] + lowered) * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
         for side, name in enumerate(("left", "right")):
             _pose_leg(self.skeleton, name, feet[:, side], moved, rotations)

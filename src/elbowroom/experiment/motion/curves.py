@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 
 _STANCE_HUMP = (0.05, 0.30)  # of a stride: where the knee gives under the weight
 _LATE_STANCE = (0.30, 0.52)  # where it is straight again before it bends for the swing
+_HUMP = 3.0  # degrees
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,13 @@ def _within(parts: Floats, low: float, high: float) -> slice:
 
 
 def _tops(curve: Floats) -> int:
-    """How many times a curve rises by more than a degree and falls again by as much."""
+    """How many times a curve rises by more than three degrees and falls again by as much."""
     tops, low, high, rising = 0, curve[0], curve[0], False
     for value in curve:
         low, high = min(low, value), max(high, value)
-        if rising and value < high - 1.0:
+        if rising and value < high - _HUMP:
             tops, low, rising = tops + 1, value, False
-        elif not rising and value > low + 1.0:
+        elif not rising and value > low + _HUMP:
             high, rising = value, True
     return tops
 

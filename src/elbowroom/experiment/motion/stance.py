@@ -1,8 +1,9 @@
 """When a foot stands, and how far it slides while it does.
 
 A foot stands as planned while the walk says so. By its looks it stands from the moment when it has come to rest on the
-ground (its sole less than 5 mm above it, and a point of it there slower than 0.05 m/s) until it is lifted by more than
-5 mm. So a swinging foot that skims the ground does not stand, and a foot that rests and then slips does.
+ground (its sole less than 5 mm above it, and a point of it there slower than 0.05 m/s) until its last rest before it is
+lifted by more than 5 mm. So a swinging foot that skims the ground does not stand, and one that rests, slips and rests
+again does; what it moves by before its first rest and after its last one belongs to the swing.
 
 A sole that rolls from heel to toe has at each moment a point that rests. So of all points of the sole near the ground
 the one counts that moves least from each frame to the next, and what these steps come to is the slide.
@@ -39,10 +40,11 @@ def standing_by_looks(points: Floats, rate: float) -> Bools:
     low = points[:, :, 1].min(axis=1) < LOW
     speeds = rate * np.linalg.norm(resting_steps(points), axis=1)
     slow = np.append(speeds, speeds[-1:]) < SLOW
-    standing, stands = np.zeros(len(points), np.bool_), False
-    for n in range(len(points)):
-        stands = bool(low[n] and (stands or slow[n]))
-        standing[n] = stands
+    standing = np.zeros(len(points), np.bool_)
+    for run in stretches(low):
+        rests = run.start + np.flatnonzero(slow[run])
+        if len(rests):
+            standing[rests[0] : rests[-1] + 1] = True
     return standing
 
 

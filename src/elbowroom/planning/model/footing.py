@@ -9,6 +9,7 @@ same stride it may be below any: feet are held against obstacles as much higher,
 
 import math
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +18,7 @@ from elbowroom.body.gait import stood_places
 from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.ground.ground import Ground, Sole, height_along, sole_on
+from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, sole_on
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -32,11 +33,26 @@ _LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a fo
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
 
 
+class Underfoot(NamedTuple):
+    """What feet stand on, for kernels that call `set_rises`."""
+
+    ground: Ground
+    sole: Sole
+
+
+ON_PLANE = Underfoot(PLAIN, Sole(0.0, 0.0, 0.0))
+
+
 class Footing:
     """The feet of one body on the ground of one scene; frozen."""
 
     def __init__(self, model: BodyModel, ground: Ground) -> None:
         self._model, self.ground = model, ground
+
+    @property
+    def underfoot(self) -> Underfoot:
+        """The same for kernels."""
+        return Underfoot(self.ground, self._sole)
 
     @property
     def plain(self) -> bool:

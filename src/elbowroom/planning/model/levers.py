@@ -16,6 +16,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, pelvis_frames
 from elbowroom.body.posing import Column
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
 from elbowroom.planning.shared import Shared
@@ -122,13 +123,15 @@ class BodyLevers:
         moves[-MOVES:] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
         farthest = (self.from_pelvis @ moves + abs(root[2]) * self.spans).max()
         way = float(np.hypot(root[0], root[1]) + self.bob @ moves + farthest)
-        return way + _raised(root) if len(root) > HEIGHT else way
+        return way + abs(root[HEIGHT]) + raised_between(*roots) if len(root) > HEIGHT else way
 
 
-def _raised(change: Floats) -> float:
-    """No point is farther up or down by a change of the height, and of what the feet stand on."""
-    rises = np.abs(change[RISES:])
-    return float(abs(change[HEIGHT]) + _KNEES * (rises[0] + rises[2]) + _ANKLES * (rises[1] + rises[3]))
+@exact_kernel
+def raised_between(one: Floats, other: Floats) -> float:
+    """No point of a leg moves farther, metres, while what the feet of a root state stand on changes to another's."""
+    left, right = abs(other[RISES] - one[RISES]), abs(other[RISES + 2] - one[RISES + 2])
+    slopes = abs(other[RISES + 1] - one[RISES + 1]) + abs(other[RISES + 3] - one[RISES + 3])
+    return float(_KNEES * (left + right) + _ANKLES * slopes)
 
 
 _LEVERS: Shared[BodyLevers] = Shared()

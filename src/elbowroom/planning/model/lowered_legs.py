@@ -5,6 +5,7 @@ pelvis have to be looked at again where it does. That depends on the lowering an
 """
 
 from copy import copy
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,10 @@ class LoweredLegs:
         made = copy(self)
         made._sweeps, made._interval = moving.swept(path.times), path.interval
         return made
+
+    def stood(self, path: RootPath) -> RootPath:
+        """The path with what the feet stand on at its key times; itself on plain ground."""
+        return path if self._footing.plain else replace(path, states=self._footing.stood(path.states)[0])
 
     def clearances(self, roots: Floats, lowerings: Floats, after: Floats | None = None) -> Floats32:
         """Clearance (N,) at root states (N, 7) and lowerings (N,), `after` (N,) seconds on the path, or at its start.

@@ -27,6 +27,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
+from elbowroom.planning.model.footing import Underfoot
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -82,8 +83,10 @@ class PlanCaches(NamedTuple):
         return self.groups[group].group
 
 
-def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horizon: int) -> PlanCaches:
-    """Nothing computed yet, for these posture sets of a model."""
+def new_caches(
+    model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horizon: int, underfoot: Underfoot
+) -> PlanCaches:
+    """Nothing computed yet, for these posture sets of a model on some ground."""
     roots = new_root_sweeps(_CACHED * (horizon + 1))
     sweeps = {group: _new_sweeps(horizon, group) for group in LOCAL_GROUPS}
     waists = sweeps[DofGroup.WAIST]
@@ -91,8 +94,9 @@ def new_caches(model: UpperBodyModel, sets: Mapping[DofGroup, PostureSet], horiz
     groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
     trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST], horizon)
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
-    own_motion, own_trunk = OwnMotion(model.own_parts), parts_of(model.own_parts, DofGroup.WAIST)
-    return PlanCaches(groups, trunk, own_nodes, own_motion, OwnMotion(own_trunk, _CACHED * horizon), horizon)
+    own_motion = OwnMotion(model.own_parts, underfoot)
+    own_trunk = OwnMotion(parts_of(model.own_parts, DofGroup.WAIST), underfoot, _CACHED * horizon)
+    return PlanCaches(groups, trunk, own_nodes, own_motion, own_trunk, horizon)
 
 
 def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:

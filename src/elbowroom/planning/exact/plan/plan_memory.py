@@ -25,16 +25,17 @@ from elbowroom.planning.exact.plan.full_plan import StandingPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans
 from elbowroom.planning.exact.refine.sampling import Pool, RefinementSettings
+from elbowroom.planning.model.footing import Underfoot
 from elbowroom.planning.result import Blockade
 
 Floats = NDArray[np.float64]
 
 
 class PlanMemory:
-    """What one walker keeps; `model` is what it walks as."""
+    """What one walker keeps; `model` is what it walks as, `underfoot` what its feet stand on."""
 
-    def __init__(self, model: UpperBodyModel) -> None:
-        self.model = model
+    def __init__(self, model: UpperBodyModel, underfoot: Underfoot) -> None:
+        self.model, self._underfoot = model, underfoot
         # what the next plan goes on from
         self.recent = RecentPlans()
         self.ongoing: OngoingPlan | None = None
@@ -48,12 +49,14 @@ class PlanMemory:
         # what was found out
         self.standing: StandingPlan | None = None
         settings = model.settings
-        self._caches = new_caches(model, self._sets, round((settings.look_ahead + settings.spare) / model.interval))
+        horizon = round((settings.look_ahead + settings.spare) / model.interval)
+        self._caches = new_caches(model, self._sets, horizon, underfoot)
 
     def begin(self, horizon: int) -> PlanCaches:
         """The results that a search over so many key intervals can use and add to."""
         if horizon > self._caches.horizon or not self.model.settings.remember:
-            self._caches = new_caches(self.model, self._sets, max(horizon, self._caches.horizon))
+            most = max(horizon, self._caches.horizon)
+            self._caches = new_caches(self.model, self._sets, most, self._underfoot)
         return self._caches
 
     def known(self, group: DofGroup) -> Floats:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.group.caches import begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
@@ -21,6 +22,7 @@ from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySea
 from elbowroom.planning.exact.refine.blocked import Known, children_for, waists_for
 from elbowroom.planning.exact.refine.sampling import RefinementSettings
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -48,8 +50,10 @@ class UpperBodyPlanner:
         )
         self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._refinement = RefinementSettings()
+        body = body_model(humanoid)
+        self._legs = LoweredLegs(body, scene.obstacles, scene.ground)
+        self._underfoot = Footing(body, scene.ground).underfoot
         self.reset()
-        self._legs = LoweredLegs(self.model.body, scene.obstacles, scene.ground)
 
     @property
     def model(self) -> UpperBodyModel:
@@ -59,7 +63,7 @@ class UpperBodyPlanner:
     def reset(self, interval: float | None = None) -> None:
         """Forget everything; plan for key frames so many seconds apart from now on."""
         wanted = self.settings.interval if interval is None else interval
-        self.memory = PlanMemory(upper_body_model(*self._made_of, self.settings, wanted))
+        self.memory = PlanMemory(upper_body_model(*self._made_of, self.settings, wanted), self._underfoot)
         self._margins = required_margins(self.settings, wanted, 0)
 
     def plan(
@@ -75,7 +79,7 @@ class UpperBodyPlanner:
 
         `go_on` is called before each search, and raises an exception to call the plan off.
         """
-        near = self._near(path, others)
+        near, path = self._near(path, others), self._legs.stood(path)
         legs = self._legs.among(others, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights

@@ -33,7 +33,7 @@ _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is small
 class KinematicChain(NamedTuple):
     """What carries the limbs: legs, hips and spine."""
 
-    legs: Floats  # (2, 10) of the gait
+    legs: Floats  # (2, 11) of the gait
     scale: float
     hips: Floats  # (3,) in the root frame
     half_leg: float  # metres, the unit of the lowering

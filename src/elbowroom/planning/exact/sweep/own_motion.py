@@ -1,8 +1,9 @@
 """Whether a shown motion keeps clear of the avatar's own body, at every moment: proven by `halving`.
 
 A pair is two capsules, seen from the pelvis or from the chest. How far they can move against each other is what each
-component of the body moves in a part of a key interval, times the pair's levers. An interval that was looked at for an
-earlier plan is known by its content. It is one compiled call.
+component of the body moves in a part of a key interval, times the pair's levers. Feet are looked at on what they stand
+on at that moment. An interval that was looked at for an earlier plan is known by its content, on uneven ground by its
+place too. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.body.whole_body import WholeBody, posed_body, whole_body
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
@@ -20,7 +21,8 @@ from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, n
 from elbowroom.planning.exact.sweep.motion_bounds import moves_between, stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.axis_distances import clear_pairs
-from elbowroom.planning.model.levers import MOVES, BodyLevers
+from elbowroom.planning.model.footing import ON_PLANE, Underfoot, set_rises
+from elbowroom.planning.model.levers import MOVES, BodyLevers, raised_between
 from elbowroom.planning.model.self_pairs import SelfPairs
 from elbowroom.planning.root.path import RootPath, interpolate_root
 
@@ -35,6 +37,8 @@ _LOOKS = 32  # at once
 _AFAR = 1e-3  # metres: proven far ahead; what was free from afar stays free when it is near
 _SOON = 4  # key intervals ahead until which a motion is near
 _COLUMNS = np.array([(columns_of(group).start, columns_of(group).stop) for group in LOCAL_GROUPS])
+_PLACE = plain(5)  # numbers of a root state that tell where it is, and how high
+_WIDTH = plain(CONTENT + 2 * LOCAL + 5)  # numbers that a key time is known by
 
 
 class OwnParts(NamedTuple):
@@ -46,6 +50,15 @@ class OwnParts(NamedTuple):
     kinds: Indices
     limits: Floats32
     levers: Floats  # (P, M) as `BodyLevers.between` has them
+
+
+class Shown(NamedTuple):
+    """A motion as it is shown."""
+
+    states: Floats  # (n+1, 7) of the root, and
+    keys: Floats  # (n+1, LOCAL) the upper body at the key times, and
+    rates: Floats  # (n+1, LOCAL) its velocities there
+    interval: float  # seconds between them
 
 
 class Seen(NamedTuple):
@@ -71,10 +84,10 @@ def parts_of(parts: OwnParts, group: DofGroup) -> OwnParts:
 class OwnMotion:
     """One avatar's motion among its own parts, and the key intervals of it that were looked at."""
 
-    def __init__(self, parts: OwnParts, room: int = _ROOM) -> None:
+    def __init__(self, parts: OwnParts, underfoot: Underfoot = ON_PLANE, room: int = _ROOM) -> None:
         """So many intervals can be remembered; when half of them are, all are forgotten before the next plan."""
-        self._parts = parts
-        known = new_row_index(room, 2 * (CONTENT + 2 * LOCAL))
+        self._parts, self._underfoot = parts, underfoot
+        known = new_row_index(room, 2 * _WIDTH)
         self._seen = Seen(known, np.empty(room), np.empty(room, np.int64))
 
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
@@ -91,41 +104,49 @@ class OwnMotion:
 
     def proven(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats) -> tuple[Floats, Indices]:
         """The proven gaps (n,), metres, and whose (n,) they are: infinite and -1 where it is as the goals have it."""
-        gaps, groups = _proven(self._parts, self._seen, path.states, keys, rates, goals, path.interval)
+        shown = Shown(path.states, keys, rates, path.interval)
+        gaps, groups = _proven(self._parts, self._underfoot, self._seen, shown, goals)
         return gaps, groups
 
 
 @exact_kernel
-def _proven(
-    parts: OwnParts, seen: Seen, states: Floats, keys: Floats, rates: Floats, goals: Floats, interval: float
-) -> tuple[Floats, Indices]:
+def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, goals: Floats) -> tuple[Floats, Indices]:
     """See `OwnMotion.proven`."""
-    gaps, groups = np.full(keys.shape[0] - 1, np.inf), np.full(keys.shape[0] - 1, -1)
-    chosen = _beside(keys, goals, states)
+    gaps, groups = np.full(shown.keys.shape[0] - 1, np.inf), np.full(shown.keys.shape[0] - 1, -1)
+    chosen = _beside(shown.keys, goals, shown.states)
     if not chosen.shape[0]:
         return gaps, groups
-    width = CONTENT + 2 * LOCAL
-    names = np.empty(keys.shape[0] * width, np.int64)
-    contents = names.reshape(keys.shape[0], width)
-    set_contents(states, keys, contents)
-    for t in range(keys.shape[0]):
-        set_bits(rates[t], contents[t, CONTENT + LOCAL :])
+    names = _names(shown, underfoot.ground.plain)
     if 2 * seen.known.taken[0] > seen.gaps.shape[0]:
         forget(seen.known)
     missing, count = np.empty(chosen.shape[0], np.int64), 0
     for k in chosen:
-        place = place_of(seen.known, names[k * width : (k + 2) * width])
+        place = place_of(seen.known, names[k * _WIDTH : (k + 2) * _WIDTH])
         if place < 0:
             missing[count] = k
             count += 1
         else:
             gaps[k], groups[k] = seen.gaps[place], seen.groups[place]
     if count:
-        _prove(parts, states, keys, rates, interval, missing[:count], gaps, groups)
+        _prove(parts, underfoot, shown, missing[:count], gaps, groups)
         for k in missing[:count]:
-            place = admit(seen.known, names[k * width : (k + 2) * width])
+            place = admit(seen.known, names[k * _WIDTH : (k + 2) * _WIDTH])
             seen.gaps[place], seen.groups[place] = gaps[k], groups[k]
     return gaps, groups
+
+
+@exact_kernel
+def _names(shown: Shown, plain_ground: bool) -> Indices:
+    """What the key times are known by, one after the other, ((n+1) _WIDTH,)."""
+    names = np.zeros(shown.keys.shape[0] * _WIDTH, np.int64)
+    contents = names.reshape(shown.keys.shape[0], _WIDTH)
+    set_contents(shown.states, shown.keys, contents)
+    for t in range(shown.keys.shape[0]):
+        set_bits(shown.rates[t], contents[t, CONTENT + LOCAL :])
+        if not plain_ground:
+            set_bits(shown.states[t, :3], contents[t, _WIDTH - _PLACE :])
+            set_bits(shown.states[t, HEIGHT:RISES], contents[t, _WIDTH - _PLACE + 3 :])
+    return names
 
 
 @exact_kernel
@@ -145,35 +166,29 @@ def _beside(keys: Floats, goals: Floats, states: Floats) -> Indices:
 
 @exact_kernel
 def _prove(
-    parts: OwnParts,
-    states: Floats,
-    keys: Floats,
-    rates: Floats,
-    interval: float,
-    chosen: Indices,
-    least: Floats,
-    groups: Indices,
+    parts: OwnParts, underfoot: Underfoot, shown: Shown, chosen: Indices, least: Floats, groups: Indices
 ) -> None:
-    """Set the proven gaps `least` (n,) in chosen intervals (K,), and whose they are.
-
-    Upper bodies lead through `keys` (n+1, LOCAL) with `rates` (n+1, LOCAL), roots through `states` (n+1, 7).
-    """
+    """Set the proven gaps `least` (n,) in chosen intervals (K,), and whose they are."""
     count, looks = chosen.shape[0], _PARTS + 1
     intervals, moments = np.empty(count * looks, np.int64), np.empty(count * looks)
     moves = np.empty((count * _PARTS, parts.levers.shape[1]))
     for i in range(count):
         for n in range(looks):
             intervals[i * looks + n], moments[i * looks + n] = chosen[i], n / _PARTS
-        _set_moves(states, keys, rates, interval, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
-    gaps = _gaps(parts, states, keys, rates, interval, intervals, moments)
-    proof = begun(gaps, _lengths(parts.levers, moves), _PARTS, _AFAR, _HALVINGS)
+        _set_moves(shown, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
+    roots = _roots_at(parts, underfoot, shown, intervals, moments)
+    lengths = _lengths(parts.levers, moves)
+    if not underfoot.ground.plain:
+        _add_raising(parts.levers, roots, lengths)
+    proof = begun(_gaps(parts, shown, roots, intervals, moments), lengths, _PARTS, _AFAR, _HALVINGS)
     wanted, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
     more = due(proof, wanted, shares)
     while more > 0:
         for n in range(more):
             shares[n] = (wanted[n] % _PARTS + shares[n]) / _PARTS
             wanted[n] = chosen[wanted[n] // _PARTS]
-        settle(proof, _gaps(parts, states, keys, rates, interval, wanted[:more], shares[:more]), more)
+        roots = _roots_at(parts, underfoot, shown, wanted[:more], shares[:more])
+        settle(proof, _gaps(parts, shown, roots, wanted[:more], shares[:more]), more)
         more = due(proof, wanted, shares)
     for b in range(proof.least.shape[0]):
         k = chosen[b // _PARTS]
@@ -183,8 +198,9 @@ def _prove(
 
 
 @helper
-def _set_moves(states: Floats, keys: Floats, rates: Floats, interval: float, k: int, out: Floats) -> None:
+def _set_moves(shown: Shown, k: int, out: Floats) -> None:
     """What every component of the body moves at most in the parts of an interval: `out` (_PARTS, M)."""
+    states, keys, rates, interval = shown
     for g in range(_COLUMNS.shape[0]):
         low, high = _COLUMNS[g, 0], _COLUMNS[g, 1]
         ends = keys[k, low:high], rates[k, low:high], keys[k + 1, low:high], rates[k + 1, low:high]
@@ -204,20 +220,42 @@ def _lengths(levers: Floats, moves: Floats) -> Floats:
 
 
 @exact_kernel
-def _gaps(
-    parts: OwnParts, states: Floats, keys: Floats, rates: Floats, interval: float, intervals: Indices, shares: Floats
-) -> Floats32:
+def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
+    """Add to `lengths` (B, P) what feet are raised and tilted by between looks at `roots`, for pairs with a leg."""
+    for b in range(lengths.shape[0]):
+        before = b + b // _PARTS
+        raised = raised_between(roots[before], roots[before + 1])
+        for p in range(lengths.shape[1]):
+            if levers[p, levers.shape[1] - 1] > 0.0:
+                lengths[b, p] += raised
+
+
+@exact_kernel
+def _roots_at(parts: OwnParts, underfoot: Underfoot, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+    """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), on what the feet stand on, at the origin."""
+    roots = np.zeros((shares.shape[0], ROOT_STATE))
+    for n in range(roots.shape[0]):
+        k = intervals[n]
+        state = interpolate_root(shown.states[k], shown.states[k + 1], shares[n], shown.interval)
+        for j in range(state.shape[0]):
+            roots[n, j] = state[j]
+    if not underfoot.ground.plain:
+        set_rises(underfoot.ground, parts.body.gait_legs, parts.body.scale, underfoot.sole, roots)
+    roots[:, :3] = 0.0
+    return roots
+
+
+@exact_kernel
+def _gaps(parts: OwnParts, shown: Shown, roots: Floats, intervals: Indices, shares: Floats) -> Floats32:
     """The gaps (N, P) of the pairs at shares (N,) of `intervals` (N,), metres beyond what they may come near."""
+    keys, rates, interval = shown.keys, shown.rates, shown.interval
     count, first = shares.shape[0], DOF - keys.shape[1]
-    postures, roots = np.zeros((count, DOF)), np.zeros((count, ROOT_STATE))
+    postures = np.zeros((count, DOF))
     for n in range(count):
         k, u = intervals[n], shares[n]
         for j in range(keys.shape[1]):
             a, b, m, e = keys[k, j], keys[k + 1, j], interval * rates[k, j], interval * rates[k + 1, j]
             postures[n, first + j] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - e + u * (2.0 * (a - b) + m + e)))
-        shown = interpolate_root(states[k], states[k + 1], u, interval)
-        for j in range(3, shown.shape[0]):
-            roots[n, j] = shown[j]
     capsules, _, _ = posed_body(parts.body, postures, roots)
     gaps = np.empty((count, parts.first.shape[0]), np.float32)
     for p in range(parts.first.shape[0]):
