@@ -343,7 +343,7 @@ def world_reader() -> Reader:
         b"size -1 0 1",
         b"NULL",
     )
-    return Reader(_place("fuzz.wrl"), seeds, words)
+    return Reader(_place("fuzz.wrl"), seeds, words, longest=5.0)  # copies make worlds of 400,000 triangles
 
 
 def _place(name: str) -> Callable[[bytes], object]:

@@ -36,6 +36,7 @@ class Reader:
     seeds: tuple[bytes, ...]  # good files, small ones first
     words: tuple[bytes, ...] = ()  # pieces of the grammar that are thrown in
     container: Container | None = None
+    longest: float = 2.0  # seconds of processor time that one input may take
 
 
 class BrokenPromiseError(AssertionError):
