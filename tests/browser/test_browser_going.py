@@ -21,7 +21,7 @@ def test_a_click_on_the_floor_is_gone_to_and_a_key_takes_over(open_page: Open) -
     place = live.wait("s.going && s.going.state === 'walking'")["going"]["place"]
     assert math.hypot(*place) > 0.5, "that was at the avatar's feet"
     root = live.wait("s.going.state === 'arrived'")["root"]
-    assert math.hypot(root["x"] - place[0], root["z"] - place[1]) < 0.4
+    assert math.hypot(root["x"] - place[0], root["z"] - place[2]) < 0.4
     live.settle()
     live.page.mouse.click(*beside_the_feet(live.state(), -140, 60))
     live.wait("s.going.state === 'walking'")

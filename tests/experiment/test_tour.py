@@ -65,8 +65,8 @@ def test_targets_are_drawn_by_the_seed_from_what_can_be_reached(humanoid: Humano
     targets = random_targets(navigator, (0.0, 2.0), 30, 5)
     assert targets == random_targets(navigator, (0.0, 2.0), 30, 5)
     assert targets != random_targets(navigator, (0.0, 2.0), 30, 6)
-    assert any(z > 4.5 for _, z in targets)
-    assert any(z < 3.5 for _, z in targets)
+    assert any(z > 4.5 for _, _, z in targets)
+    assert any(z < 3.5 for _, _, z in targets)
     for target in targets:
         assert math.isfinite(navigator.find((0.0, 2.0), target).left((0.0, 2.0)))
 

@@ -11,6 +11,7 @@ from elbowroom.experiment.tour.leg import Leg
 from elbowroom.experiment.tour.picture import tour_picture
 from elbowroom.experiment.tour.tour import Milliseconds, TourResult
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap
+from elbowroom.planning.navigation.surfaces import one_plane
 
 NONE = Milliseconds(0, 0.0, 0.0, 0.0)
 DARK = np.array([66, 70, 82])
@@ -19,10 +20,11 @@ DARK = np.array([66, 70, 82])
 def test_what_stands_is_dark_and_lies_where_one_who_looks_along_z_sees_it() -> None:
     room = np.full((50, 40), 0.6, np.float32)  # rows along z, columns along x
     room[40:, :10] = 0.0  # far ahead, to the right: +X points left
-    leg = Leg((2.0, 1.0), "arrived", "", (2.0, 1.0), 1.0, 1.0, 0, 0.0, 0.1)
+    leg = Leg((2.0, 1.0), "arrived", "", (2.0, 0.0, 1.0), 1.0, 1.0, 0, 0.0, 0.1)
     result = TourResult("made", 0, 1, 1, 0, 0.0, 1.0, NONE, NONE, NONE, (leg,))
     area = Rectangle(0.0, 0.0, 3.9, 4.9)
-    picture = tour_picture(RoomMap(area, 0.1, room, room), 0.2, np.array([[2.0, 0.0, 0, 0, 0, 0, 0]] * 2), result)
+    known = RoomMap(area, one_plane((50, 40), 0.1), room.reshape(-1), room.reshape(-1))
+    picture = tour_picture(known, 0.2, np.array([[2.0, 0.0, 0, 0, 0, 0, 0]] * 2), result)
     high, wide = picture.shape[:2]
     dark = np.argwhere((np.abs(picture.astype(int) - DARK) < 3).all(axis=2)).mean(axis=0)
     assert dark[0] < 0.3 * high

@@ -382,16 +382,16 @@ def test_a_session_that_has_ended_leaves_nothing(url: str, monkeypatch: pytest.M
 
 
 def test_a_place_on_the_floor_is_walked_to_and_a_key_takes_over(client: Client) -> None:
-    client.send(Goto((0.0, 1.0)))
+    client.send(Goto((0.0, 0.0, 1.0)))
     assert client.wait_for(Going).state == "walking"
     arrived = client.wait_for(Going)
-    assert (arrived.state, arrived.place) == ("arrived", (0.0, 1.0))
+    assert (arrived.state, arrived.place) == ("arrived", (0.0, 0.0, 1.0))
     assert client.frame(lambda frame: abs(frame.forward) < 0.01).z == pytest.approx(1.0, abs=0.25)
-    client.send(Goto((0.0, 1e5)))
+    client.send(Goto((0.0, 0.0, 1e5)))
     refused = client.wait_for(Going)
     assert refused.state == "refused"
     assert "off the ground" in refused.reason
-    client.send(Goto((0.0, 3.0)))
+    client.send(Goto((0.0, 0.0, 3.0)))
     assert client.wait_for(Going).state == "walking"
     client.press(forward=-1.0)
     assert client.wait_for(Going).state == "taken over"

@@ -230,7 +230,7 @@ def test_a_slow_client_gets_the_newest_frame_only() -> None:
 
 
 def test_only_the_newest_status_and_plan_wait() -> None:
-    outbox, plan = Outbox(), Plan([], [], [], [], [])
+    outbox, plan = Outbox(), Plan([], [], [], [], [], [])
     for _ in range(3 * MAX_WAITING):
         outbox.put(plan)
     outbox.put(Notice("info", "still there"))

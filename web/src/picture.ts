@@ -54,6 +54,8 @@ export class Picture {
   private loads = 0;
   private epoch = -1;
   private last: readonly [number, number] = [Infinity, Infinity];
+  /** The height of the ground under the avatar, metres. */
+  floor = 0;
 
   constructor(
     private readonly host: HTMLElement, label: HTMLElement, quality: QualityName, private readonly calm: () => boolean,
@@ -166,11 +168,13 @@ export class Picture {
     if (pose.epoch !== this.epoch && jumped) this.camera.snap(followed);
     this.epoch = pose.epoch;
     this.last = [pose.x, pose.z];
+    this.floor = pose.y;
+    this.world.lookUp(pose.x, pose.y, pose.z);
     this.camera.update(followed, this.world.cameraObstacles, dt);
     const knees: Vec3 = [pose.x, pose.y + KNEE_HEIGHT, pose.z];
     this.world.clearSight(this.camera.position, [this.camera.target, knees], dt);
     this.avatar.fade(this.camera.avatarOpacity);
-    this.stage.follow(pose.x, pose.z);
+    this.stage.follow(pose.x, pose.y, pose.z);
     this.world.follow(pose.x, pose.z);
     this.overlays.update({ ...scenery, pose, bodyIsAvatar: this.message?.drawCapsules ?? false });
   }
@@ -184,7 +188,7 @@ export class Picture {
     this.avatar.group.visible = this.overlays.group.visible = false;
     group.visible = true;
     this.world.move(second.simTime);
-    this.stage.follow(second.x, second.z);
+    this.stage.follow(second.x, second.y, second.z);
     this.halves.draw(1, [second.x - pose.x, second.y - pose.y, second.z - pose.z]);
     this.avatar.group.visible = visible;
     this.overlays.group.visible = true;

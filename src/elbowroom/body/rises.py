@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 _HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN = 0, 3, 6, 7, 8, 9  # columns of `GaitShape.legs`
 _STRETCH = 0.992  # of a leg: it is never longer
-_LEVEL = 1e-9  # metres and radians: less is the plane
+_LEVEL = 1e-6  # metres and radians: less is the plane
 
 
 @kernel

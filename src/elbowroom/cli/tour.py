@@ -9,6 +9,7 @@ from elbowroom.cli import clip_options
 from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
 from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.going import told_place
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
 from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
 from elbowroom.errors import InputError
@@ -82,7 +83,7 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
     from elbowroom.experiment.tour.tour import Shown, run_tour
     from elbowroom.planning.command import Command
 
-    start = controller.root.x, controller.root.z
+    start = controller.root.x, controller.root.height, controller.root.z
     places = random_targets(controller.navigator, start, count, controller.settings.seed)
     with (
         progress_bar(f"Touring {controller.scene.title}", float(count), quiet) as bar,
@@ -133,7 +134,7 @@ def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None
     }
     print_row(f"Tour of {result.scene}, seed {result.seed}", rows)
     if result.given_up:
-        lost = {f"{leg.target[0]:.2f}, {leg.target[1]:.2f}": f"{leg.outcome}: {leg.reason}" for leg in result.given_up}
+        lost = {told_place(leg.target): f"{leg.outcome}: {leg.reason}" for leg in result.given_up}
         print_row("Not reached", lost)
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, Listener
     from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.command import Command
+    from elbowroom.planning.navigation.way import Place, Spot
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
 FELL_SHORT = 1
@@ -62,7 +63,7 @@ def walk(
     """Walk an avatar through a scene, faster than real time, and print how it went.
 
     A scripted user walks forward, and when stuck backs up and tries again; with --to the avatar finds its way to a
-    place on the ground. Exit code 0: through, or there, in time, 1: not.
+    place. Exit code 0: through, or there, in time, 1: not.
     """
     check_vmc(vmc, vmc_root)
     target = None if to is None else place_of(to, "--to")
@@ -91,7 +92,7 @@ def walk(
 
 
 def _walked(
-    controller: "Controller", settings: "CrossingSettings", target: tuple[float, float] | None, listener: "Listener"
+    controller: "Controller", settings: "CrossingSettings", target: "Place | Spot | None", listener: "Listener"
 ) -> "Leg | CrossingResult":
     """Walk to the target, or across the scene without one."""
     from elbowroom.experiment.crossing import run_crossing

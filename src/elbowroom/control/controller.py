@@ -35,7 +35,7 @@ from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.navigation.navigator import Navigator
-from elbowroom.planning.navigation.way import Way
+from elbowroom.planning.navigation.way import Place, Spot, Way
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import UNMOVED, is_still
 from elbowroom.world.obstacles.moving import Moving
@@ -47,6 +47,7 @@ FORWARD = Command(forward=1.0)
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
+_SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
 
@@ -123,12 +124,14 @@ class Controller:
         """Finds ways in the scene, for `goto` and for who wants to find them in another thread."""
         return Navigator(self.humanoid, self._standing)
 
-    def goto(self, place: tuple[float, float], pace: Command = FORWARD) -> Journey:
-        """Go to a place (x, z) on the ground, with the following steps; a command that is not idle takes over.
+    def goto(self, place: Place | Spot, pace: Command = FORWARD) -> Journey:
+        """Go to a place (x, z) or (x, height, z), with the following steps; a command that is not idle takes over.
 
-        `pace` says how fast, by its `forward` and `run`. Raises `NoWayError` where no way leads there.
+        Without a height it is one at about that at which the avatar stands. `pace` says how fast, by its `forward` and
+        `run`. Raises `NoWayError` where no way leads there.
         """
-        return self.set_out(self.navigator.find((self.root.x, self.root.z), place), pace)
+        here = float(self.root.x), float(self.root.height), float(self.root.z)
+        return self.set_out(self.navigator.find(here, place), pace)
 
     def set_out(self, way: Way, pace: Command = FORWARD) -> Journey:
         """Go along a way that was found before."""
@@ -448,10 +451,13 @@ class Controller:
         """Stay in the last good pose; the legs come to a stand where they can."""
         self._clear()
         self._next = Phase.RESET
-        held = self._holding.settle(self._shown, dt)
-        still = held._replace(root=self._check.standing(held.root))
-        clearance = self._clearance_of(still)
-        if self._assist and not self._is_free(still, clearance):
+        for part in _SETTLING if self._assist else _SETTLING[:1]:
+            held = self._holding.settle(self._shown, part * dt)
+            still = held._replace(root=self._check.standing(held.root))
+            clearance = self._clearance_of(still)
+            if not self._assist or self._is_free(still, clearance):
+                break
+        else:
             still = still._replace(root=self._shown.root)
             clearance = self._clearance_of(still) if self._check.restless else self._clearance
         self._show(still, clearance)

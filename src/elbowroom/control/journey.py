@@ -7,7 +7,7 @@ from enum import Enum
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
-from elbowroom.planning.navigation.way import NoWayError, Place, Way, said
+from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, apart, said
 
 _FAR = 6.0  # metres along the way that are looked ahead
 _CORNER = 0.5  # metres before a place that one walks to at which the next one is looked for
@@ -40,7 +40,7 @@ class Journey:
         self.reason = ""  # why it was given up
         self.way = way
         self._navigator, self._pace = navigator, pace
-        self._closed: list[tuple[Place, float]] = []
+        self._closed: list[tuple[Spot, float]] = []
         self._aim: Place | None = None
         self._direction: float | None = None
         self._nearest, self._waited, self._back = math.inf, 0.0, 0.0
@@ -48,7 +48,7 @@ class Journey:
 
     @property
     def goal(self) -> Place:
-        """Where to, x and z."""
+        """Where to: x, height, z."""
         return self.way.goal
 
     @property
@@ -63,8 +63,8 @@ class Journey:
 
     def command(self, root: RootState, dt: float, *, stuck: bool) -> Command:
         """What to do for the next `dt` seconds; `stuck` is what the last frame said."""
-        here = float(root.x), float(root.z)
-        away = math.dist(here, self.goal)
+        here = float(root.x), float(root.height), float(root.z)
+        away = apart(here, self.goal)
         if away < _THERE:
             self.state = JourneyState.ARRIVED
         elif self._back > 0.0:
@@ -80,15 +80,15 @@ class Journey:
         aim = self._next_aim(here)
         if aim is None:
             return Command()
-        wanted = math.atan2(aim[0] - here[0], aim[1] - here[1])
+        wanted = math.atan2(aim[0] - here[0], aim[2] - here[2])
         if self._direction is None or abs(math.remainder(wanted - self._direction, math.tau)) > _STRAYED:
             self._direction = wanted
-        share = min(max(away / _SLOWS, _SLOWEST), 1.0) if math.dist(aim, self.goal) < _THERE else 1.0
+        share = min(max(away / _SLOWS, _SLOWEST), 1.0) if apart(aim, self.goal) < _THERE else 1.0
         return replace(self._pace, forward=share * self._pace.forward, direction=self._direction)
 
     def _next_aim(self, here: Place) -> Place | None:
         """Where to walk straight to: the same place until one is near it, or it has gone out of sight."""
-        if self._aim is not None and math.dist(here, self._aim) > _CORNER and self.way.sees(here, self._aim):
+        if self._aim is not None and apart(here, self._aim) > _CORNER and self.way.sees(here, self._aim):
             return self._aim
         self._aim = self.way.aim(here, _FAR)
         if self._aim is None:
@@ -100,7 +100,7 @@ class Journey:
         """Notice progress, or that there is none for long."""
         left = self.way.left(here)
         if left < self._nearest - _NEARER:
-            if math.dist(here, self._blocked_at) > _PAST:
+            if apart(here, self._blocked_at) > _PAST:
                 self._tries = 0
             self._nearest, self._waited = left, 0.0
             return
@@ -123,9 +123,9 @@ class Journey:
         self._back = _BACKS
         aim = self.way.aim(here, _FAR)
         if self._tries % 2 == 0 and aim is not None:
-            away = max(math.dist(here, aim), _AHEAD)
+            away = max(apart(here, aim), _AHEAD)
             share = _AHEAD / away
-            middle = here[0] + share * (aim[0] - here[0]), here[1] + share * (aim[1] - here[1])
+            middle = here[0] + share * (aim[0] - here[0]), here[2] + share * (aim[2] - here[2])
             self._closed.append((middle, _DISC))
             try:
                 self.way = self._navigator.find(here, self.goal, self._closed)

@@ -52,6 +52,7 @@ _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
 _BESIDE = ((0.35, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
 _WALL = ((0.0, 1.5, 1.0), (3.0, 0.6, 0.1))  # legs pass, nobody else does
 _LOW = ((0.1, 0.3, 1.2), (0.2, 0.3, 0.2))  # in the way of the legs
+_SILL = (0.0, 0.05, 1.0), (0.5, 0.05, 0.5)  # the same of one that is stepped onto
 
 
 @lru_cache(maxsize=4)
@@ -126,7 +127,7 @@ def rehearse_place() -> None:
 
 def rehearse_ground(humanoid: Humanoid) -> None:
     """Stand before a low box, and follow the ground onto it."""
-    scene = _scene_with((0.0, 0.05, 1.0), (0.5, 0.05, 0.5))
+    scene = _scene_with(*_SILL)
     Footing(body_model(humanoid), scene.ground).stood(np.zeros((1, ROOT_STATE)))
     heights_along(scene.ground, 0.0, np.array([[0.0, 0.0], [0.0, 1.0]]))
     on_ground(scene, RootState())
@@ -134,9 +135,10 @@ def rehearse_ground(humanoid: Humanoid) -> None:
 
 def rehearse_way(humanoid: Humanoid) -> None:
     """Look for the way to a place."""
-    way = Navigator(humanoid, _scene_with(*_LOW)).find((0.0, 0.0), (1.0, 2.0))
-    way.aim((0.0, 0.0), 1.0)
-    way.sees((0.0, 0.0), (1.0, 2.0))
+    here, goal = (0.0, 0.0, 0.0), (1.0, 0.0, 2.0)
+    way = Navigator(humanoid, _scene_with(*_SILL)).find(here, goal)
+    way.aim(here, 1.0)
+    way.sees(here, goal)
 
 
 def _scene_with(center: tuple[float, ...], half: tuple[float, ...]) -> Scene:

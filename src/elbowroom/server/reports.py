@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import AvatarMeta
+from elbowroom.body.root import HEIGHT
 from elbowroom.control.body_check import configuration
 from elbowroom.control.frame import Frame, PlanReport
 from elbowroom.control.loose import pushable
@@ -196,6 +197,7 @@ def plan_message(frame: Frame, avatar: StoredAvatar) -> Plan:
         ghosts=rows[:-2],
         goal=rows[-2],
         chosen=rows[-1],
+        heights=np.round(keys.roots[:, HEIGHT], 4).tolist(),
     )
 
 

@@ -42,7 +42,7 @@ class Ways:
         if not isinstance(walk, Walk):
             self._refuse(wish, InputError(_CLIP))
             return
-        here = walk.place.x, walk.place.z
+        here = walk.place.x, walk.place.height, walk.place.z
         try:
             way = await asyncio.to_thread(walk.navigator.find, here, wish.place)
         except InputError as error:

@@ -11,7 +11,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.formats.models.kinds import kind_by_name
 from elbowroom.world.foreign_files import foreign_document, foreign_kind
-from elbowroom.world.ground.ground import PLAIN, Ground, eased_height
+from elbowroom.world.ground.ground import Ground, eased_height
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -117,11 +117,11 @@ class Scene:
 
     @cached_property
     def ground(self) -> Ground:
-        """What feet stand on: the plane at height 0, and all that is low and flat enough to be stepped onto.
+        """What feet stand on: the plane at height 0, and all that is flat enough and reached from there by steps.
 
-        In the model of a place it is the plane alone so far.
+        In the model of a place there is no plane beyond its floor.
         """
-        return PLAIN if self.place else ground_of(self.obstacles)
+        return ground_of(self.obstacles, self.place.floor if self.place else None)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
+from elbowroom.world.ground.making import walked_over
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle, read_color
 from elbowroom.world.moving_format import read_moving, write_moving
@@ -67,13 +68,18 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
         ground_size=size,
         start=_read_start(fields["start"]) if "start" in fields else found.start,
         finish=_read_gate(fields["finish"]) if "finish" in fields else found.finish,
-        obstacles=with_more(found.obstacles, standing) if placed else standing,
+        obstacles=_in_place(found, standing) if placed else standing,
         colors=colors | _read_colors(fields.get("moving"), standing.moving.names),
         place=found.place,
     )
     _refuse_off_the_ground(scene, fields)
     _refuse_start_in_obstacle(scene, fields.get("start", fields.get("place", fields["name"])))
     return scene
+
+
+def _in_place(found: Scene, more: Obstacles) -> Obstacles:
+    """What stands in a place, and what a scene adds to it."""
+    return walked_over(with_more(found.obstacles, more), found.place.floor if found.place else None)
 
 
 def _read_ground(place: Place) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -110,7 +110,7 @@ export function freeReach(
   const [ox, oy, oz] = origin;
   const [dx, dy, dz] = direction;
   let limit = reach;
-  if (dy < 0) limit = Math.min(limit, Math.max(0, (oy - radius) / -dy));
+  if (dy < 0 && oy > 0) limit = Math.min(limit, Math.max(0, (oy - radius) / -dy));
   const room = distanceToBoxes(boxes, ox, oy, oz);
   let travelled = 0;
   for (let step = 0; step < MAX_STEPS; step++) {

@@ -64,11 +64,11 @@ export interface Reset {
   type: "reset";
 }
 
-/** Go to a place on the ground; an input that asks for anything takes over. */
+/** Go to a place on some floor; an input that asks for anything takes over. */
 export interface Goto {
   type: "goto";
-  /** x, z; from -1000000 to 1000000, from -1000000 to 1000000 */
-  place: [number, number];
+  /** x, height, z; from -1000000 to 1000000, from -1000000 to 1000000, from -1000000 to 1000000 */
+  place: [number, number, number];
 }
 
 /** Push an obstacle over the ground, or let go of it; it stops before the body and stays where it is left. */
@@ -406,6 +406,8 @@ export interface Plan {
   goal: number[];
   /** capsule segments of the posture shown now */
   chosen: number[];
+  /** of the ground at each key frame, metres */
+  heights: number[];
 }
 
 /** Something that takes a while has begun or ended; what was there before goes on meanwhile. */
@@ -430,12 +432,12 @@ export interface Crossed {
 export interface Going {
   type: "going";
   state: "walking" | "arrived" | "given up" | "taken over" | "refused";
-  /** x, z */
-  place: [number, number];
+  /** x, height, z */
+  place: [number, number, number];
   /** why it was refused or given up; else empty */
   reason: string;
   /** where one can stand instead, of a place that was refused */
-  nearest: [number, number] | null;
+  nearest: [number, number, number] | null;
 }
 
 /** Where an obstacle is that was pushed; told while it moves. With a new epoch all are back where they were. */

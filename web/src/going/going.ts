@@ -1,15 +1,17 @@
 /** Going to a place that is clicked on the floor: the question to the server, and what the page shows of its answers. */
 
-import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import { Plane, Raycaster, Vector2, Vector3, type Intersection } from "three";
 import type { ClientMessage, Going, Notice } from "../generated/messages";
 import type { Picture } from "../picture";
 import { text } from "../texts/texts";
 import { FloorClicks } from "./floor_click";
 import { GoalMarker } from "./marker";
 
-/** Metres: what is clicked higher than this is no floor, and what is higher than that is the storey above. */
+/** Metres above the floor: what is clicked higher than this is no floor, and what is higher than that is the storey above. */
 const FLOOR = 0.15;
 const ABOVE = 2;
+/** The upright part of the normal of a floor, at least: 32 degrees. */
+const LEVEL = 0.85;
 
 export interface GoingHost {
   readonly picture: Picture;
@@ -52,17 +54,26 @@ export class GoingSomewhere {
     if (place) this.host.send({ type: "goto", place });
   }
 
-  /** The place on the floor under a spot of the view (shares of its width and height), if nothing hides it. */
-  private floorAt(right: number, down: number): [number, number] | null {
+  /** The place on a floor under a spot of the view (shares of its width and height), if nothing hides it. */
+  private floorAt(right: number, down: number): [number, number, number] | null {
     const { picture } = this.host;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2(2 * right - 1, 1 - 2 * down), picture.stage.camera);
-    const floor = ray.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), 0), new Vector3());
+    const seen = ray
+      .intersectObjects(picture.world.solid, true)
+      .filter(({ object, point }) => object.visible && point.y < picture.world.drawnUpTo);
+    const [first] = seen;
+    if (picture.world.hasModel && first && liesLevel(first)) return [first.point.x, first.point.y, first.point.z];
+    const level = picture.floor;
+    const floor = ray.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), -level), new Vector3());
     if (!floor) return null;
     const far = floor.distanceTo(ray.ray.origin);
-    const hides = ray
-      .intersectObjects(picture.world.solid, true)
-      .some(({ distance, point, object }) => object.visible && distance < far - FLOOR && point.y > FLOOR && point.y < ABOVE);
-    return hides ? null : [floor.x, floor.z];
+    const hides = seen.some(({ distance, point }) => distance < far - FLOOR && point.y > level + FLOOR && point.y < level + ABOVE);
+    return hides ? null : [floor.x, level, floor.z];
   }
+}
+
+/** Whether a surface is level enough to be walked on, from whichever side it is seen. */
+function liesLevel({ face, object }: Intersection): boolean {
+  return face !== null && face !== undefined && Math.abs(face.normal.clone().transformDirection(object.matrixWorld).y) > LEVEL;
 }

@@ -17,8 +17,8 @@ export class GoalMarker {
     this.group.visible = false;
   }
 
-  show(place: readonly [x: number, z: number], color: number, offered: boolean): void {
-    this.group.position.set(place[0], HEIGHT, place[1]);
+  show(place: readonly [x: number, height: number, z: number], color: number, offered: boolean): void {
+    this.group.position.set(place[0], place[1] + HEIGHT, place[2]);
     this.ring.material.color.set(color);
     this.ring.material.opacity = offered ? 0.35 : 0.9;
     this.group.visible = true;

@@ -141,7 +141,7 @@ export class OverlayDrawing {
     const { path, ghosts, goal, chosen } = this.drawings;
     const { plan } = this;
     const radius = (i: number) => this.radius(i % Math.max(1, this.capsules.length));
-    path.show(plan && shown.has("path") ? plan.root : []);
+    path.show(plan && shown.has("path") ? plan.root : [], plan?.heights ?? []);
     ghosts.place(plan && shown.has("ghosts") ? plan.ghosts.slice(0, MOST_GHOSTS).flat() : [], radius);
     goal.place(plan && shown.has("goal") ? plan.goal : [], radius);
     chosen.place(plan && shown.has("goal") ? plan.chosen : [], radius);

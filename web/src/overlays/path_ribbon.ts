@@ -21,13 +21,18 @@ export class PathRibbon {
     this.mesh.renderOrder = 3;
   }
 
-  /** @param keys x, z, heading of each key frame */
-  show(keys: readonly (readonly [number, number, number])[]): void {
+  /**
+   * @param keys x, z, heading of each key frame
+   * @param heights of the ground there
+   */
+  show(keys: readonly (readonly [number, number, number])[], heights: readonly number[]): void {
     const corners: number[] = [];
-    const points = keys.map(([x, z]) => new Vector3(x, HEIGHT, z));
+    const points = keys.map(([x, z], i) => new Vector3(x, (heights[i] ?? 0) + HEIGHT, z));
     const moved = points.length > 1 && points.some((p) => p.distanceTo(points[0] as Vector3) > 0.02);
     if (moved) addBand(corners, new CatmullRomCurve3(points, false, "centripetal").getPoints(points.length * SAMPLES_PER_KEY));
-    for (const [x, z, heading] of keys.slice(1)) addArrow(corners, x, z, heading);
+    keys.forEach(([x, z, heading], i) => {
+      if (i > 0) addArrow(corners, x, heights[i] ?? 0, z, heading);
+    });
     this.mesh.geometry.dispose();
     this.mesh.geometry = new BufferGeometry();
     this.mesh.geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
@@ -54,11 +59,11 @@ function addBand(corners: number[], points: readonly Vector3[]): void {
   });
 }
 
-function addArrow(corners: number[], x: number, z: number, heading: number): void {
+function addArrow(corners: number[], x: number, floor: number, z: number, heading: number): void {
   const forward: [number, number] = [Math.sin(heading), Math.cos(heading)];
   const left: [number, number] = [forward[1], -forward[0]];
   const at = (ahead: number, aside: number) => {
-    corners.push(x + forward[0] * ahead + left[0] * aside, HEIGHT + 0.002, z + forward[1] * ahead + left[1] * aside);
+    corners.push(x + forward[0] * ahead + left[0] * aside, floor + HEIGHT + 0.002, z + forward[1] * ahead + left[1] * aside);
   };
   at(ARROW, 0);
   at(-ARROW * 0.6, ARROW * 0.75);

@@ -92,10 +92,10 @@ export class Stage {
   }
 
   /** Keeps the sun's shadow where the action is. */
-  follow(x: number, z: number): void {
+  follow(x: number, floor: number, z: number): void {
     const texel = (2 * SHADOW_EXTENT) / SHADOW_PIXELS;
     const snap = (v: number) => Math.round(v / (texel * 8)) * texel * 8;
-    this.sun.target.position.set(snap(x), 0.9, snap(z));
+    this.sun.target.position.set(snap(x), snap(floor) + 0.9, snap(z));
     this.sun.position.copy(SUN_DIRECTION).multiplyScalar(SUN_DISTANCE).add(this.sun.target.position);
   }
 
@@ -128,6 +128,7 @@ export class Stage {
   private createRenderer(quality: Quality): WebGLRenderer {
     const renderer = new WebGLRenderer({ antialias: quality.antialias, powerPreference: "high-performance" });
     renderer.toneMapping = NeutralToneMapping;
+    renderer.localClippingEnabled = true;
     renderer.shadowMap.type = PCFShadowMap;
     renderer.domElement.className = "view";
     renderer.domElement.setAttribute("aria-hidden", "true");

@@ -56,6 +56,21 @@ export class World {
     return [this.obstacles.group, this.place.group];
   }
 
+  /** The height from which on a model is not drawn: that of the storey above. */
+  get drawnUpTo(): number {
+    return this.place.drawnUpTo;
+  }
+
+  /** Whether a model is shown, on whose floors one can be at any height. */
+  get hasModel(): boolean {
+    return this.message?.model != null;
+  }
+
+  /** Finds the storey above who stands at a place, so that the camera may be there. */
+  lookUp(x: number, floor: number, z: number): void {
+    this.place.lookUp(x, floor, z);
+  }
+
   /** Lets the obstacles of these names glow: they close the way. */
   markBlocking(names: readonly string[]): void {
     const wanted = new Set(names);
@@ -107,6 +122,7 @@ export class World {
 
   /** Makes obstacles see-through that stand between the camera and the avatar. */
   clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
+    this.place.open(camera);
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
   }
 

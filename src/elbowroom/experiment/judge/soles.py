@@ -27,13 +27,14 @@ _SIDES = ("left", "right")
 class Soles:
     """How much higher the feet of one avatar are held against obstacles, in one motion."""
 
-    def __init__(self, humanoid: Humanoid, poser: Poser, motion: ShownMotion) -> None:
+    def __init__(self, humanoid: Humanoid, poser: Poser, motion: ShownMotion, *, floors: bool = False) -> None:
+        """`floors` says whether all floors are in the way, those at height 0 too."""
         skeleton, self._poser, self._humanoid = poser.skeleton, poser, humanoid
         self._feet = [
             [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)] for side in _SIDES
         ]
-        self._level: ShownMotion | None = None  # the same strides on the plane; None where they are on it already
-        if motion.roots.shape[1] > HEIGHT and np.abs(motion.roots[:, HEIGHT:]).max(initial=0.0) > 0.0:
+        self._level: ShownMotion | None = None  # the same strides on the plane; None where nothing but it is stood on
+        if floors or (motion.roots.shape[1] > HEIGHT and np.abs(motion.roots[:, HEIGHT:]).max(initial=0.0) > 0.0):
             roots = motion.roots.copy()
             roots[:, HEIGHT:] = 0.0
             self._level = replace(motion, roots=roots)

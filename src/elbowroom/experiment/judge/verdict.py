@@ -1,5 +1,6 @@
 """The judge's verdict on a shown motion: what touches, how near it comes, how smoothly it moves."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -100,7 +101,7 @@ def judge(
     of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
     of_itself = Ledger(chosen.self_tolerance)
     capsule_judges = [CapsuleJudge(humanoid, around.obstacles) for around in surroundings]
-    self_judge, soles = SelfJudge(humanoid), Soles(humanoid, poser, motion)
+    self_judge, soles = SelfJudge(humanoid), Soles(humanoid, poser, motion, floors=math.isinf(scene.obstacles.ground))
     mesh_judges = (
         [] if skin is None else [MeshJudge(skin, humanoid.skeleton, around.obstacles) for around in surroundings]
     )

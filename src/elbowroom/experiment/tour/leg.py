@@ -12,7 +12,7 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.journey import JourneyState
 from elbowroom.experiment.crossing import DT
 from elbowroom.planning.command import Command
-from elbowroom.planning.navigation.way import NoWayError, Place
+from elbowroom.planning.navigation.way import NoWayError, Place, Spot
 
 Listener = Callable[[Command, float, Frame], None]
 
@@ -23,7 +23,7 @@ NO_WAY, OUT_OF_TIME = "no way", "out of time"
 class Leg:
     """How a walk to one place went."""
 
-    target: Place
+    target: Place | Spot
     outcome: str  # "arrived", "given up", `NO_WAY` or `OUT_OF_TIME`
     reason: str  # why it was given up; else empty
     place: Place  # where it ended
@@ -49,7 +49,7 @@ class LegTimes:
 
 
 def walk_to(
-    controller: Controller, target: Place, limit: float, listener: Listener | None = None
+    controller: Controller, target: Place | Spot, limit: float, listener: Listener | None = None
 ) -> tuple[Leg, LegTimes]:
     """Go to a place and stand there, or give up after `limit` seconds; `listener` hears of every step."""
     frame = controller.step(Command(), 0.0)
@@ -57,12 +57,12 @@ def walk_to(
     try:
         journey = controller.goto(target, FORWARD)
     except NoWayError as error:
-        here = controller.root.x, controller.root.z
+        here = _here(controller)
         none = np.empty(0)
         leg = Leg(target, NO_WAY, str(error), here, 0.0, 0.0, 0, 0.0, round(frame.clearance, 6))
         return leg, LegTimes(1e3 * (time.perf_counter() - began), none, none)
     found = time.perf_counter() - began
-    way_m = journey.way.left((controller.root.x, controller.root.z))
+    way_m = journey.way.left(_here(controller))
     costs, planned, stuck_times, stuck_frames, clearance = list[float](), list[bool](), 0, 0, frame.clearance
     while (journey.walking or not controller.stands) and frame.time - started < limit:
         before, began = frame, time.perf_counter()
@@ -79,7 +79,7 @@ def walk_to(
         target=target,
         outcome=outcome,
         reason=journey.reason or (f"{limit:g} s were not enough" if journey.walking else ""),
-        place=(round(controller.root.x, 3), round(controller.root.z, 3)),
+        place=_here(controller),
         way_m=round(way_m, 2),
         seconds=round(frame.time - started, 3),
         stuck_times=stuck_times,
@@ -88,3 +88,8 @@ def walk_to(
     )
     frame_ms = 1e3 * np.array(costs)
     return leg, LegTimes(1e3 * found, frame_ms, frame_ms[np.array(planned, bool)])
+
+
+def _here(controller: Controller) -> Place:
+    root = controller.root
+    return round(root.x, 3), round(root.height, 3), round(root.z, 3)

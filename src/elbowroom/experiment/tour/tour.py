@@ -13,7 +13,7 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge
 from elbowroom.experiment.tour.leg import Leg, LegTimes, Listener, walk_to
 from elbowroom.planning.command import Command
-from elbowroom.planning.navigation.way import Place
+from elbowroom.planning.navigation.way import Place, Spot
 
 _SPARE, _PACE = 30.0, 0.4  # seconds; m/s: who is slower on the whole has run out of time
 
@@ -81,7 +81,7 @@ class Shown:
 
 def run_tour(
     controller: Controller,
-    targets: Sequence[Place],
+    targets: Sequence[Place | Spot],
     listener: Listener | None = None,
     heard: Heard | None = None,
 ) -> TourResult:
@@ -113,7 +113,7 @@ def judged(shown: Shown, controller: Controller, *, mesh: bool, progress: Callab
     return judge(shown.motion(), controller.humanoid, controller.scene, JudgeSettings(mesh=mesh), progress)
 
 
-def _limit(controller: Controller, target: Place) -> float:
+def _limit(controller: Controller, target: Place | Spot) -> float:
     """Seconds that a leg may take."""
     across = float(np.hypot(*controller.scene.ground_size))
-    return _SPARE + max(across, float(np.hypot(target[0], target[1]))) / _PACE
+    return _SPARE + max(across, float(np.hypot(target[0], target[-1]))) / _PACE

@@ -14,11 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.body.dof import DOF
 from elbowroom.body.gait import stood_places
-from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules
+from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, sole_on
+from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -30,6 +32,7 @@ _OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, t
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS, _QUICK = 25, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
 _LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
+_BELOW, _ABOVE = 0.4, 1.4  # of a standing body's height: so far below and above its place it reaches at most
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
 
 
@@ -69,9 +72,32 @@ class Footing:
         rows = states.copy()
         return rows, set_rises(self.ground, self._model.gait.legs, self._model.gait.scale, self._sole, rows)
 
+    def heights(self, states: Floats) -> Span:
+        """From where to where bodies reach in root states (N, ROOT_STATE); all heights on plain ground."""
+        if self.ground.plain:
+            return EVERY_HEIGHT
+        return self.heights_between(float(states[:, HEIGHT].min()), float(states[:, HEIGHT].max()))
+
+    def heights_between(self, least: float, most: float) -> Span:
+        """From where to where bodies reach whose places are between two heights; all heights on plain ground."""
+        if self.ground.plain:
+            return EVERY_HEIGHT
+        return least - _BELOW * self._tall, most + _ABOVE * self._tall
+
+    @cached_property
+    def _tall(self) -> float:
+        """How high the standing body is, metres."""
+        ends = posture_capsules(self._model, np.zeros((1, DOF)), np.zeros((1, ROOT_STATE)))[:, [1, 4], 0]
+        return float((ends.max(axis=1) + self._model.body.radii).max())
+
     def _feet(self, capsules: CapsuleSet) -> Bools:
-        """Which of the capsules (C,) are round feet and toes."""
-        return np.isin(capsules.joints, self._model.figure.legs[:, 2:])
+        """Which of the capsules (C,) are round feet and toes; of the legs' or of the whole body's."""
+        return self._feet_of[0 if capsules is self._model.roots else 1]
+
+    @cached_property
+    def _feet_of(self) -> tuple[Bools, Bools]:
+        feet = self._model.figure.legs[:, 2:]
+        return np.isin(self._model.roots.joints, feet), np.isin(self._model.body.joints, feet)
 
     def lifted(
         self,

@@ -40,7 +40,7 @@ class LoweredLegs:
     """Legs and pelvis of one humanoid in one scene; frozen once made."""
 
     def __init__(self, model: BodyModel, obstacles: Obstacles, ground: Ground = PLAIN) -> None:
-        self._model, self._obstacles, self._footing = model, obstacles, Footing(model, ground)
+        self._model, self._obstacles, self.footing = model, obstacles, Footing(model, ground)
         self._reach, height = _extent(model)
         self._low = obstacles.corners[:, :, 1].min(axis=1, initial=np.inf) < (height if ground.plain else np.inf)
         self._sweeps: Spans | None = None
@@ -57,7 +57,7 @@ class LoweredLegs:
 
     def stood(self, path: RootPath) -> RootPath:
         """The path with what the feet stand on at its key times; itself on plain ground."""
-        return path if self._footing.plain else replace(path, states=self._footing.stood(path.states)[0])
+        return path if self.footing.plain else replace(path, states=self.footing.stood(path.states)[0])
 
     def clearances(self, roots: Floats, lowerings: Floats, after: Floats | None = None) -> Floats32:
         """Clearance (N,) at root states (N, 7) and lowerings (N,), `after` (N,) seconds on the path, or at its start.
@@ -85,16 +85,19 @@ class LoweredLegs:
         """The obstacles that legs at root states (N, 7) may touch."""
         low_x, high_x, low_z, high_z = ground_covered(roots)
         reach = self._reach
-        numbers = self._obstacles.numbers_near((low_x - reach, low_z - reach), (high_x + reach, high_z + reach))
+        heights = self.footing.heights(roots)
+        numbers = self._obstacles.numbers_near(
+            (low_x - reach, low_z - reach), (high_x + reach, high_z + reach), heights
+        )
         return self._obstacles.picked(numbers[self._low[numbers]])
 
     def _clear(self, near: Nearby, roots: Floats, lowerings: Floats) -> Floats32:
         """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds."""
         if is_empty(near):
             return np.full(len(roots), np.inf, np.float32)
-        states = self._footing.stood(roots)[0].copy()
+        states = self.footing.stood(roots)[0].copy()
         states[:, :2] -= roots[0, :2]
-        segments = self._footing.lifted(
+        segments = self.footing.lifted(
             leg_capsules(self._model, states, lowerings), self._model.roots, states, lowerings
         )
         return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]))

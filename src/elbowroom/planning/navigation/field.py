@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.heap import pop, push
+from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -38,32 +39,39 @@ class Prices(NamedTuple):
 
 
 class Field(NamedTuple):
-    """Costs to a place from the points of a map."""
+    """Costs to a place from the N places of a map."""
 
-    cost: Floats  # (nz, nx) metres; infinite where there is no way or nobody looked
-    onward: Points  # (nz, nx) the point to go on to, row by row; -1 at the place itself and where there is no way
+    cost: Floats  # (N,) metres; infinite where there is no way or nobody looked
+    onward: Points  # (N,) the place to go on to; -1 at the place itself and where there is no way
+
+
+class Costly(NamedTuple):
+    """Places, the room at each, and what a metre costs."""
+
+    surfaces: Surfaces
+    room: Floats32  # (N,) metres
+    above: Floats32  # (N,) metres
+    prices: Prices
 
 
 @exact_kernel
-def price_at(room: Floats32, above: Floats32, prices: Prices, i: int, j: int) -> float:
-    """What a metre costs at a point; infinite where there is no way."""
-    here = room[i, j]
+def price_at(costly: Costly, n: int) -> float:
+    """What a metre costs at a place; infinite where there is no way."""
+    here, prices = costly.room[n], costly.prices
     if here < prices.slim:
         return np.inf
     narrow = min(max((prices.roomy - here) / (prices.roomy - prices.slim), 0.0), 1.0)
-    ducked = prices.ducked if above[i, j] < prices.headroom else 0.0
+    ducked = prices.ducked if costly.above[n] < prices.headroom else 0.0
     return float(1.0 + prices.tight * narrow * narrow + ducked)
 
 
 @exact_kernel
-def field_to(
-    room: Floats32, above: Floats32, cell: float, prices: Prices, goal: int, start: int, beyond: float
-) -> Field:
-    """The costs to the point `goal` (row by row) of all that cost no more than `start` does, and `beyond` metres."""
-    rows, columns = room.shape
-    cost, onward = np.full(rows * columns, np.inf), np.full(rows * columns, -1, np.int32)
-    done = np.zeros(rows * columns, np.bool_)
-    keys, nodes = np.empty(4 * rows * columns + 64), np.empty(4 * rows * columns + 64, np.int64)
+def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
+    """The costs to the place `goal` of all that cost no more than `start` does, and `beyond` metres."""
+    surfaces, count = costly.surfaces, costly.room.shape[0]
+    cost, onward = np.full(count, np.inf), np.full(count, -1, np.int32)
+    done = np.zeros(count, np.bool_)
+    keys, nodes = np.empty(4 * count + 64), np.empty(4 * count + 64, np.int64)
     size, most = push(keys, nodes, _EMPTY, 0.0, goal), np.inf
     cost[goal] = 0.0
     while size > 0:
@@ -76,73 +84,74 @@ def field_to(
         done[node] = True
         if node == start:
             most = reached + beyond
-        i, j = node // columns, node % columns
-        own = price_at(room, above, prices, i, j)
+        own = price_at(costly, node)
         for m in range(_MOVES.shape[0]):
-            a, b = i + _MOVES[m, 0], j + _MOVES[m, 1]
-            if not (0 <= a < rows and 0 <= b < columns) or done[a * columns + b]:
+            after = beside(surfaces, node, _MOVES[m, 0], _MOVES[m, 1])
+            if after < 0 or done[after]:
                 continue
-            mean = 0.5 * (own + price_at(room, above, prices, a, b))
+            mean = 0.5 * (own + price_at(costly, after))
             if m >= _STRAIGHT:
-                mean = max(mean, _between(room, above, prices, i, j, m))
-            total = reached + mean * cell * np.hypot(_MOVES[m, 0], _MOVES[m, 1])
-            if total < cost[a * columns + b] - _BETTER and size < keys.shape[0]:
-                cost[a * columns + b], onward[a * columns + b] = total, node
-                size = push(keys, nodes, size, total, a * columns + b)
-    for node in range(rows * columns):
+                mean = max(mean, _between(costly, node, m))
+            total = reached + mean * surfaces.cell * np.hypot(_MOVES[m, 0], _MOVES[m, 1])
+            if total < cost[after] - _BETTER and size < keys.shape[0]:
+                cost[after], onward[after] = total, node
+                size = push(keys, nodes, size, total, after)
+    for node in range(count):
         if not done[node]:
             cost[node], onward[node] = np.inf, -1
-    return Field(cost.reshape(room.shape), onward.reshape(room.shape))
+    return Field(cost, onward)
 
 
 @exact_kernel
-def _between(room: Floats32, above: Floats32, prices: Prices, i: int, j: int, m: int) -> float:
-    """The dearer of the two points that a move passes between."""
+def _between(costly: Costly, node: int, m: int) -> float:
+    """The dearer of the two places that a move passes between."""
     a, b = _MOVES[m, 0], _MOVES[m, 1]
     half_a, half_b = int(a / 2), int(b / 2)
-    first = price_at(room, above, prices, i + half_a, j + half_b)
-    return max(first, price_at(room, above, prices, i + a - half_a, j + b - half_b))
+    first = beside(costly.surfaces, node, half_a, half_b)
+    other = beside(costly.surfaces, node, a - half_a, b - half_b)
+    if min(first, other) < 0:
+        return np.inf
+    return max(price_at(costly, first), price_at(costly, other))
 
 
 @exact_kernel
-def aim_from(
-    field: Field, room: Floats32, above: Floats32, cell: float, prices: Prices, i: float, j: float, far: float
-) -> int:
-    """The point (row by row) to walk straight to from a place in the grid: the farthest on the way within sight.
+def aim_from(field: Field, costly: Costly, node: int, i: float, j: float, far: float) -> int:
+    """The place to walk straight to from `node`, next to row `i` and column `j`: the farthest on the way within sight.
 
     In sight is what lies within `far` metres along the way, and to which the straight line costs no more than the
     way does. -1 where no way is known.
     """
-    rows, columns = room.shape
-    node = min(max(round(i), 0), rows - 1) * columns + min(max(round(j), 0), columns - 1)
-    cost, onward = field.cost.reshape(-1), field.onward.reshape(-1)
+    cost, onward, surfaces = field.cost, field.onward, costly.surfaces
     if not np.isfinite(cost[node]):
         return -1
-    first, aim, walked = cost[node], node, 0.0
+    height, first, aim, walked = surfaces.heights[node], cost[node], node, 0.0
     while onward[node] >= 0 and walked < far:
         after = onward[node]
-        walked += cell * np.hypot(after // columns - node // columns, after % columns - node % columns)
+        here, there, columns = surfaces.points[node], surfaces.points[after], surfaces.columns
+        walked += surfaces.cell * np.hypot(there // columns - here // columns, there % columns - here % columns)
         node = after
-        if (
-            straight_cost(room, above, cell, prices, (i, j), (node // columns, node % columns))
-            <= first - cost[node] + cell
-        ):
+        if straight_cost(costly, (i, j), height, node) <= first - cost[node] + surfaces.cell:
             aim = node
     return int(aim)
 
 
 @exact_kernel
-def straight_cost(
-    room: Floats32, above: Floats32, cell: float, prices: Prices, start: tuple[float, float], end: tuple[int, int]
-) -> float:
-    """What the straight way between two places in the grid costs."""
-    di, dj = end[0] - start[0], end[1] - start[1]
+def straight_cost(costly: Costly, start: tuple[float, float], height: float, end: int) -> float:
+    """What the straight way costs from a row and column at a height to a place; infinite where it leads elsewhere."""
+    surfaces = costly.surfaces
+    columns = surfaces.columns
+    rows = (surfaces.starts.shape[0] - 1) // columns
+    di, dj = surfaces.points[end] // columns - start[0], surfaces.points[end] % columns - start[1]
     length = np.hypot(di, dj)
     steps = max(int(np.ceil(length)), 1)
-    total = 0.0
+    total, node = 0.0, -1
     for k in range(1, steps + 1):
         t = k / steps
-        i = min(max(round(start[0] + t * di), 0), room.shape[0] - 1)
-        j = min(max(round(start[1] + t * dj), 0), room.shape[1] - 1)
-        total += price_at(room, above, prices, i, j)
-    return float(total * cell * length / steps)
+        i = min(max(round(start[0] + t * di), 0), rows - 1)
+        j = min(max(round(start[1] + t * dj), 0), columns - 1)
+        node = onto(surfaces, int(i) * columns + int(j), height)
+        if node < 0:
+            return np.inf
+        height = surfaces.heights[node]
+        total += price_at(costly, node)
+    return float(total * surfaces.cell * length / steps) if node == end else np.inf

@@ -12,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.planning.navigation.field import Prices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
-from elbowroom.planning.navigation.way import NoWayError, Place, Way, reachable_over, said, way_over
+from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, placed, reachable_over, said, way_over
 from elbowroom.world.scene import Scene
 
 _MARGINS = (4.0, 16.0, math.inf)  # metres around start and goal that are looked at, one after the other
@@ -27,34 +27,37 @@ class Navigator:
         self._known: RoomMap | None = None
         self._lock = Lock()
 
-    def find(self, start: Place, goal: Place, closed: Sequence[tuple[Place, float]] = ()) -> Way:
+    def find(self, start: Place | Spot, goal: Place | Spot, closed: Sequence[tuple[Spot, float]] = ()) -> Way:
         """The way from one place to another, around discs (middle, radius) that are taken to be closed.
 
-        Raises `InputError` where the goal is no place on the ground, `NoWayError` where there is no way.
+        A goal without a height is meant at that of the start, and a start without one at 0. Raises `InputError` where
+        the goal is no place on the ground, `NoWayError` where there is no way.
         """
-        if not all(map(math.isfinite, goal)):
-            raise InputError(f"goto: {goal[0]}, {goal[1]} is no place")
-        ground = self._ground
-        if not ground.holds(Rectangle(*goal, *goal)):
-            x, z = min(max(goal[0], ground.low_x), ground.high_x), min(max(goal[1], ground.low_z), ground.high_z)
-            raise NoWayError(f"{said(goal)} lies off the ground, which ends at {said((x, z))}")
-        both = Rectangle(min(start[0], goal[0]), min(start[1], goal[1]), max(start[0], goal[0]), max(start[1], goal[1]))
-        for margin in _MARGINS:
+        begin = placed(start, 0.0)
+        end = placed(goal, begin[1])
+        if not all(map(math.isfinite, end)):
+            raise InputError(f"goto: {', '.join(map(str, goal))} is no place")
+        ground, (x, _, z) = self._ground, end
+        if not ground.holds(Rectangle(x, z, x, z)):
+            edge = min(max(x, ground.low_x), ground.high_x), end[1], min(max(z, ground.low_z), ground.high_z)
+            raise NoWayError(f"{said(end)} lies off the ground, which ends at {said(edge)}")
+        both = Rectangle(min(begin[0], x), min(begin[2], z), max(begin[0], x), max(begin[2], z))
+        for margin in _MARGINS if self._scene.ground.plain else _MARGINS[-1:]:
             area = both.around(margin, ground)
             try:
-                return way_over(self._map_of(area), self._prices, start, goal, closed)
+                return way_over(self._map_of(area), self._prices, begin, end, closed)
             except NoWayError:
                 if area.holds(ground):
                     raise
-        raise NoWayError(f"no way leads from {said(start)} to {said(goal)}")
+        raise NoWayError(f"no way leads from {said(begin)} to {said(end)}")
 
     def room(self) -> RoomMap:
         """The room over the whole ground."""
         return self._map_of(self._ground)
 
-    def reachable(self, start: Place) -> NDArray[np.bool_]:
-        """The points of the map of the whole ground (nz, nx) that a way leads to from a place."""
-        return reachable_over(self.room(), self._prices, start)
+    def reachable(self, start: Place | Spot) -> NDArray[np.bool_]:
+        """The places of the map of the whole ground (N,) that a way leads to from a place."""
+        return reachable_over(self.room(), self._prices, placed(start, 0.0))
 
     @property
     def prices(self) -> Prices:

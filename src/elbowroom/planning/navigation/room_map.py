@@ -6,16 +6,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.jit import kernel
 from elbowroom.planning.navigation.girth import Girth
+from elbowroom.planning.navigation.surfaces import Surfaces, one_plane, over_ground, to_edges
+from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import how_many, row_of
 from elbowroom.world.scene import Scene
-from elbowroom.world.walkable import Stance, walkable_window
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 CELL = 0.06  # metres between points
 FARTHEST = 0.6  # metres: more room is not told apart
-_LOW = 0.03  # metres above the ground: what is lower is stood on
+_LOW = 0.03  # metres above a plane: what is lower is stood on
+_LESS = 0.02  # metres less than a slim body above what can be stepped onto: from there on things are in the way
+_OVER = np.float32(0.06)  # metres by which a body may be over an edge: ankles stay on the ground
 _MOST_POINTS = 2_000_000  # of a map: where it needs more its points lie farther apart
 
 
@@ -50,48 +57,118 @@ def ground_of(scene: Scene) -> Rectangle:
 
 @dataclass(frozen=True, eq=False)
 class RoomMap:
-    """Room at the points of a grid over a part of the ground; what moves is not in it."""
+    """Room at N places to stand, over the points of a grid over a part of the ground; what moves is not in it."""
 
     area: Rectangle
-    cell: float  # metres between points
-    room: Floats32  # (nz, nx) metres to the nearest edge of the floor and to what stands, up to where one ducks
-    above: Floats32  # (nz, nx) metres to what stands above that, up to the top of the head
+    surfaces: Surfaces
+    room: Floats32  # (N,) metres to the nearest edge of the floor and to what stands, up to where one ducks
+    above: Floats32  # (N,) metres to what stands above that, up to the top of the head
 
-    def points(self, places: Floats) -> NDArray[np.int64]:
-        """The points (..., 2), row and column, next to places (..., 2), x and z; those of the border from outside."""
-        own = np.rint((places[..., ::-1] - (self.area.low_z, self.area.low_x)) / self.cell).astype(np.int64)
-        return np.clip(own, 0, np.array(self.room.shape) - 1)
+    @property
+    def cell(self) -> float:
+        """Metres between points."""
+        return self.surfaces.cell
 
-    def places(self, points: NDArray[np.int64]) -> Floats:
-        """The places (..., 2), x and z, of points (..., 2), row and column."""
-        found: Floats = np.array([self.area.low_x, self.area.low_z]) + self.cell * points[..., ::-1]
-        return found
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the grid, along z and along x."""
+        return (len(self.surfaces.starts) - 1) // self.surfaces.columns, self.surfaces.columns
+
+    def in_grid(self, x: float, z: float) -> tuple[float, float]:
+        """Row and column of a place, and shares of them; those of the border from outside."""
+        rows, columns = self.shape
+        row, column = (z - self.area.low_z) / self.cell, (x - self.area.low_x) / self.cell
+        return min(max(row, 0.0), rows - 1.0), min(max(column, 0.0), columns - 1.0)
+
+    def next_to(self, x: float, z: float, height: float) -> int | None:
+        """The place to stand over the point next to a place that is nearest to a height; None where there is none."""
+        row, column = (round(each) for each in self.in_grid(x, z))
+        first, last = self.surfaces.starts[row * self.surfaces.columns + column :][:2].tolist()
+        if first == last:
+            return None
+        return int(first) + int(np.argmin(np.abs(self.surfaces.heights[first:last] - height)))
+
+    @property
+    def places(self) -> Floats:
+        """The places (N, 3): x, height, z."""
+        rows, columns = np.divmod(self.surfaces.points, self.surfaces.columns)
+        x, z = self.area.low_x + self.cell * columns, self.area.low_z + self.cell * rows
+        return np.stack([x, self.surfaces.heights, z], axis=1)
+
+    def place(self, n: int) -> tuple[float, float, float]:
+        """One of the places: x, height, z."""
+        row, column = divmod(int(self.surfaces.points[n]), self.surfaces.columns)
+        height = float(self.surfaces.heights[n])
+        return self.area.low_x + self.cell * column, height, self.area.low_z + self.cell * row
 
 
 def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     """The room over a part of a scene's ground for somebody."""
     wide, deep = area.high_x - area.low_x, area.high_z - area.low_z
     cell = max(CELL, float(np.sqrt(wide * deep / _MOST_POINTS)))
-    shape, origin = (int(deep / cell) + 1, int(wide / cell) + 1), (area.low_x, area.low_z)
+    shape, corner = (int(deep / cell) + 1, int(wide / cell) + 1), (area.low_x, area.low_z)
+    plain = scene.ground.plain
+    surfaces = one_plane(shape, cell) if plain else over_ground(scene.ground, corner, shape, cell)
+    low = _LOW if plain else scene.ground.step + girth.slim - _LESS
     near = scene.obstacles.near(np.array(area[:2]) - FARTHEST, np.array(area[2:]) + FARTHEST)
-    below, above = (
-        walkable_window(near, Stance(0.0, low, high), origin, 0.0, shape, cell, FARTHEST).clearance
-        for low, high in ((_LOW, girth.stooped - girth.slim), (girth.stooped, girth.tall))
-    )
-    return RoomMap(area, cell, _within_floor(below, scene, area, cell), above)
+    spans = (low, girth.stooped - girth.slim), (girth.stooped, girth.tall)
+    below, above = (np.full(len(surfaces.points), FARTHEST, np.float32) for _ in spans)
+    for (least, most), out in zip(spans, (below, above), strict=True):
+        _lower(near, surfaces, corner, (least, max(least, most)), out)
+    edges = _to_edge(scene, area, shape, cell) if plain else to_edges(surfaces, FARTHEST)
+    return RoomMap(area, surfaces, below if edges is None else np.minimum(below, edges + _OVER), above)
 
 
-def _within_floor(room: Floats32, scene: Scene, area: Rectangle, cell: float) -> Floats32:
-    """The room (nz, nx) where a floor ends is no more than what is left to its edge."""
+@kernel
+def _lower(
+    near: Nearby, surfaces: Surfaces, corner: tuple[float, float], span: tuple[float, float], out: Floats32
+) -> None:
+    """Lower `out` (N,) to the distance of upright lines over the places, between two heights above each, from things.
+
+    The places around one thing are one batch of the clearance kernel.
+    """
+    columns, cell = surfaces.columns, surfaces.cell
+    rows, thin = (surfaces.starts.shape[0] - 1) // columns, np.zeros(1, np.float32)
+    for b in range(how_many(near)):
+        x, z = place_of(near, b)
+        bottom, top = heights_of(near, b)
+        reach = (ball_radius(near, b) + FARTHEST) / cell + 1.0
+        i, j = (z - corner[1]) / cell, (x - corner[0]) / cell
+        first_i, last_i = max(0, int(i - reach)), min(rows, int(i + reach) + 1)
+        first_j, last_j = max(0, int(j - reach)), min(columns, int(j + reach) + 1)
+        if last_i <= first_i or last_j <= first_j:
+            continue
+        most = 0
+        for i in range(first_i, last_i):
+            most += surfaces.starts[i * columns + last_j] - surfaces.starts[i * columns + first_j]
+        segments, owners, count = np.empty((1, 6, most), np.float32), np.empty(most, np.int64), 0
+        for i in range(first_i, last_i):
+            for n in range(surfaces.starts[i * columns + first_j], surfaces.starts[i * columns + last_j]):
+                height = surfaces.heights[n]
+                if height + span[0] > top + FARTHEST or height + span[1] < bottom - FARTHEST:
+                    continue
+                segments[0, 0, count] = segments[0, 3, count] = corner[0] + cell * (surfaces.points[n] % columns)
+                segments[0, 1, count], segments[0, 4, count] = height + span[0], height + span[1]
+                segments[0, 2, count] = segments[0, 5, count] = corner[1] + cell * i
+                owners[count] = n
+                count += 1
+        if count > 0:
+            least = np.empty(count, np.float32)
+            clearance_into(np.ascontiguousarray(segments[:, :, :count]), thin, row_of(near, b), least)
+            for k in range(count):
+                out[owners[k]] = min(out[owners[k]], least[k])
+
+
+def _to_edge(scene: Scene, area: Rectangle, shape: tuple[int, int], cell: float) -> Floats32 | None:
+    """How far the places (N,) of a plane are from the edge of its floor; None where it has none."""
     from scipy import ndimage  # slow to import, and not needed on a plain
 
     floor = None if scene.place is None else scene.place.floor
     if floor is None:
-        return room
-    rows, columns = (np.arange(float(size)) for size in room.shape)
+        return None
+    rows, columns = (np.arange(float(size)) for size in shape)
     there = floor.holds(*np.broadcast_arrays(area.low_x + cell * columns, area.low_z + cell * rows[:, None]))
     if there.all():
-        return room
-    left = cell * ndimage.distance_transform_edt(there)
-    within: Floats32 = np.minimum(room, left.astype(np.float32))
-    return within
+        return None
+    left: Floats32 = (cell * ndimage.distance_transform_edt(there)).astype(np.float32).reshape(-1)
+    return left

@@ -28,6 +28,7 @@ _SPARE = 0.2  # metres: more than any clearance that is asked for
 _SPARE_HEIGHT = 0.05  # metres above the pelvis as it walks
 _HALF_DIAGONAL = 0.71  # of a square metre
 _KNEES = 0.1  # metres that legs reach farther where they climb
+_CLIMB = 1.5  # metres up and down that are looked at on a way
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
@@ -72,16 +73,23 @@ class LowerBody:
             self.hull = self.hull._replace(extents=self.hull.extents + _KNEES)
             self.reach += _KNEES
         self._obstacles, self._low = obstacles, np.flatnonzero(low)
+        self._heights = np.stack([corners[low, :, 1].min(axis=1), corners[low, :, 1].max(axis=1)], axis=1)
         self.ground = ground_below(corners[low], height)
         self.grids = grids_of(self.ground.least, self.ground.most)
-        self._near: tuple[tuple[int, int, float], Neighbours] | None = None
+        self._near: tuple[tuple[int, int, float, int], Neighbours] | None = None
 
-    def near(self, x: float, z: float, reach: float) -> Neighbours:
-        """The obstacles within `reach` metres of a place, perhaps some a little farther: those of a square metre."""
-        asked = (round(x), round(z), reach)
+    def near(self, x: float, z: float, reach: float, height: float = 0.0) -> Neighbours:
+        """The obstacles within `reach` metres of a place, perhaps some a little farther: those of a square metre.
+
+        Of several floors those that are met from a height.
+        """
+        asked = (round(x), round(z), reach, round(height))
         if self._near is None or self._near[0] != asked:
             far, (x, z) = reach + _HALF_DIAGONAL, asked[:2]
             near = meeting(self.grids, (x - far, z - far), (x + far, z + far))
+            low, high = self.footing.heights_between(asked[3] - _CLIMB, asked[3] + _CLIMB)
+            if math.isfinite(low):
+                near = near[(self._heights[near, 0] <= high) & (self._heights[near, 1] >= low)]
             ground = Ground(*(part[near] for part in self.ground))
             self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), ground)
         return self._near[1]

@@ -62,7 +62,7 @@ class RootQuery:
         """`reach` is the metres from the start beyond which nothing is met; the command `asked` for does not count."""
         self.settings, self.bounds, self.around = settings, check.bounds, around
         self.start, _, self.horizon, self.interval, _ = asked
-        self._near = check.body.near(self.start.x, self.start.z, reach)
+        self._near = check.body.near(self.start.x, self.start.z, reach, self.start.height)
         self._legs, self._routes = FreeLegs(check, self._near, around, self.start, self.interval), routes
         self._route: tuple[TravelLine, float, Route] | None = None
         self._places = 0

@@ -48,9 +48,9 @@ class Reset:
 
 @dataclass(frozen=True)
 class Goto:
-    """Go to a place on the ground; an input that asks for anything takes over."""
+    """Go to a place on some floor; an input that asks for anything takes over."""
 
-    place: tuple[Coordinate, Coordinate]  # x, z
+    place: tuple[Coordinate, Coordinate, Coordinate]  # x, height, z
 
 
 @dataclass(frozen=True)

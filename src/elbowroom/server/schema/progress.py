@@ -79,6 +79,7 @@ class Plan:
     ghosts: list[list[float]]  # capsule segments of the body at each key frame
     goal: list[float]  # capsule segments of the posture that the goal functions ask for now
     chosen: list[float]  # capsule segments of the posture shown now
+    heights: list[float]  # of the ground at each key frame, metres
 
 
 @dataclass(frozen=True)
@@ -104,9 +105,9 @@ class Going:
     """How it stands with a walk to a place; told when that changes."""
 
     state: Literal["walking", "arrived", "given up", "taken over", "refused"]
-    place: tuple[float, float]  # x, z
+    place: tuple[float, float, float]  # x, height, z
     reason: str  # why it was refused or given up; else empty
-    nearest: tuple[float, float] | None  # where one can stand instead, of a place that was refused
+    nearest: tuple[float, float, float] | None  # where one can stand instead, of a place that was refused
 
 
 @dataclass(frozen=True)

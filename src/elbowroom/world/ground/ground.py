@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -58,6 +58,43 @@ PLAIN = Ground(
 )  # fmt: skip
 
 
+@helper
+def _over(t: Floats, x: float, z: float) -> float:
+    """The height of a triangle's surface at a place; minus infinity beside it."""
+    px, pz = x - t[0], z - t[1]
+    bx, bz, cx, cz = t[3] - t[0], t[4] - t[1], t[5] - t[0], t[6] - t[1]
+    if bz * px - bx * pz < -_INSIDE or cx * pz - cz * px < -_INSIDE:
+        return _NONE
+    if (cz - bz) * (px - bx) - (cx - bx) * (pz - bz) < -_INSIDE:
+        return _NONE
+    return float(t[2] + t[7] * px + t[8] * pz)
+
+
+@exact_kernel
+def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
+    """Write all heights at which there is ground at a place, from the lowest up, as many as `out` holds; how many.
+
+    Of those less than a step apart the highest.
+    """
+    ix, iz = math.floor((x - ground.corner[0]) / ground.cell), math.floor((z - ground.corner[1]) / ground.cell)
+    inside = not ground.plain and 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]
+    cell, count = int(ix) * ground.shape[1] + int(iz) if inside else 0, 0
+    if ground.level[cell] if inside else ground.beyond:
+        out[0], count = 0.0, 1
+    for m in range(ground.starts[cell], ground.starts[cell + 1] if inside else ground.starts[cell]):
+        height = _over(ground.triangles[ground.members[m]], x, z)
+        if height > _NONE and count < out.shape[0]:
+            out[count] = height
+            count += 1
+    out[:count].sort()
+    kept = 0
+    for i in range(count):
+        if i + 1 == count or out[i + 1] - out[i] > ground.step:
+            out[kept] = out[i]
+            kept += 1
+    return kept
+
+
 @exact_kernel
 def height_at(ground: Ground, x: float, z: float, near: float) -> float:
     """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any."""
@@ -71,14 +108,7 @@ def height_at(ground: Ground, x: float, z: float, near: float) -> float:
     if not inside:
         return best
     for m in range(ground.starts[cell], ground.starts[cell + 1]):
-        t = ground.triangles[ground.members[m]]
-        px, pz = x - t[0], z - t[1]
-        bx, bz, cx, cz = t[3] - t[0], t[4] - t[1], t[5] - t[0], t[6] - t[1]
-        if bz * px - bx * pz < -_INSIDE or cx * pz - cz * px < -_INSIDE:
-            continue
-        if (cz - bz) * (px - bx) - (cx - bx) * (pz - bz) < -_INSIDE:
-            continue
-        height = t[2] + t[7] * px + t[8] * pz
+        height = _over(ground.triangles[ground.members[m]], x, z)
         if height > best and abs(height - near) <= ground.step:
             best = height
     return best

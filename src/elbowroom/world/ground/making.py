@@ -1,5 +1,7 @@
 """The ground of a scene: made once, from what stands in it, by its shape and not by its name."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,14 +27,25 @@ _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what 
 def ground_of(obstacles: Obstacles, floor: FloorArea | None = None) -> Ground:
     """The ground of what stands on the plane at height 0, which is ground all over, or where a place has its `floor`.
 
-    Plain where no surface lies within a step of the plane, or all of those rise from it by nothing.
+    Plain where no surface lies within a step of the plane, or all of those rise from it by nothing, or lie under it.
     """
     triangles = level_triangles(obstacles)
     least, most = triangles[:, :, 1].min(axis=1, initial=np.inf), triangles[:, :, 1].max(axis=1, initial=-np.inf)
     within = (least <= STEP) & (most >= -STEP) & ((most > RISE) | (least < -RISE))
+    within[within] &= (most[within] > RISE) | ~_covered(triangles[within], floor)
     if not within.any():
         return PLAIN
     return _gridded(triangles, floor)
+
+
+def walked_over(obstacles: Obstacles, floor: FloorArea | None) -> Obstacles:
+    """What stands in a place with a `floor`: all of it is in the way where its ground is not plain, floors included.
+
+    Feet are held above what they stand on there. Else what does not rise from the plane is not in the way.
+    """
+    if floor is None or ground_of(obstacles, floor).plain:
+        return obstacles
+    return replace(obstacles, ground=-np.inf)
 
 
 def level_triangles(obstacles: Obstacles) -> Floats:
@@ -45,6 +58,22 @@ def level_triangles(obstacles: Obstacles) -> Floats:
         steep = np.cos(STEEPEST) * np.linalg.norm(normals, axis=1)
         found.append(corners[(up >= steep * (1.0 - 1e-9)) & (up > _FLAT)])
     return np.concatenate(found)
+
+
+def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
+    """Which of the triangles (T, 3, 3) have the plane over them wherever they are."""
+    if floor is None:
+        return np.ones(len(triangles), np.bool_)
+    flat, last = triangles[:, :, [0, 2]], np.array(floor.there.shape) - 1
+    low, high = (
+        np.floor((edge - floor.origin) / floor.cell).astype(np.int64) for edge in (flat.min(axis=1), flat.max(axis=1))
+    )
+    gaps = np.zeros(last + 2, np.int64)  # holes in the floor before each of its squares, along both axes
+    gaps[1:, 1:] = (~floor.there).cumsum(axis=0).cumsum(axis=1)
+    (a, b), (c, d) = np.clip(low, 0, last).T, np.clip(high, 0, last).T + 1
+    whole = gaps[c, d] - gaps[a, d] - gaps[c, b] + gaps[a, b] == 0
+    covered: Bools = whole & np.all((low >= -1) & (high <= last + 1), axis=1)
+    return covered
 
 
 def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:

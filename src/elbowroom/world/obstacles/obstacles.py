@@ -25,6 +25,9 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
+Span = tuple[float, float]  # the least and the greatest of some heights, metres
+
+EVERY_HEIGHT: Span = (-np.inf, np.inf)
 _NEAR, _WIDER, _FAR = 2.0, 4.0, 1e6  # metres: where the nearest is looked for first, how many times farther, at most
 _NEARER, _MANY = 0.5, 500  # metres: and where there are so many
 
@@ -42,7 +45,8 @@ class Obstacles:
     rotations: Floats = field(default_factory=lambda: np.empty((0, 4)))  # (N, 4) shape-to-world quaternions, xyzw
     standing_names: tuple[str, ...] = ()
     moving: Moving = field(default_factory=Moving)
-    ground: float = 0.0  # metres, how high the level ground is: triangles that do not rise from it are not in the way
+    # Metres, how high the level ground is: triangles that do not rise from it are not in the way; all are at -inf.
+    ground: float = 0.0
 
     @classmethod
     def boxes(
@@ -113,13 +117,24 @@ class Obstacles:
             points = shape.array if isinstance(shape, Hull) else shape.vertices if isinstance(shape, Mesh) else None
             yield self.names[i], self.corners[i] if points is None else center + quaternion.rotate(turn, points)
 
-    def numbers_near(self, least: Sequence[float] | Floats, most: Sequence[float] | Floats) -> Longs:
-        """The numbers, in order, of those that stand over a rectangle on the ground, or nearly: corners x and z."""
-        return meeting(self._grids, (float(least[0]), float(least[1])), (float(most[0]), float(most[1])))
+    def numbers_near(
+        self, least: Sequence[float] | Floats, most: Sequence[float] | Floats, heights: Span = EVERY_HEIGHT
+    ) -> Longs:
+        """The numbers, in order, of those that stand over a rectangle on the ground, or nearly: corners x and z.
 
-    def near(self, least: Sequence[float] | Floats, most: Sequence[float] | Floats) -> Nearby:
-        """Those that stand over a rectangle on the ground, or nearly: corners x and z."""
-        return self.picked(self.numbers_near(least, most))
+        Those that reach into a span of heights.
+        """
+        numbers = meeting(self._grids, (float(least[0]), float(least[1])), (float(most[0]), float(most[1])))
+        if heights == EVERY_HEIGHT or not len(numbers):
+            return numbers
+        own = self._heights[numbers]
+        return numbers[(own[:, 0] <= heights[1]) & (own[:, 1] >= heights[0])]
+
+    def near(
+        self, least: Sequence[float] | Floats, most: Sequence[float] | Floats, heights: Span = EVERY_HEIGHT
+    ) -> Nearby:
+        """Those that stand over a rectangle on the ground, or nearly: corners x and z; those in a span of heights."""
+        return self.picked(self.numbers_near(least, most, heights))
 
     def picked(self, numbers: Longs) -> Nearby:
         """Those that stand, by their numbers."""
@@ -132,10 +147,19 @@ class Obstacles:
         """How far away those that stand are, over the ground: one map for all who walk here."""
         return FreeMap(self.near)
 
-    def along(self, times: Floats, ground: tuple[Place, Place], others: Moving | None = None) -> Along:
-        """What is in the way between `times` (n+1,) over a rectangle on the ground, `others` that move included."""
+    def along(
+        self,
+        times: Floats,
+        ground: tuple[Place, Place],
+        others: Moving | None = None,
+        heights: Span = EVERY_HEIGHT,
+    ) -> Along:
+        """What is in the way between `times` (n+1,) over a rectangle on the ground, `others` that move included.
+
+        Of what stands, that which reaches into a span of heights.
+        """
         moving = self.moving + others if others else self.moving
-        numbers = self.numbers_near(*ground)
+        numbers = self.numbers_near(*ground, heights)
         return along(self.picked(numbers), numbers, len(self.standing.rows), moving, times, ground)
 
     def at(self, time: float) -> Nearby:

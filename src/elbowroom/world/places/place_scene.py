@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from elbowroom.body.root import RootState
+from elbowroom.world.ground.making import walked_over
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.place import Place
 from elbowroom.world.places.reading import read_place
@@ -33,7 +34,7 @@ def place_scene(place: Place, progress: Progress = lambda _what, _share: None) -
     """The scene of a place: its ground becomes height 0, the start is where one can begin; raises `InputError`."""
     found = survey(place, progress)
     start, ground = found.beginning, found.ground.height
-    obstacles = standing_parts(place, ground)
+    obstacles = walked_over(standing_parts(place, ground), found.floor)
     least, most = place.bounds
     wide, deep = np.minimum((most - least)[[0, 2]] + 2.0 * _AROUND, _LARGEST).tolist()
     x, z = (0.5 * (least + most))[[0, 2]].tolist()

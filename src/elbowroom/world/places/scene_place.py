@@ -19,7 +19,6 @@ from elbowroom.world.places.place import Place
 
 Floats = NDArray[np.float64]
 
-_REACH = 4.0  # metres above the ground: what is wholly higher is in nobody's way
 _MOST_BYTES = 128 * 2**20  # of unpacked parts
 MOST_PARTS = 20_000
 
@@ -43,7 +42,7 @@ def standing_parts(place: Place, ground: float) -> Obstacles:
     names, shapes, centers = [], [], []
     for part in place.parts:
         least, most = part.vertices.min(axis=0), part.vertices.max(axis=0)
-        if not part.stands or most[1] <= ground or least[1] >= ground + _REACH:
+        if not part.stands:
             continue
         middle = 0.5 * (least + most)
         names.append(part.name)

@@ -105,7 +105,8 @@ class UpperBodyPlanner:
         reach = self.model.chain.span + _NEARLY
         low_x, high_x, low_z, high_z = ground_covered(path.states)
         ground = (low_x - reach, low_z - reach), (high_x + reach, high_z + reach)
-        return self._obstacles.along(path.times, ground, others)
+        heights = self._legs.footing.heights(path.states)
+        return self._obstacles.along(path.times, ground, others, heights)
 
     def _search_of(
         self,
