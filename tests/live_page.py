@@ -77,6 +77,7 @@ def open_live_page(
 ) -> LivePage:
     """A page in a context of its own, ready: the avatar stands in the picture and poses arrive."""
     script = options.pop("script", None)
+    options.setdefault("service_workers", "block")  # each page is new here: nothing need be kept
     context = browser.new_context(viewport={"width": viewport[0], "height": viewport[1]}, **options)
     page = context.new_page()
     page.set_default_timeout(1000.0 * PATIENCE)

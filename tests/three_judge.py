@@ -54,6 +54,33 @@ async ([glb, clip, times]) => {
 }
 """
 
+_THINGS = """
+async ([glb, times]) => {
+  const { THREE, load } = window.judge;
+  const gltf = await load(glb);
+  const mixer = new THREE.AnimationMixer(gltf.scene);
+  for (const clip of gltf.animations.slice(0, 1)) {
+    const action = mixer.clipAction(clip).setLoop(THREE.LoopOnce);
+    action.clampWhenFinished = true;
+    action.play();
+  }
+  return times.map((time) => {
+    mixer.setTime(time);
+    gltf.scene.updateMatrixWorld(true);
+    const found = {};
+    gltf.scene.traverse((mesh) => {
+      if (!mesh.isMesh || mesh.isSkinnedMesh) return;
+      mesh.geometry.computeBoundingBox();
+      const { min, max } = mesh.geometry.boundingBox;
+      found[mesh.userData.name ?? mesh.name] = [...Array(8).keys()].map((i) =>
+        new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z)
+          .applyMatrix4(mesh.matrixWorld).toArray());
+    });
+    return found;
+  });
+}
+"""
+
 _BVH = """
 async ([text, times]) => {
   const { THREE } = window.judge;
@@ -131,6 +158,11 @@ class ThreeJudge:
     def nodes(self, glb: bytes, clip: int, times: list[float]) -> list[list[list[float]]]:
         """World position and rotation of every node at these times of a clip."""
         found: list[list[list[float]]] = self._page.evaluate(_NODES, [_text(glb), clip, times])
+        return found
+
+    def things(self, glb: bytes, times: list[float]) -> list[dict[str, list[list[float]]]]:
+        """The corners of the boxes round all meshes without a skin, by name, at these times of the first clip."""
+        found: list[dict[str, list[list[float]]]] = self._page.evaluate(_THINGS, [_text(glb), times])
         return found
 
     def bvh(self, text: str, times: list[float]) -> list[dict[str, list[float]]]:

@@ -90,6 +90,41 @@ async ([text, fractions]) => {
 """
 
 
+_THINGS = """
+async ([text, moments]) => {
+  const browser = X3D.getBrowser();
+  const scene = await browser.createX3DFromString(text);
+  for (const node of scene.rootNodes) if (node.getNodeTypeName() === "TimeSensor") node.enabled = false;
+  await browser.replaceWorld(scene);
+  const shown = [];
+  for (const fractions of moments) {
+    for (const [name, fraction] of Object.entries(fractions)) scene.getNamedNode(name).set_fraction = fraction;
+    await browser.nextFrame();
+    await browser.nextFrame();
+    const found = [];
+    for (const node of scene.rootNodes) {
+      if (node.getNodeTypeName() !== "Transform") continue;
+      const m = node.getValue().getMatrix();
+      for (const shape of node.children) {
+        if (shape.getNodeTypeName() !== "Shape") continue;
+        const form = shape.geometry, drawn = shape.getValue().getGeometry();
+        const { radius, height } = form;
+        const round = { Sphere: [radius, radius, radius], Cylinder: [radius, height / 2, radius] };
+        const half = round[form.getNodeTypeName()];  // it draws round ones by few corners
+        const low = half?.map((size) => -size) ?? [...drawn.getMin()], high = half ?? [...drawn.getMax()];
+        found.push([0, 1, 2, 3, 4, 5, 6, 7].map((k) => {
+          const at = [0, 1, 2].map((axis) => ((k >> axis) & 1 ? high : low)[axis]);
+          return [0, 1, 2].map((i) => at[0] * m[i] + at[1] * m[4 + i] + at[2] * m[8 + i] + m[12 + i]);
+        }));
+      }
+    }
+    shown.push(found);
+  }
+  return { version: browser.version, shown };
+}
+"""
+
+
 class XIte:
     """A page with X_ITE in it."""
 
@@ -109,6 +144,14 @@ class XIte:
     def moved(self, text: str, fractions: list[float]) -> dict[str, Any]:
         """X_ITE's `version`, and `shown`: each joint's world position by its name, at parts of an animation's time."""
         found: dict[str, Any] = self._page.evaluate(_MOVED, [text, fractions])
+        return found
+
+    def things(self, text: str, moments: list[dict[str, float]]) -> dict[str, Any]:
+        """X_ITE's `version`, and `shown`: the corners of the boxes round the Shapes of all Transforms, in order.
+
+        A moment tells the fraction of each interpolator by its name.
+        """
+        found: dict[str, Any] = self._page.evaluate(_THINGS, [text, moments])
         return found
 
     def triangles(self, text: str) -> list[list[float]]:

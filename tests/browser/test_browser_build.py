@@ -30,7 +30,7 @@ def _saved(live: LivePage) -> Scene:
     return Scene.from_dict(json.loads(download.value.path().read_text("utf-8")))
 
 
-def test_a_scene_is_built_by_keys_alone_checked_and_walked_in(open_page: Open) -> None:
+def test_a_scene_is_built_by_keys_alone_checked_and_gone_through_by_its_tour(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(1280, 720))
     _build(live)
     keyboard = live.page.keyboard
@@ -52,11 +52,23 @@ def test_a_scene_is_built_by_keys_alone_checked_and_walked_in(open_page: Open) -
     live.wait("s.build.things.length === 1")
     live.page.get_by_label("Title of the scene").fill("By keys")
     live.page.get_by_label("Title of the scene").press("Enter")
+    live.page.locator("#build .board").focus()
+    for z, view in (("1", "side"), ("1.6", "front")):
+        keyboard.press("s")
+        live.page.get_by_label("Z (m)").fill(z)
+        live.page.get_by_label("Seen from").select_option(view)
+        live.page.get_by_label("Stay (s)").fill("0")
+        live.page.get_by_label("Words").fill(f"at {z}")
+        live.page.locator("#build .board").focus()
     live.wait("s.build.verdict === 'feasible'", VERDICT_SECONDS)
     live.page.get_by_role("button", name="Walk here").click()
     live.wait("s.scene.startsWith('built:') && s.build === null && !s.settings.paused")
-    live.page.keyboard.down("w")
-    live.wait("s.root.z > 0.5")
+    keyboard.press("n")
+    live.page.get_by_role("button", name="Guided tour").click()
+    live.wait("s.tour === 0 && s.view === 'side'")
+    assert "at 1" in live.page.locator("#notices").inner_text()
+    live.wait("s.tour === 1 && s.view === 'front' && s.root.z > 0.8")
+    live.wait("s.tour === null && s.root.z > 1.4")
 
 
 def test_a_scene_is_built_with_the_mouse(open_page: Open) -> None:

@@ -6,7 +6,7 @@ from live_page import LivePage
 
 Open = Callable[..., LivePage]
 
-A, B, START, DOWN, RIGHT = 0, 1, 9, 13, 15
+A, B, X, Y, LB, RB, RT, BACK, START, UP, DOWN, LEFT, RIGHT = 0, 1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 14, 15
 
 PAD = """
 window.pad = { axes: [0, 0, 0, 0], down: [] };
@@ -87,3 +87,36 @@ def test_finish_card_and_timeline_are_worked_by_the_pad(open_page: Open) -> None
     live.wait("s.replay === null")
     press(live, 8)
     live.wait("s.root.z < 0.2")
+
+
+def test_a_scene_is_built_by_the_pad(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(900, 600), script=PAD)
+    live.wait("s.scene === 'empty'")
+    before = live.state()["camera"]
+    press(live, START)
+    live.page.wait_for_selector("#menu:not(.closed)")
+    live.page.focus("[data-action=farther]")
+    press(live, A)
+    live.wait(f"Math.hypot(...s.camera.map((at, i) => at - {before}[i])) > 0.3")
+    live.page.focus("#build-open")
+    press(live, A)
+    live.wait("s.build")
+    live.page.focus("#build .tools button")  # the box
+    press(live, A)
+    live.wait("s.build.tool === 'box'")
+    live.page.focus("#build .board")
+    press(live, A)
+    live.wait("s.build.things.length === 1 && s.build.tool === 'select'")
+    x, turn = (live.page.get_by_label(name, exact=True) for name in ("X (m)", "Turn (°)"))
+    at = float(x.input_value())
+    press(live, LEFT, X, RT)
+    assert float(x.input_value()) > at
+    assert float(turn.input_value()) == 15.0
+    press(live, Y)
+    live.wait("s.build.things.length === 2")
+    press(live, BACK)
+    live.wait("s.build.things.length === 1")
+    press(live, RB)
+    live.wait("s.build.selected !== null")
+    press(live, B, B)
+    live.wait("s.build === null")

@@ -27,8 +27,9 @@ from elbowroom.export.animation import Animation
 from elbowroom.geometry import quaternion
 from elbowroom.server.library import Library
 from elbowroom.server.pose import Poser
-from elbowroom.server.vmc import Locomotion, Message, Moment, Puppet, blink, messages
+from elbowroom.server.vmc import Locomotion, Message, Moment, Puppet, blink, messages, unity_name
 from elbowroom.server.vmc_stream import VmcSettings, VmcStream, packets
+from godot_judge import GodotJudge
 from live_session import client_of, running
 
 Floats = NDArray[np.float64]
@@ -156,6 +157,28 @@ def test_vmcp_hears_what_was_sent(port: int, bundles: bool) -> None:
     for name, numbers in found.items():
         np.testing.assert_allclose(numbers, told[name], atol=1e-6, err_msg=name)
     assert {"StateEvent", "RelativeTimeEvent"} <= {event[0] for event in heard}
+
+
+@pytest.fixture(scope="module")
+def godot(tmp_path_factory: pytest.TempPathFactory) -> GodotJudge:
+    return GodotJudge(tmp_path_factory.mktemp("godot"))
+
+
+@pytest.mark.parametrize("bundles", [True, False])
+@pytest.mark.parametrize("name", ["stock", "VRM 0.x"])
+def test_godot_puts_every_joint_where_the_page_does(godot: GodotJudge, name: str, bundles: bool, port: int) -> None:
+    humanoid = body(name)
+    moment, joints = posed(humanoid)
+    settings = VmcSettings(port=port, bundles=bundles, locomotion=Locomotion.HIPS)  # the add-on ignores the root
+    with VmcStream(settings) as stream:
+        places = godot.heard(port, lambda: stream.show("first", humanoid, moment))["places"]
+    numbers = [i for i, bone in enumerate(humanoid.skeleton.names) if unity_name(bone) in places]
+    assert len(numbers) >= 18
+    found = np.array([places[unity_name(humanoid.skeleton.names[i])] for i in numbers])
+    wanted = joints[numbers] * [-1.0, 1.0, -1.0]
+    if name != "stock":  # the add-on loads no file: it does not know what its hips hang on
+        found, wanted = found - found[0], wanted - wanted[0]
+    np.testing.assert_allclose(found, wanted, atol=1e-5)
 
 
 def test_nobody_there_is_no_fault(port: int) -> None:

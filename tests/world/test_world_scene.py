@@ -53,6 +53,7 @@ def document(standing: list[Any] = STANDING, moving: list[Any] = MOVING) -> dict
         "ground": {"size": [8, 10.5], "center": [0, 3]},
         "start": {"position": [0, -1], "heading": 0.5},
         "finish": {"position": [1, 5], "heading": 0.25, "width": 3},
+        "tour": [{"position": [0, 1]}, {"position": [1, 4], "view": "side", "say": "Look up.", "seconds": 2.5}],
         "obstacles": [
             {"type": "box", "name": "one", "center": [1, 1, 2], "size": [0.5, 1, 0.5], "yaw": 0.3},
             {"type": "box", "center": [-1, 1, 2], "size": [0.5, 1, 0.5], "euler": [0.1, 0.2, 0.3]},
@@ -108,7 +109,7 @@ STRANGERS: list[Any] = [
 
 def mutants() -> list[Any]:
     """All mutants of a document of boxes, and those of each other shape in a document that has nothing else."""
-    plain, bare, out = document([], []), {**document([], []), "obstacles": [], "moving": []}, []
+    plain, bare, out = document([], []), {**document([], []), "obstacles": [], "moving": [], "tour": []}, []
     for base, places in (
         (plain, spots(plain)),
         *(({**bare, "obstacles": [one]}, spots(one, ("obstacles", 0))) for one in STANDING),

@@ -17,7 +17,8 @@ sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools")]
 import pytest  # noqa: E402
 
 from make_pictures import FLAGS, browser_path  # noqa: E402
-from strangers import programs  # noqa: E402
+from strangers import place_programs, programs  # noqa: E402
+from strangers.place import Place, exported_place  # noqa: E402
 from strangers.programs import Finding, Program  # noqa: E402
 from strangers.walk import SCENE, Walk, exported_walk  # noqa: E402
 
@@ -31,7 +32,8 @@ LIMIT = 1.0  # millimetres
 def main() -> None:
     print("a walk ...", file=sys.stderr)
     walk = exported_walk(FOLDER)
-    findings = [*_local(walk), *_in_browser(walk), *_heavy(walk)]
+    place = exported_place(walk)
+    findings = [*_local(walk, place), *_in_browser(walk, place), *_heavy(walk, place)]
     table = _table(findings)
     print(
         f"Scene {SCENE}, {len(walk.animation)} frames, {len(walk.names)} joints, {len(walk.frames)} frames compared\n"
@@ -54,12 +56,14 @@ def _told(program: Program, name: str) -> list[Finding]:
         return []
 
 
-def _local(walk: Walk) -> list[Finding]:
-    bvh = _told(partial(programs.bvhio_, walk), "bvhio")
-    return bvh + _told(partial(programs.validator, walk), "glTF validator")
+def _local(walk: Walk, place: Place) -> Iterator[Finding]:
+    yield from _told(partial(programs.bvhio_, walk), "bvhio")
+    for program in (partial(programs.validator, walk), partial(place_programs.validator, place)):
+        yield from _told(program, "glTF validator")
+    yield from _told(partial(place_programs.trimesh_, place), "trimesh")
 
 
-def _in_browser(walk: Walk) -> Iterator[Finding]:
+def _in_browser(walk: Walk, place: Place) -> Iterator[Finding]:
     try:
         path = browser_path()
     except FileNotFoundError as error:
@@ -69,15 +73,18 @@ def _in_browser(walk: Walk) -> Iterator[Finding]:
 
     with sync_playwright() as playwright:
         browser: Any = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield from _told(partial(programs.three, browser, walk), "three.js")
-        yield from _told(partial(programs.x_ite, browser, walk), "X_ITE")
+        for program in (partial(programs.three, browser, walk), partial(place_programs.three, browser, place)):
+            yield from _told(program, "three.js")
+        for program in (partial(programs.x_ite, browser, walk), partial(place_programs.x_ite, browser, place)):
+            yield from _told(program, "X_ITE")
         browser.close()
 
 
-def _heavy(walk: Walk) -> Iterator[Finding]:
+def _heavy(walk: Walk, place: Place) -> Iterator[Finding]:
     python = _environment()
     if python is not None:
-        yield from _told(partial(programs.blender, python, walk), "Blender")
+        for program in (partial(programs.blender, python, walk), partial(place_programs.blender, python, place)):
+            yield from _told(program, "Blender")
         yield from _told(partial(programs.usd, python, walk), "OpenUSD")
 
 
@@ -98,9 +105,9 @@ def _environment() -> Path | None:
 
 def _table(findings: list[Finding]) -> str:
     """Programs by formats, as Markdown."""
-    formats = list(dict.fromkeys(one.format for one in sorted(findings, key=lambda one: one.format)))
+    formats = sorted({one.format for one in findings}, key=lambda ending: (" " in ending, ending))
     rows = dict.fromkeys((one.program, one.version) for one in findings)
-    lines = ["| | " + " | ".join(f"`.{ending}`" for ending in formats) + " |", "|---|" + "---|" * len(formats)]
+    lines = ["| | " + " | ".join(map(_heading, formats)) + " |", "|---|" + "---|" * len(formats)]
     for program, release in rows:
         cells = []
         for ending in formats:
@@ -108,6 +115,11 @@ def _table(findings: list[Finding]) -> str:
             cells.append(", ".join(_cell(one) for one in found))
         lines.append(f"| {program} {release} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def _heading(ending: str) -> str:
+    what, dot, name = ending.rpartition(".")
+    return f"{what}`.{name}`" if dot else f"`.{ending}`"
 
 
 def _cell(found: Finding) -> str:

@@ -13,7 +13,7 @@ from elbowroom.export.animation import Animation
 from elbowroom.export.writers import FORMATS, Wishes
 from elbowroom.world.scene import Scene
 
-SCENE = "d"
+SCENE = "shapes"
 _SHOWN = 12  # frames that are compared
 
 
@@ -23,6 +23,7 @@ class Walk:
 
     folder: Path
     avatar: Humanoid
+    scene: Scene
     animation: Animation
     frames: list[int]  # that are compared
 
@@ -51,7 +52,8 @@ def exported_walk(folder: Path) -> Walk:
     """Walk through the scene and write every format into the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     avatar = Humanoid.default()
-    controller = controller_for(avatar, Scene.load(SCENE), CrossingSettings())
+    scene = Scene.load(SCENE)
+    controller = controller_for(avatar, scene, CrossingSettings())
     with Recorder(folder / "walk.elbow", controller) as recorder:
         run_crossing(controller, CrossingSettings(), recorder.append)
     animation = Animation.of(Recording(folder / "walk.elbow"), avatar)
@@ -59,4 +61,4 @@ def exported_walk(folder: Path) -> Walk:
         written = chosen.write(animation, avatar, chosen.layout(Wishes()))
         (folder / f"walk.{ending}").write_bytes(written.data)
     frames = np.unique(np.linspace(0, len(animation) - 1, _SHOWN).astype(int)).tolist()
-    return Walk(folder, avatar, animation, frames)
+    return Walk(folder, avatar, scene, animation, frames)

@@ -1,6 +1,7 @@
 /** Starts the page, or says in one sentence why it cannot start. */
 
 import { App } from "./app/app";
+import { keepPage } from "./keeping_page";
 import { readLanguages } from "./preferences";
 import { exposeState } from "./probe";
 import { speak } from "./texts/texts";
@@ -11,6 +12,7 @@ wordDocument(document.documentElement);
 
 try {
   exposeState(new App());
+  window.addEventListener("load", () => void keepPage());
 } catch (error) {
   const message = document.createElement("p");
   message.className = "fatal";

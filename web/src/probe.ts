@@ -46,6 +46,7 @@ export interface AppState {
   readonly roundTripMs: number;
   readonly replay: unknown;
   readonly going: unknown;
+  readonly tour: number | null;
   readonly build: unknown;
   /** The number of the obstacle in hand; where each of those is that were pushed. */
   readonly held: number | null;
@@ -112,6 +113,7 @@ function snapshot(app: App): AppState {
     roundTripMs: session.roundTripMs,
     replay: app.modes.replay.state,
     going: app.somewhere.last,
+    tour: app.tour.at,
     build: app.modes.build.state,
     held: app.pushing.held,
     obstaclesOnScreen: picture.world.boxes.map(({ center }) => picture.onScreen(center)),

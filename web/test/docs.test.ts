@@ -7,7 +7,7 @@ import { OVERLAYS } from "../src/overlays/overlay_names";
 
 describe("docs/page.md", () => {
   it("names every key and every button that does something", () => {
-    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
+    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Equal: "=", Minus: "-", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
     for (const code of DEFAULT_KEYS.keys()) {
       expect(text).toContain(code.startsWith("Arrow") ? "arrows" : `\`${names[code] ?? code.replace(/^(Key|Digit)/, "")}\``);
     }

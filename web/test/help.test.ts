@@ -14,7 +14,7 @@ describe("the help", () => {
   });
 
   it("names every key that does something", () => {
-    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
+    const names: Readonly<Record<string, string>> = { Period: ".", Comma: ",", Equal: "=", Minus: "-", Escape: "Esc", ShiftLeft: "Shift", ShiftRight: "Shift" };
     for (const code of DEFAULT_KEYS.keys()) {
       if (code.startsWith("Arrow")) expect(words).toContain("arrow");
       else expect(words).toContain(names[code] ?? code.replace(/^(Key|Digit)/, ""));

@@ -6,7 +6,7 @@ const upright = (center: OrientedBox["center"], halfSize: OrientedBox["halfSize"
   prepareBox({ center, rotation: [0, 0, 0, 1], halfSize });
 
 const view = (boxes: ReturnType<typeof upright>[]) =>
-  roomierView({ all: boxes, walls: boxes }, [0, 1.5, 0], 0, 0.3, 4, 0.14, NO_SHIFT, [-0.2, 1.3]);
+  roomierView({ all: boxes, walls: boxes }, [0, 1.5, 0], 0, 0.3, 4, 0.14, NO_SHIFT, { pitch: [-0.2, 1.3], wide: false });
 
 describe("roomierView", () => {
   it("leaves the view alone where there is room", () => {

@@ -30,6 +30,7 @@ from elbowroom.server.schema.picture import (
     Obstacle,
     Place,
     SceneMessage,
+    Stop,
 )
 from elbowroom.server.schema.progress import Blocked, GroupReport, Plan
 from elbowroom.world.obstacles.hulls import surface_of
@@ -70,6 +71,7 @@ def scene_message(scene: Scene) -> SceneMessage:
         moving=[_moving(scene, track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
+        tour=[Stop(stop.position, stop.view, stop.say, stop.seconds) for stop in scene.tour],
     )
 
 

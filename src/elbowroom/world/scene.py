@@ -18,6 +18,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.scene_place import ScenePlace
 from elbowroom.world.stock_scenes import check_scene_name, stock_folder, stock_names
+from elbowroom.world.stops import Stop
 
 MAX_FILE_BYTES = 16 * 2**20
 _SCENES_ARE = "a scene is a JSON file or a model of a place: glTF, X3D, VRML97, OBJ, STL or PLY (docs/scenes.md)"
@@ -52,6 +53,7 @@ class Scene:
     obstacles: Obstacles = field(default_factory=Obstacles)  # all that stands or moves in the way
     place: ScenePlace | None = None  # the model that the scene shows; its parts are the first of the obstacles
     colors: Mapping[str, str] = field(default_factory=dict)  # "#rrggbb" by the name of an obstacle, where it has one
+    tour: tuple[Stop, ...] = ()  # where a guided tour stops, in order
 
     @classmethod
     def load(

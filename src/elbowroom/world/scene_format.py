@@ -26,6 +26,7 @@ from elbowroom.world.place_format import read_place_field, write_place
 from elbowroom.world.places.scene_place import with_more
 from elbowroom.world.scene import Gate, Scene
 from elbowroom.world.shape_format import FIELDS, MOST_POINTS_TOGETHER, read_shape, type_of, write_shape
+from elbowroom.world.stops import read_tour, write_tour
 
 FORMAT = "elbowroom-scene"
 VERSION = 1
@@ -49,7 +50,9 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
     """
     placed = isinstance(document, dict) and "place" in document
     needed, possible = (_ALWAYS, ("place", *_FOUND)) if placed else ((*_ALWAYS, *_FOUND), ())
-    fields = Place(source, "$", document).fields(needed, ("$schema", "title", "description", "moving", *possible))
+    fields = Place(source, "$", document).fields(
+        needed, ("$schema", "title", "description", "moving", "tour", *possible)
+    )
     fields["format"].constant(FORMAT)
     fields["version"].constant(VERSION)
     if "$schema" in fields:
@@ -71,6 +74,7 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
         obstacles=_in_place(found, standing) if placed else standing,
         colors=colors | _read_colors(fields.get("moving"), standing.moving.names),
         place=found.place,
+        tour=read_tour(fields["tour"]) if "tour" in fields else (),
     )
     _refuse_off_the_ground(scene, fields)
     _refuse_start_in_obstacle(scene, fields.get("start", fields.get("place", fields["name"])))
@@ -254,7 +258,8 @@ def write_scene(scene: Scene) -> dict[str, Any]:
     moving = scene.obstacles.moving
     placed = {"place": write_place(scene.place, scene.obstacles)} if scene.place else {}
     tracks = [track | _color(scene, track["name"]) for track in write_moving(moving)]
-    return document | placed | ({"moving": tracks} if tracks else {})
+    tour = {"tour": write_tour(scene.tour)} if scene.tour else {}
+    return document | placed | ({"moving": tracks} if tracks else {}) | tour
 
 
 def _color(scene: Scene, name: str) -> dict[str, str]:

@@ -1,6 +1,7 @@
 /** The page: brings session, picture, controls and panels together. */
 
 import { GoingSomewhere } from "../going/going";
+import { GuidedTour } from "../going/tour";
 import { Controls } from "../input/controls";
 import { KeyMap } from "../input/key_map";
 import { PointerInput } from "../input/pointer";
@@ -50,6 +51,7 @@ export class App {
   readonly deeds: Deeds;
   readonly frames: Frames;
   readonly somewhere: GoingSomewhere;
+  readonly tour: GuidedTour;
   readonly menu: Menu;
   readonly hud = new Hud();
   readonly veil = new Veil();
@@ -84,6 +86,14 @@ export class App {
     this.somewhere = new GoingSomewhere(this.view, {
       picture: this.picture, send: (message) => this.session.send(message),
       say: (level, said) => this.notices.show(level, said), walks: () => this.modes.live,
+    });
+    this.tour = new GuidedTour({
+      send: (message) => this.session.send(message), look: (view) => this.deeds.do(`view:${view}`),
+      say: (level, said) => this.notices.show(level, said),
+      after: (seconds, then) => {
+        const timer = window.setTimeout(then, 1000 * seconds);
+        return () => window.clearTimeout(timer);
+      },
     });
     this.arrivals = new Arrivals(this);
     this.listen();

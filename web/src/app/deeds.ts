@@ -2,6 +2,7 @@
 
 import { nextView, viewNamed } from "../camera/views";
 import type { GoingSomewhere } from "../going/going";
+import type { GuidedTour } from "../going/tour";
 import type { Action } from "../input/keyboard";
 import type { PointerInput } from "../input/pointer";
 import type { Session } from "../net/session";
@@ -13,12 +14,14 @@ import type { Help } from "../ui/help";
 import type { Menu } from "../ui/menu";
 import type { StatusLine } from "../ui/status_line";
 import type { AddressBar } from "./address_bar";
+import type { LiveWalk } from "./live_walk";
 import type { Modes } from "./modes";
 import type { Taste } from "./taste";
 
 type Deed = Exclude<Action, `view:${string}`>;
 
 const SLOW_MOTION = 0.25;
+const ZOOM = 1.25;
 
 export interface DeedsParts {
   readonly session: Session;
@@ -31,6 +34,8 @@ export interface DeedsParts {
   readonly pointer: PointerInput;
   readonly somewhere: GoingSomewhere;
   readonly pushing: Pushing;
+  readonly tour: GuidedTour;
+  readonly live: LiveWalk;
   readonly statusLine: StatusLine;
   readonly finishCard: FinishCard;
   readonly view: HTMLElement;
@@ -69,15 +74,16 @@ export class Deeds {
   }
 }
 
-type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build" | "push" | "record";
+type Walking = "reset" | "pause" | "step" | "slow" | "assist" | "stepBack" | "replay" | "build" | "push" | "record" | "tour";
 
 /** What is done to the walk. */
-function walking({ session, modes, statusLine, finishCard, somewhere, pushing }: DeedsParts): Record<Walking, () => void> {
+function walking({ session, modes, statusLine, finishCard, somewhere, pushing, tour, live }: DeedsParts): Record<Walking, () => void> {
   return {
     reset: () => {
       statusLine.restart();
       finishCard.hide();
       somewhere.forget();
+      tour.end();
       session.send({ type: "reset" });
     },
     pause: () => session.send({ type: "clock", paused: !session.settings?.paused }),
@@ -89,6 +95,7 @@ function walking({ session, modes, statusLine, finishCard, somewhere, pushing }:
     build: () => void modes.toggleBuild(),
     push: () => pushing.next(),
     record: () => void modes.saveRecording(),
+    tour: () => tour.toggle(live.scene?.tour ?? []),
   };
 }
 
@@ -98,6 +105,8 @@ function looking(parts: DeedsParts): Record<Exclude<Deed, Walking>, () => void> 
   return {
     cameraMode: () => taste.toggleSteering(),
     recenter: () => picture.camera.recenter(),
+    nearer: () => picture.camera.zoom(1 / ZOOM),
+    farther: () => picture.camera.zoom(ZOOM),
     pointerLock: () => pointer.toggleLock(),
     overlays: () => taste.toggleAllOverlays(),
     hideUi: () => taste.setBare(!taste.bare),

@@ -5,6 +5,7 @@ import type {
 } from "../generated/messages";
 import type { FrameStats } from "../frame_stats";
 import type { GoingSomewhere } from "../going/going";
+import type { GuidedTour } from "../going/tour";
 import type { Controls } from "../input/controls";
 import type { ConnectionState } from "../net/connection";
 import type { ShownPose } from "../net/pose_timeline";
@@ -36,6 +37,7 @@ export interface HearingParts {
   readonly address: AddressBar;
   readonly arrivals: Arrivals;
   readonly somewhere: GoingSomewhere;
+  readonly tour: GuidedTour;
   readonly pushing: Pushing;
   readonly menu: Menu;
   readonly hud: Hud;
@@ -69,12 +71,14 @@ export class Hearing implements SessionListener {
   }
 
   scene(scene: SceneMessage): void {
-    const { live, modes, pushing, somewhere, statusLine, finishCard, menu } = this.parts;
+    const { live, modes, pushing, somewhere, tour, statusLine, finishCard, menu } = this.parts;
     live.scene = scene;
     pushing.enter(scene);
     live.loose = pushing.loose;
     modes.noteLive();
     somewhere.forget();
+    tour.end();
+    menu.offerTour(scene.tour.length > 0);
     if (modes.live) live.furnish();
     statusLine.restart();
     finishCard.hide();
@@ -140,6 +144,7 @@ export class Hearing implements SessionListener {
 
   going(going: Going): void {
     this.parts.somewhere.heard(going);
+    this.parts.tour.heard(going);
   }
 
   notice(level: Notice["level"], message: string): void {

@@ -71,7 +71,7 @@ export class Board {
     const { clientWidth, clientHeight } = this.element;
     if (clientWidth === 0) return;
     this.fitted = true;
-    const spots: Vec2[] = [plan.start, plan.finish].map(({ x, z }) => onBoard(side, [x, 1, z]));
+    const spots: Vec2[] = [plan.start, plan.finish, ...plan.tour].map(({ x, z }) => onBoard(side, [x, 1, z]));
     const points = [...spots, ...plan.things.flatMap(({ center, track }) => [center, ...track.map((key) => key.center)]).map((at) => onBoard(side, at))];
     const [left, right] = [Math.min(...points.map(([u]) => u)), Math.max(...points.map(([u]) => u))];
     const [top, bottom] = [Math.min(...points.map(([, v]) => v)), Math.max(...points.map(([, v]) => v))];
@@ -153,7 +153,7 @@ export class Board {
   private pull({ kind, tag }: Drag, point: Vec2): void {
     const { editor } = this;
     const { selected, plan, thing, index } = editor;
-    if (!selected) return;
+    if (!selected || selected.what === "stop") return;
     const spot = selected.what === "start" ? plan.start : selected.what === "finish" ? plan.finish : null;
     const center = spot ?? { x: thing?.center[0] ?? 0, z: thing?.center[2] ?? 0 };
     const [x, , z] = inWorld("top", point);
@@ -195,7 +195,7 @@ export class Board {
 export function selectedOf(id: string): Selected | null {
   const [what, index, key] = id.split(" ");
   if (what === "start" || what === "finish") return { what };
-  if (what === "thing" && index) return { what, index: Number(index) };
+  if ((what === "thing" || what === "stop") && index) return { what, index: Number(index) };
   return what === "key" && index && key ? { what, index: Number(index), key: Number(key) } : null;
 }
 

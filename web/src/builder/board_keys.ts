@@ -27,6 +27,7 @@ export function boardKey(event: KeyboardEvent, editor: Editor, board: KeyedBoard
     return true;
   }
   if (key === "Escape") return leave(editor);
+  if (key === "Enter") return editor.use(board.center[0], board.center[1]);
   const kind = KINDS[Number(key) - 1];
   if (kind) editor.place(kind, editor.snapped(board.center[0]), editor.snapped(board.center[1]));
   const deed = deeds(editor, board, shiftKey)[key.toLowerCase()];
@@ -44,6 +45,7 @@ function deeds(editor: Editor, board: KeyedBoard, many: boolean): Readonly<Recor
     "-": () => editor.grow(-1),
     c: () => editor.copy(),
     t: () => editor.extend(),
+    s: () => editor.stop(editor.snapped(board.center[0]), editor.snapped(board.center[1])),
     delete: () => editor.remove(),
     backspace: () => editor.remove(),
     v: () => editor.look(editor.side === "top" ? "side" : "top"),

@@ -18,6 +18,7 @@ export interface BoardShape {
 
 /** CSS pixels. */
 const HANDLE = 7;
+const STOP = 11;
 const SPOT = 0.28;
 
 /** All of it, what lies on top last; `pixel` is how many metres one is, `mark` where the avatar got no further. */
@@ -26,6 +27,7 @@ export function shapesOf(editor: Editor, pixel: number, mark: readonly [number, 
   return [
     ...spots(editor),
     ...plan.things.flatMap((thing, i) => thingShapes(editor, thing, i, pixel)),
+    ...stops(editor, pixel),
     ...(mark ? [cross(onBoard(side, [mark[0], 0.1, mark[1]]), 6 * pixel)] : []),
     ...(side === "top" ? handles(editor, pixel) : []),
   ];
@@ -44,6 +46,29 @@ function spots({ plan: { start, finish }, side, selected }: Editor): BoardShape[
     { id: "start", tag: "polygon", attributes: { ...worked("start", text("build.start"), selected?.what === "start", start), points: points(body) } },
     { id: "finish", tag: "path", attributes: { ...worked("finish", text("build.finish"), selected?.what === "finish", finish), d: line } },
   ];
+}
+
+/** The stops of the tour, numbered, and the way from one to the next. */
+function stops({ plan: { tour }, side, selected }: Editor, pixel: number): BoardShape[] {
+  const at = tour.map(({ x, z }) => onBoard(side, [x, 0, z]));
+  const way: BoardShape[] = at.length > 1
+    ? [{ id: "tour", tag: "path", attributes: { class: "tour", d: `M${at.map((place) => place.join(" ")).join("L")}`, "aria-hidden": "true" } }]
+    : [];
+  return [...way, ...tour.flatMap((stop, i): BoardShape[] => {
+    const [u, v] = at[i] ?? [0, 0];
+    const pressed = selected?.what === "stop" && selected.index === i;
+    const name = text("build.stopAt", i + 1);
+    return [
+      {
+        id: `stop ${i}`, tag: "circle",
+        attributes: { ...worked("stop", name, pressed, { center: [stop.x, 0, stop.z] }), cx: String(u), cy: String(v), r: String(STOP * pixel) },
+      },
+      {
+        id: `number ${i}`, tag: "text", words: String(i + 1),
+        attributes: { class: "number", x: String(u), y: String(v), "font-size": String(STOP * pixel), "aria-hidden": "true" },
+      },
+    ];
+  })];
 }
 
 function thingShapes({ side, selected, index }: Editor, thing: Thing, i: number, pixel: number): BoardShape[] {
@@ -77,7 +102,7 @@ function keyShape([u, v]: Vec2, center: Vec3, i: number, k: number, pressed: boo
 
 /** The handles of what is selected, in the view from above. */
 function handles({ plan, selected, thing }: Editor, pixel: number): BoardShape[] {
-  if (!selected || selected.what === "key") return [];
+  if (!selected || selected.what === "key" || selected.what === "stop") return [];
   const spot = selected.what === "start" ? plan.start : selected.what === "finish" ? plan.finish : null;
   const center: Vec3 = spot ? [spot.x, 0, spot.z] : (thing?.center ?? [0, 0, 0]);
   const heading = spot ? spot.heading : thing ? yawOf(thing) : 0;

@@ -4,6 +4,7 @@ import { UPRIGHT, type Key, type Plan, type Repeat, type Shape, type Thing, type
 
 type Written = Shape & { readonly name: string; readonly color?: string };
 type Standing = Written & { readonly center: Vec3; readonly rotation?: Turn };
+type WrittenStop = { readonly position: Vec2; readonly view: string; readonly say: string; readonly seconds: number };
 type Moving = Written & { readonly repeat: Repeat; readonly track: readonly Key[] };
 
 export interface SceneDocument {
@@ -17,12 +18,13 @@ export interface SceneDocument {
   readonly finish: { readonly position: Vec2; readonly heading: number; readonly width: number };
   readonly obstacles: readonly Standing[];
   readonly moving?: readonly Moving[];
+  readonly tour?: readonly WrittenStop[];
 }
 
 const NAME = 100;
 
 /** The document of a plan. */
-export function documentOf({ title, description, ground, start, finish, things }: Plan): SceneDocument {
+export function documentOf({ title, description, ground, start, finish, things, tour }: Plan): SceneDocument {
   const moving = things.filter(({ track }) => track.length > 0).map(movingOf);
   return {
     format: "elbowroom-scene", version: 1, name: nameOf(title), title, description, ground,
@@ -30,12 +32,13 @@ export function documentOf({ title, description, ground, start, finish, things }
     finish: { position: [finish.x, finish.z], heading: finish.heading, width: finish.width },
     obstacles: things.filter(({ track }) => track.length === 0).map(standingOf),
     ...(moving.length > 0 ? { moving } : {}),
+    ...(tour.length > 0 ? { tour: tour.map(({ x, z, view, say, seconds }) => ({ position: [x, z] as const, view, say, seconds })) } : {}),
   };
 }
 
 /** The plan of a document that the server has read. */
 export function planOf(document: SceneDocument): Plan {
-  const { title, description, ground, start, finish, obstacles, moving = [] } = document;
+  const { title, description, ground, start, finish, obstacles, moving = [], tour = [] } = document;
   const [x, z] = start.position, [toX, toZ] = finish.position;
   const standing = obstacles.map(({ name, color = "", center, rotation = UPRIGHT, ...shape }): Thing =>
     ({ name, color, shape, center, rotation, track: [], repeat: "pingpong" }));
@@ -44,6 +47,7 @@ export function planOf(document: SceneDocument): Plan {
   return {
     title, description, ground, start: { x, z, heading: start.heading },
     finish: { x: toX, z: toZ, heading: finish.heading, width: finish.width }, things: [...standing, ...tracked],
+    tour: tour.map(({ position: [atX, atZ], view, say, seconds }) => ({ x: atX, z: atZ, view, say, seconds })),
   };
 }
 

@@ -12,7 +12,7 @@ export class Drafts {
   all(): readonly Plan[] {
     try {
       const kept: unknown = JSON.parse(this.store?.getItem(STORE) ?? "[]");
-      return Array.isArray(kept) ? kept.filter(isPlan) : [];
+      return Array.isArray(kept) ? kept.filter(isPlan).map((plan) => ({ ...plan, tour: plan.tour ?? [] })) : [];
     } catch {
       return [];
     }
@@ -39,7 +39,7 @@ export class Drafts {
 }
 
 /** What is stored was written by this page, or by an older one. */
-function isPlan(value: unknown): value is Plan {
+function isPlan(value: unknown): value is Omit<Plan, "tour"> & Partial<Plan> {
   const plan = value as Partial<Plan> | null;
   return typeof plan?.title === "string" && Array.isArray(plan.things) && typeof plan.start?.x === "number"
     && typeof plan.finish?.width === "number" && Array.isArray(plan.ground?.size);

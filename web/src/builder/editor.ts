@@ -8,7 +8,7 @@ import type { Plan, Thing, Vec3 } from "./plan";
 import type { Kind } from "./shapes";
 
 /** What a click on the board does. */
-export type Tool = "select" | "track" | Kind;
+export type Tool = "select" | "track" | "stop" | Kind;
 
 /** Metres; 0 is without. */
 export const SNAPS = [0, 0.01, 0.05, 0.1, 0.25, 0.5] as const;
@@ -105,7 +105,8 @@ export class Editor {
     const [atX, atZ] = [this.snapped(x), this.snapped(z)];
     if (tool === "track") {
       if (this.index !== null) this.put(edits.extended(plan, this.index, atX, atZ));
-    } else this.place(tool, atX, atZ);
+    } else if (tool === "stop") this.stop(atX, atZ);
+    else this.place(tool, atX, atZ);
     return true;
   }
 
@@ -115,6 +116,14 @@ export class Editor {
     if (!plan) return;
     this.tool = "select";
     this.selected = { what: "thing", index: plan.things.length - 1 };
+    this.put(plan);
+  }
+
+  /** Adds a stop to the tour and selects it; the tool stays in hand. */
+  stop(x: number, z: number): void {
+    const plan = edits.stopped(this.plan, x, z);
+    if (!plan) return;
+    this.selected = { what: "stop", index: plan.tour.length - 1 };
     this.put(plan);
   }
 
@@ -161,7 +170,8 @@ export class Editor {
   /** What is selected may be gone. */
   private keepSelection(): void {
     const { selected, thing } = this;
-    if (this.index !== null && !thing) this.selected = null;
+    if (selected?.what === "stop" && !this.plan.tour[selected.index]) this.selected = null;
+    else if (this.index !== null && !thing) this.selected = null;
     else if (selected?.what === "key" && !thing?.track[selected.key]) this.selected = { what: "thing", index: selected.index };
     this.changed();
   }

@@ -1,6 +1,6 @@
 /** Edits: each makes a new plan of a plan and what is selected in it. Metres and radians. */
 
-import type { Key, Plan, Shape, Spot, Thing, Vec3 } from "./plan";
+import type { Key, Plan, Shape, Spot, Thing, TourStop, Vec3 } from "./plan";
 import { UPRIGHT } from "./plan";
 import { fresh, halfSize, scaled, type Kind } from "./shapes";
 import { aboutY, after, wrapped } from "./turns";
@@ -9,12 +9,14 @@ import { aboutY, after, wrapped } from "./turns";
 export type Selected =
   | { readonly what: "thing"; readonly index: number }
   | { readonly what: "key"; readonly index: number; readonly key: number }
+  | { readonly what: "stop"; readonly index: number }
   | { readonly what: "start" }
   | { readonly what: "finish" };
 
 /** The most of each; the server allows more, a board does not show more. */
 export const MOST_THINGS = 500;
 export const MOST_KEYS = 50;
+export const MOST_STOPS = 100;
 const FARTHEST = 10_000;
 /** m/s at which a new track is gone along. */
 const PACE = 0.8;
@@ -45,6 +47,8 @@ export function moved(plan: Plan, selected: Selected, by: Vec3): Plan {
       return { ...plan, start: spot(plan.start) };
     case "finish":
       return { ...plan, finish: spot(plan.finish) };
+    case "stop":
+      return restopped(plan, selected.index, ({ x, z }) => ({ x: tidy(x + by[0]), z: tidy(z + by[2]) }));
     case "key":
       return rekeyed(plan, selected.index, (key, i) => (i === selected.key ? { ...key, center: shift(key.center) } : key));
     case "thing": {
@@ -63,6 +67,8 @@ export function turnedBy(plan: Plan, selected: Selected, angle: number): Plan {
       return { ...plan, start: spot(plan.start) };
     case "finish":
       return { ...plan, finish: spot(plan.finish) };
+    case "stop":
+      return plan;
     case "key":
       return rekeyed(plan, selected.index, (key, i) => (i === selected.key ? { ...key, yaw: wrapped(key.yaw + angle) } : key));
     case "thing": {
@@ -77,8 +83,9 @@ export function turnedBy(plan: Plan, selected: Selected, angle: number): Plan {
 /** The selected larger or smaller; what stands on the ground goes on standing there. */
 export function scaledBy(plan: Plan, selected: Selected, factor: number): Plan {
   if (selected.what === "finish") return { ...plan, finish: { ...plan.finish, width: tidy(Math.max(0.2, plan.finish.width * factor)) } };
-  const thing = selected.what === "start" ? undefined : plan.things[selected.index];
-  return thing && selected.what !== "start" ? reshaped(plan, selected.index, scaled(thing.shape, factor)) : plan;
+  if (selected.what === "start" || selected.what === "stop") return plan;
+  const thing = plan.things[selected.index];
+  return thing ? reshaped(plan, selected.index, scaled(thing.shape, factor)) : plan;
 }
 
 /** A thing of another shape, its lower side where it was. */
@@ -101,9 +108,21 @@ export function copied(plan: Plan, index: number, aside: number): Plan | null {
   return moved({ ...plan, things }, { what: "thing", index: things.length - 1 }, [aside, 0, 0]);
 }
 
-/** The plan without the selected: a thing, or a point of its track; start and finish stay. */
+/** The plan with another stop of its tour; null where there are too many. */
+export function stopped(plan: Plan, x: number, z: number): Plan | null {
+  if (plan.tour.length >= MOST_STOPS) return null;
+  return { ...plan, tour: [...plan.tour, { x: tidy(x), z: tidy(z), view: "", say: "", seconds: 3 }] };
+}
+
+/** A stop of the tour changed. */
+export function restopped(plan: Plan, index: number, change: (stop: TourStop) => Partial<TourStop>): Plan {
+  return { ...plan, tour: plan.tour.map((stop, i) => (i === index ? { ...stop, ...change(stop) } : stop)) };
+}
+
+/** The plan without the selected: a thing, a point of its track, or a stop of the tour; start and finish stay. */
 export function removed(plan: Plan, selected: Selected): Plan {
   if (selected.what === "thing") return { ...plan, things: plan.things.filter((_, i) => i !== selected.index) };
+  if (selected.what === "stop") return { ...plan, tour: plan.tour.filter((_, i) => i !== selected.index) };
   if (selected.what !== "key") return plan;
   const track = plan.things[selected.index]?.track.filter((_, i) => i !== selected.key) ?? [];
   return changed(plan, selected.index, settled(plan.things[selected.index], track));

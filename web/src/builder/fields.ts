@@ -1,9 +1,11 @@
 /** The numbers of what is selected, to be read and typed: a table of fields for each kind of thing. */
 
+import { VIEW_NAMES, VIEWS } from "../camera/views";
 import { text, type TextName } from "../texts/texts";
-import { atPace, changed, moved, paceOf, reshaped, tidy, turnedBy, yawOf, type Selected } from "./edits";
+import { worded } from "../texts/worded";
+import { atPace, changed, moved, paceOf, reshaped, restopped, tidy, turnedBy, yawOf, type Selected } from "./edits";
 import type { Editor } from "./editor";
-import { REPEATS, type Plan, type Repeat, type Shape, type Spot, type Thing, type Vec3 } from "./plan";
+import { REPEATS, type Plan, type Repeat, type Shape, type Spot, type Thing, type TourStop, type Vec3 } from "./plan";
 import { halfSize, length } from "./shapes";
 import { anglesOf, turnOf, wrapped } from "./turns";
 
@@ -42,6 +44,7 @@ export function fieldsOf({ plan, selected, thing, index }: Editor): readonly Fie
     const { finish } = plan;
     return [...spotFields(plan, selected, finish), metres("build.width", finish.width, (width) => ({ ...plan, finish: { ...finish, width: length(width) } }))];
   }
+  if (selected.what === "stop") return stopFields(plan, selected);
   if (!thing || index === null) return [];
   if (selected.what === "key") return keyFields(plan, selected, thing, selected.key);
   return [...lookFields(plan, thing, index), ...placeFields(plan, selected, thing), ...shapeFields(plan, thing, index), ...trackFields(plan, thing, index)];
@@ -61,6 +64,21 @@ function spotFields(plan: Plan, selected: Selected, { x, z, heading }: Spot): Fi
   return [
     metres("build.x", x, (to) => moved(plan, selected, [to - x, 0, 0])), metres("build.z", z, (to) => moved(plan, selected, [0, 0, to - z])),
     degrees("build.turn", heading, (to) => turnedBy(plan, selected, wrapped(to - heading))),
+  ];
+}
+
+function stopFields(plan: Plan, selected: Selected & { readonly what: "stop" }): Field[] {
+  const stop = plan.tour[selected.index];
+  if (!stop) return [];
+  const change = (to: Partial<TourStop>) => restopped(plan, selected.index, () => to);
+  return [
+    metres("build.x", stop.x, (to) => moved(plan, selected, [to - stop.x, 0, 0])), metres("build.z", stop.z, (to) => moved(plan, selected, [0, 0, to - stop.z])),
+    {
+      kind: "choice", name: "build.view", value: stop.view, set: (view) => change({ view }),
+      choices: [["", text("build.sameView")], ...VIEW_NAMES.map((name) => [name, worded(VIEWS[name].title)] as const)],
+    },
+    { kind: "number", name: "build.stay", value: stop.seconds, step: 1, set: (to) => change({ seconds: Math.min(600, Math.max(0, to)) }) },
+    { kind: "text", name: "build.say", value: stop.say, set: (say) => change({ say: say.slice(0, 300) }) },
   ];
 }
 

@@ -29,6 +29,7 @@ const ICONS = {
   cylinder: "M4.5 5.5c0-3 11-3 11 0v9c0 3-11 3-11 0zM4.5 5.5c0 3 11 3 11 0",
   hull: "M3 15.5h14V6z",
   track: "M4 15.5c0-6 12-4 12-11M4 15.5h.01M16 4.5h.01",
+  stop: "M10 17.5S4 11.7 4 8a6 6 0 0 1 12 0c0 3.7-6 9.5-6 9.5M10 6.2a1.8 1.8 0 1 1 0 3.6 1.8 1.8 0 0 1 0-3.6",
   undo: "M7 4.5 3.5 8 7 11.5M3.5 8H12a4.5 4.5 0 0 1 0 9H8",
   redo: "M13 4.5 16.5 8 13 11.5M16.5 8H8a4.5 4.5 0 0 0 0 9h4",
   copy: "M7 7h9v9H7zM4 13V4h9",
@@ -71,7 +72,7 @@ export class BuildPanel {
     this.undo.disabled = !editor.canUndo;
     this.redo.disabled = !editor.canRedo;
     this.copy.disabled = editor.index === null;
-    this.remove.disabled = editor.index === null;
+    this.remove.disabled = editor.index === null && editor.selected?.what !== "stop";
     this.sideButton.textContent = text(editor.side === "top" ? "build.top" : "build.side");
     this.check.setAttribute("aria-pressed", String(checking));
     if (document.activeElement !== this.titleInput) this.titleInput.value = editor.plan.title;
@@ -100,12 +101,13 @@ export class BuildPanel {
   private toolbar(): HTMLElement {
     const kinds = KINDS.map((kind, i) => this.tool(kind, `${text(`build.${kind}`)} (${i + 1})`));
     const track = this.tool("track", `${text("build.track")} (T)`);
+    const stop = this.tool("stop", `${text("build.stop")} (S)`);
     const fit = this.button("fit", `${text("build.fit")} (Home)`, () => this.board.fit());
     for (const metres of SNAPS) this.snap.add(new Option(metres === 0 ? text("build.noSnap") : `${metres * 100} cm`, String(metres)));
     this.snap.value = String(this.editor.snap);
     this.sideButton.title = `${text("build.look")} (V)`;
     return make("div", { class: "tools", role: "toolbar", "aria-label": text("build.tools") },
-      ...kinds, track, make("i", { class: "gap", "aria-hidden": "true" }), this.copy, this.remove, make("i", { class: "gap", "aria-hidden": "true" }),
+      ...kinds, track, stop, make("i", { class: "gap", "aria-hidden": "true" }), this.copy, this.remove, make("i", { class: "gap", "aria-hidden": "true" }),
       this.sideButton, fit, this.snap, this.check);
   }
 

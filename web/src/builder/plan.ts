@@ -43,6 +43,16 @@ export interface Spot {
   readonly heading: number;
 }
 
+/** A stop of the guided tour; see `elbowroom/world/stops.py`. */
+export interface TourStop {
+  readonly x: number;
+  readonly z: number;
+  /** A camera's name; "" leaves it as it is. */
+  readonly view: string;
+  readonly say: string;
+  readonly seconds: number;
+}
+
 export interface Plan {
   readonly title: string;
   readonly description: string;
@@ -50,6 +60,7 @@ export interface Plan {
   readonly start: Spot;
   readonly finish: Spot & { readonly width: number };
   readonly things: readonly Thing[];
+  readonly tour: readonly TourStop[];
 }
 
 export const UPRIGHT: Turn = [0, 0, 0, 1];
@@ -58,6 +69,6 @@ export const UPRIGHT: Turn = [0, 0, 0, 1];
 export function emptyPlan(title: string): Plan {
   return {
     title, description: "", ground: { size: [12, 14], center: [0, 3] }, start: { x: 0, z: 0, heading: 0 },
-    finish: { x: 0, z: 6, heading: 0, width: 4 }, things: [],
+    finish: { x: 0, z: 6, heading: 0, width: 4 }, things: [], tour: [],
   };
 }

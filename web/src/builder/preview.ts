@@ -7,13 +7,13 @@ import type { Plan, Shape, Thing, Vec3 } from "./plan";
 import { halfSize } from "./shapes";
 
 /** The message that the server would send of it, but for its name. */
-export function previewOf({ title, description, ground, start, finish, things }: Plan): SceneMessage {
+export function previewOf({ title, description, ground, start, finish, things, tour }: Plan): SceneMessage {
   return {
     type: "scene", name: "", title, description, ground: { center: [...ground.center], size: [...ground.size] }, model: null,
     obstacles: things.filter(({ track }) => track.length === 0).map(standing),
     pushable: [],
     moving: things.filter(({ track }) => track.length > 0).map(moving),
-    start, finish,
+    start, finish, tour: tour.map((stop) => ({ ...stop, position: [stop.x, stop.z] })),
   };
 }
 

@@ -11,6 +11,10 @@ export interface ViewShift {
 export const NO_SHIFT: ViewShift = { yaw: 0, pitch: 0 };
 
 const YAWS = [0, -0.3, 0.3, -0.6, 0.6] as const;
+/** For a view that nobody steers by: between two walls it comes round until it looks along them. */
+const WIDE_YAWS = [...YAWS, -0.9, 0.9, -1.15, 1.15, -1.35, 1.35] as const;
+/** Nearer than so many metres one sees no more than a part of the body. */
+const CRAMPED = 1.5;
 const PITCHES = [0, -0.18, 0.2, -0.36, 0.4, 0.6, 0.8] as const;
 /** With this share of the wanted distance the view is good enough to stay as the user chose it. */
 const ENOUGH = 0.6;
@@ -25,10 +29,18 @@ export function backwards(heading: number, pitch: number): Vec3 {
   return [-Math.sin(heading) * flat, Math.sin(pitch), -Math.cos(heading) * flat];
 }
 
+/** How far a view may be shifted. */
+export interface Leeway {
+  /** Least and greatest pitch. */
+  readonly pitch: readonly [low: number, high: number];
+  /** Whether it may come round far. */
+  readonly wide: boolean;
+}
+
 /** The shift that gains most distance for the least change; none where there is room enough. */
 export function roomierView(
   obstacles: CameraObstacles, pivot: Vec3, heading: number, pitch: number, wanted: number, radius: number,
-  current: ViewShift, limits: readonly [low: number, high: number],
+  current: ViewShift, { pitch: limits, wide }: Leeway,
 ): ViewShift {
   const enough = ENOUGH * wanted;
   if (cameraReach(obstacles, pivot, backwards(heading, pitch), wanted, radius) >= enough) return NO_SHIFT;
@@ -36,10 +48,11 @@ export function roomierView(
   let bestScore = -Infinity;
   for (const rise of PITCHES) {
     if (pitch + rise < limits[0] || pitch + rise > limits[1]) continue;
-    for (const yaw of YAWS) {
+    for (const yaw of wide ? WIDE_YAWS : YAWS) {
       const reach = cameraReach(obstacles, pivot, backwards(heading + yaw, pitch + rise), wanted, radius);
       const loyal = yaw === current.yaw && rise === current.pitch ? LOYALTY : 0;
-      const score = Math.min(reach, enough) + loyal - PRICE * Math.hypot(yaw, rise);
+      const narrow = wide ? Math.max(0, CRAMPED - reach) : 0;
+      const score = Math.min(reach, enough) + loyal - narrow - PRICE * Math.hypot(yaw, rise);
       if (score <= bestScore) continue;
       bestScore = score;
       best = { yaw, pitch: rise };

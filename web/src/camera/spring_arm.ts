@@ -124,7 +124,7 @@ export function freeReach(
 }
 
 /** Whether the box is a wall or a floor: at least this large in two directions. What is smaller is furniture. */
-export function isWall(box: PreparedBox, size = 2.4): boolean {
+export function isWall(box: PreparedBox, size = 1.8): boolean {
   const sizes = box.halfSize.map((half) => 2 * half).sort((a, b) => b - a);
   return (sizes[1] ?? 0) >= size;
 }

@@ -183,11 +183,11 @@ export class ThirdPersonCamera {
 
   /** Looks for more room a little aside; what the user steers by, `heading`, stays. */
   private seekRoom(obstacles: CameraObstacles, heading: number, pitch: number, dt: number): void {
-    const limits = [MIN_PITCH, MAX_PITCH] as const;
+    const leeway = { pitch: [MIN_PITCH, MAX_PITCH], wide: this.name === "side" || this.name === "front" } as const;
     const stays = this.calm() || this.name === "orbit" || this.name === "above";
     this.shift = stays
       ? NO_SHIFT
-      : roomierView(obstacles, this.pivot, heading, pitch, this.zoomed, RADIUS, this.shift, limits);
+      : roomierView(obstacles, this.pivot, heading, pitch, this.zoomed, RADIUS, this.shift, leeway);
     this.shiftedYaw = damp(this.shiftedYaw, this.shift.yaw, SHIFT_HALFLIFE, dt);
     this.shiftedPitch = damp(this.shiftedPitch, this.shift.pitch, SHIFT_HALFLIFE, dt);
   }

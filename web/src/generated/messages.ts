@@ -231,6 +231,18 @@ export interface Place {
   heading: number;
 }
 
+/** A place of a guided tour. */
+export interface Stop {
+  /** x, z */
+  position: [number, number];
+  /** the camera that shows it; "": as it is */
+  view: string;
+  /** for people to read */
+  say: string;
+  /** how long one stays */
+  seconds: number;
+}
+
 /** A shape on a track, its Y upright: its place and its turn about Y change evenly from key pose to key pose. */
 export interface MovingObstacle {
   name: string;
@@ -268,6 +280,7 @@ export interface SceneMessage {
   moving: MovingObstacle[];
   start: Place;
   finish: Gate | null;
+  tour: Stop[];
 }
 
 /** A bone that the pose frames move. */

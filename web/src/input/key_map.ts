@@ -16,7 +16,7 @@ const CHANGEABLE: readonly (readonly [string, KeyDeed])[] = [
   ["ShiftLeft", "run"], ["KeyR", "reset"], ["KeyP", "pause"], ["Period", "step"], ["KeyM", "slow"], ["Comma", "stepBack"],
   ["KeyV", "cameraMode"], ["KeyO", "overlays"], ["KeyH", "hideUi"], ["KeyT", "assist"], ["KeyC", "recenter"],
   ["KeyL", "pointerLock"], ["KeyN", "menu"], ["KeyB", "nextView"], ["KeyI", "inset"], ["KeyK", "replay"], ["KeyU", "build"],
-  ["KeyG", "push"],
+  ["KeyG", "push"], ["Equal", "nearer"], ["Minus", "farther"],
   ...VIEW_NAMES.map((name, i) => [`Digit${i + 1}`, `view:${name}`] as const),
 ];
 

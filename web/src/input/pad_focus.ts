@@ -1,13 +1,16 @@
 /** Panels by gamepad alone: the cross goes from control to control and changes lists and sliders, A presses, B goes back. */
 
+import { padOnBoard } from "./pad_board";
+
 const [A, B, START, UP, DOWN, LEFT, RIGHT] = [0, 1, 9, 12, 13, 14, 15] as const;
-const WORKED = [A, B, UP, DOWN, LEFT, RIGHT] as const;
+const CROSS: readonly number[] = [UP, DOWN, LEFT, RIGHT];
+const WORKED = [A, B, ...CROSS];
 /** Seconds until a held cross goes on, and from then on. */
 const WAIT = 0.4;
 const AGAIN = 0.12;
-const CONTROLS = "button, select, input:not([type=file]), summary, a[href]";
+const CONTROLS = "button, select, input:not([type=file]), summary, a[href], svg.board";
 /** The panels that take the pad when they come up, the uppermost first. */
-const PANELS = ["dialog[open]", "#finish:not([hidden])", "#replay"] as const;
+const PANELS = ["dialog[open]", "#finish:not([hidden])", "#replay", "#build"] as const;
 /** Seconds by which a press moves the timeline. */
 const SEEK = 0.5;
 
@@ -40,10 +43,11 @@ export class PadFocus {
     const panels = this.panels();
     if (panels.length === 0) return new Set([START]);
     const controls = panels.flatMap((panel) => [...panel.querySelectorAll<HTMLElement>(CONTROLS)]).filter(canBeUsed);
-    if (fresh.has(B)) this.back();
-    else if (fresh.has(A)) (focused(controls) ?? focus(controls[0]))?.click();
-    for (const button of [UP, DOWN, LEFT, RIGHT]) if (this.goes(button, down, fresh, now)) move(controls, button);
-    return new Set([START, ...WORKED]);
+    const onBoard = new Set([...fresh].filter((button) => !CROSS.includes(button) && padOnBoard(button)));
+    if (fresh.has(B) && !onBoard.has(B)) this.back();
+    else if (fresh.has(A) && !onBoard.has(A)) (focused(controls) ?? focus(controls[0]))?.click();
+    for (const button of CROSS) if (this.goes(button, down, fresh, now) && !padOnBoard(button)) move(controls, button);
+    return new Set([START, ...WORKED, ...(panels[0]?.id === "build" ? down : [])]);
   }
 
   private toggleMenu(): void {
@@ -63,7 +67,7 @@ export class PadFocus {
   private back(): void {
     const dialog = document.querySelector<HTMLDialogElement>("dialog[open]");
     if (dialog) dialog.close();
-    else if (this.inMenu && !document.querySelector(PANELS[1])) this.toggleMenu();
+    else if (this.inMenu && !document.querySelector(PANELS.slice(1).join())) this.toggleMenu();
     else this.host.back();
   }
 
@@ -107,7 +111,7 @@ function change(control: HTMLElement, step: number): boolean {
 }
 
 function focused(controls: readonly HTMLElement[]): HTMLElement | undefined {
-  return controls.find((control) => control === document.activeElement);
+  return controls.find((control) => control.contains(document.activeElement));
 }
 
 function focus(control: HTMLElement | undefined): HTMLElement | undefined {

@@ -1,4 +1,4 @@
-/** Films the picture while it is shown, with the browser's own recorder, and hands the film over as a download. */
+/** Films the picture while it is shown, with the browser's own recorder. */
 
 const TYPES = [
   ["video/mp4;codecs=avc1", "mp4"], ["video/webm;codecs=vp9", "webm"], ["video/webm", "webm"],
@@ -18,8 +18,8 @@ export class Film {
     return this.recorder !== null;
   }
 
-  /** Begins to film a canvas. */
-  begin(canvas: HTMLCanvasElement, name: string): void {
+  /** Begins to film a canvas. @param done takes the film when it has ended */
+  begin(canvas: HTMLCanvasElement, name: string, done: (film: File) => void): void {
     const [type, ending] = TYPES.find(([kind]) => MediaRecorder.isTypeSupported(kind)) ?? ["", "webm"];
     const stream = canvas.captureStream(FRAMES_PER_SECOND);
     const recorder = new MediaRecorder(stream, { videoBitsPerSecond: BITS_PER_SECOND, ...(type ? { mimeType: type } : {}) });
@@ -27,7 +27,7 @@ export class Film {
     recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
     recorder.addEventListener("stop", () => {
       for (const track of stream.getTracks()) track.stop();
-      download(new Blob(parts, { type: recorder.mimeType }), `${name}.${ending}`);
+      done(new File(parts, `${name}.${ending}`, { type: recorder.mimeType.split(";")[0] ?? "" }));
     });
     recorder.start(1000);
     this.recorder = recorder;

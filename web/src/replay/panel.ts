@@ -55,6 +55,8 @@ export class ReplayPanel {
   private readonly play = button("play", text("replay.play"), "replay-play");
   private readonly loop = make("button", { type: "button", class: "icon wide", "aria-pressed": "false", title: text("replay.loop") }, "↻");
   private readonly filming = make("button", { type: "button", class: "icon wide rec", "aria-pressed": "false", title: text("replay.film") }, "●");
+  private readonly sharing = make("button", { type: "button", class: "plain share", hidden: "" }, text("replay.shareFilm"));
+  private shareFilm: (() => void) | null = null;
   private data: ChartData | null = null;
   private playing: boolean | null = null;
 
@@ -103,6 +105,12 @@ export class ReplayPanel {
     this.filming.title = text(on ? "replay.filming" : "replay.film");
   }
 
+  /** Shows the button that sends a film on, or takes it away. */
+  offerFilm(share: (() => void) | null): void {
+    this.shareFilm = share;
+    this.sharing.hidden = share === null;
+  }
+
   /** Draws the curves anew, after a change of size or colours. */
   redraw(): void {
     if (this.data) drawChart(this.canvas, this.data);
@@ -116,7 +124,7 @@ export class ReplayPanel {
     return make("div", { class: "choices" },
       make("label", { class: "run" }, make("span", {}, text("replay.run")), this.run),
       make("label", { class: "against" }, make("span", {}, text("replay.against")), this.against), this.manner,
-      make("label", { class: "save" }, make("span", {}, text("replay.save")), this.saving), make("span", { class: "space" }), this.filming, close);
+      make("label", { class: "save" }, make("span", {}, text("replay.save")), this.saving), make("span", { class: "space" }), this.sharing, this.filming, close);
   }
 
   private timeline(): HTMLElement {
@@ -162,6 +170,7 @@ export class ReplayPanel {
     this.against.addEventListener("change", compare);
     this.manner.addEventListener("change", compare);
     this.filming.addEventListener("click", () => listener.filmOrEnd());
+    this.sharing.addEventListener("click", () => this.shareFilm?.());
     this.saving.addEventListener("change", () => {
       const ending = SAVED_AS.find((one) => one === this.saving.value);
       this.saving.value = "";

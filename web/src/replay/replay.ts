@@ -5,7 +5,8 @@ import type { Picture } from "../picture";
 import { text } from "../texts/texts";
 import { Companion } from "./companion";
 import { curvesOf } from "./curves";
-import { Film } from "./film";
+import { canShareFile, shareFile } from "../ui/share";
+import { download, Film } from "./film";
 import { marksOf } from "./marks";
 import { ReplayPanel, type Choice, type Manner, type PanelListener } from "./panel";
 import { Player } from "./player";
@@ -137,9 +138,19 @@ export class Replay implements PanelListener {
     else {
       player.playing = false;
       player.toggle();
-      this.film.begin(host.picture.stage.canvas, "elbowroom");
+      this.panel.offerFilm(null);
+      this.film.begin(host.picture.stage.canvas, "elbowroom", (film) => this.filmed(film));
       this.panel.showFilming(true);
     }
+  }
+
+  /** A film is there: it is a download, and where there is a dialog for it, it can be sent on. */
+  private filmed(film: File): void {
+    download(film, film.name);
+    if (!canShareFile(film)) return;
+    this.panel.offerFilm(() => {
+      shareFile(film).catch((error: unknown) => this.host.say("error", String(error)));
+    });
   }
 
   save(ending: SavedAs): void {

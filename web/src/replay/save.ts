@@ -2,6 +2,8 @@
 
 import type { PoseFrame } from "../generated/messages";
 import { motionUrl, pageUrl } from "../net/endpoints";
+import { spoken } from "../texts/texts";
+import { worded } from "../texts/worded";
 import { download } from "./film";
 import type { Take } from "./take";
 
@@ -55,5 +57,11 @@ export async function save(take: Take, ending: SavedAs): Promise<string> {
     throw new Error(error ?? `status ${response.status}`);
   }
   download(await response.blob(), `${take.scene.name.replace(/[^\w-]+/g, "-")}.${ending}`);
-  return decodeURIComponent(response.headers.get("x-elbowroom-note") ?? "");
+  return inOwnWords(decodeURIComponent(response.headers.get("x-elbowroom-note") ?? ""));
+}
+
+/** The server's notes in the page's language: sentences of parts, each of them a phrase. */
+export function inOwnWords(notes: string): string {
+  if (spoken() === "en") return notes;
+  return notes.split("; ").map((note) => note.split(": ").map(worded).join("：")).join("；");
 }

@@ -32,6 +32,7 @@ const KEYBOARD: readonly Section[] = [
     [["drag"], "look around; the wheel or a pinch zooms"],
     [VIEW_NAMES.map((_, i) => String(i + 1)), `camera: ${VIEW_NAMES.map((name) => VIEWS[name].title.toLowerCase()).join(", ")}`],
     [["B"], "next camera; in all but the first, W walks the way the avatar faces"],
+    [["=", "-"], "camera nearer, farther"],
     [["I"], "side view in the corner"],
     [["C"], "bring the camera back to its place"],
     [["L"], "lock the pointer to the view, Esc frees it"],
@@ -75,6 +76,7 @@ const PAD_MEANINGS: Readonly<Partial<Record<PadDeed, string>>> = {
 const GAMEPAD: Section = { title: "Gamepad", rows: [
   [["left stick"], "walk"],
   [["right stick"], "look around"],
+  [["build mode"], "LB and RB go from thing to thing, the cross moves, X turns, Y copies, the triggers scale, the sticks pressed raise and lower, Back deletes"],
   ...Object.entries(PAD_MEANINGS).map(([deed, meaning]): Row => [
     PAD_BUTTONS.filter((button) => button.deed === deed).map(({ name }) => name), meaning,
   ]),

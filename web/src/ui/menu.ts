@@ -119,6 +119,11 @@ export class Menu {
     this.scene.value = name;
   }
 
+  /** Whether there is a button for a guided tour. */
+  offerTour(offered: boolean): void {
+    byId("tour", HTMLButtonElement).hidden = !offered;
+  }
+
   /** Adds an avatar that came as a file, unless the list has it. */
   addAvatar(id: string, title: string): void {
     if ([...this.avatar.options].some((option) => option.value === id)) return;

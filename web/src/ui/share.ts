@@ -5,7 +5,7 @@ import { text } from "../texts/texts";
 /** What became of it, in one sentence for the user; "" where the system's dialog says it. */
 export async function shareAddress(title: string, url: string, ownAvatar: boolean): Promise<string> {
   const remark = ownAvatar ? text("share.own") : "";
-  if (window.matchMedia("(pointer: coarse)").matches && "share" in navigator) {
+  if (hasFingers() && "share" in navigator) {
     try {
       await navigator.share({ title, url });
       return "";
@@ -19,4 +19,20 @@ export async function shareAddress(title: string, url: string, ownAvatar: boolea
   } catch {
     return text("share.copy", url) + remark;
   }
+}
+
+/** Whether the system has a dialog that takes a file: that of a phone. */
+export function canShareFile(file: File): boolean {
+  return hasFingers() && (navigator.canShare?.({ files: [file] }) ?? false);
+}
+
+/** Hands a file to the system's own dialog, at the press of a button. */
+export async function shareFile(file: File): Promise<void> {
+  await navigator.share({ files: [file] }).catch((error: unknown) => {
+    if (!(error instanceof DOMException && error.name === "AbortError")) throw error;
+  });
+}
+
+function hasFingers(): boolean {
+  return window.matchMedia("(pointer: coarse)").matches;
 }

@@ -73,6 +73,16 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Stop:
+    """A place of a guided tour."""
+
+    position: tuple[float, float]  # x, z
+    view: str  # the camera that shows it; "": as it is
+    say: str  # for people to read
+    seconds: float  # how long one stays
+
+
+@dataclass(frozen=True)
 class MovingObstacle:
     """A shape on a track, its Y upright: its place and its turn about Y change evenly from key pose to key pose."""
 
@@ -107,6 +117,7 @@ class SceneMessage:
     moving: list[MovingObstacle]
     start: Place
     finish: Gate | None
+    tour: list[Stop]
 
 
 @dataclass(frozen=True)

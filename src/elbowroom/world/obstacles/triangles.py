@@ -38,9 +38,14 @@ def triangles_of(shape: Shape) -> Floats:
 
 
 def _half_ball(radius: float, rise: float) -> list[tuple[float, float]]:
-    """Outline (radius, height), from the lowest point up, of a ball whose halves are moved apart by `rise` each."""
-    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * _RINGS + 2)
-    return [(radius * np.cos(a), radius * np.sin(a) + (rise if a > 0.0 else -rise)) for a in angles.tolist()]
+    """Outline (radius, height), from the lowest point up, of a ball whose halves are moved apart by `rise` each.
+
+    Both halves have the whole radius where they begin, so that the surface is as wide as the shape.
+    """
+    upper = [
+        (radius * np.cos(a), radius * np.sin(a) + rise) for a in np.linspace(0.0, 0.5 * np.pi, _RINGS + 1).tolist()
+    ]
+    return [*((wide, -height) for wide, height in reversed(upper)), *upper]
 
 
 def _turned(outline: Sequence[tuple[float, float]]) -> Floats:
