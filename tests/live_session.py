@@ -3,7 +3,7 @@
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
@@ -91,7 +91,13 @@ class Client:
 
 
 @contextmanager
-def client_of(url: str, **options: Any) -> Iterator[Client]:
-    uri = url.replace("http", "ws", 1) + "/ws"
+def client_at(url: str, **options: Any) -> Iterator[Client]:
+    """A client of the address of a WebSocket."""
+    uri = url.replace("http", "ws", 1)
     with connect(uri, compression=None, proxy=None, open_timeout=LONG, close_timeout=1.0, **options) as connection:
         yield Client(connection)
+
+
+def client_of(url: str, **options: Any) -> AbstractContextManager[Client]:
+    """A client of a server."""
+    return client_at(f"{url}/ws", **options)

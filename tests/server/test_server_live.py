@@ -1,6 +1,7 @@
 """Live sessions over a real WebSocket."""
 
 import gc
+import json
 import math
 import socket
 import struct
@@ -10,12 +11,13 @@ from collections.abc import Iterator
 from contextlib import closing
 from itertools import pairwise
 from typing import Any
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from elbowroom.server import app, changes, session
+from elbowroom.server import admission, changes, session
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
 from elbowroom.server.pose_frame import PoseFrame
@@ -25,7 +27,7 @@ from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, SceneMessage
 from elbowroom.server.schema.progress import Crossed, Going, Loading, Plan, Status
 from elbowroom.server.walk import Walk
-from live_session import Client, client_of, running
+from live_session import LONG, Client, client_at, client_of, running
 
 
 @pytest.fixture(scope="module")
@@ -148,6 +150,7 @@ def test_settings_change_while_walking(client: Client) -> None:
     assert scene.name == "a"
     assert len(scene.obstacles) >= 4
     assert client.wait_for(Settings).queue_size == 7
+    client.send(Overlays(capsules=True))
     status = client.wait_for(Status, lambda status: status.nearest is not None)
     assert status.nearest is not None
     assert status.nearest.obstacle in {one.name for one in scene.obstacles}
@@ -327,7 +330,7 @@ def test_a_failure_inside_ends_one_session_with_a_word(
 
 def test_the_number_of_sessions_is_bounded(url: str, client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     client.frame()
-    monkeypatch.setattr(app, "MAX_SESSIONS", 1)
+    monkeypatch.setattr(admission, "MOST", 1)
     with client_of(url) as other:
         assert "sessions already" in other.complaint()
         with pytest.raises(ConnectionClosed):
@@ -395,3 +398,33 @@ def test_a_place_on_the_floor_is_walked_to_and_a_key_takes_over(client: Client) 
     assert client.wait_for(Going).state == "walking"
     client.press(forward=-1.0)
     assert client.wait_for(Going).state == "taken over"
+
+
+def wait_until_alone(url: str) -> None:
+    end = time.monotonic() + LONG
+    while json.loads(urlopen(f"{url}/health", timeout=LONG).read())["sessions"]:
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_who_loses_the_line_goes_on_in_the_same_place(url: str) -> None:
+    where = f"{url}/ws?key={'5' * 32}"
+    with client_at(where) as client:
+        client.send(Configure(scene="a"))
+        client.wait_for(SceneMessage, lambda scene: scene.name == "a")
+        start = client.frame()
+        client.press(forward=1.0)
+        client.frame(lambda f: f.z - start.z > 1.0)
+        client.press()
+        last = client.frame(lambda f: f.forward == 0.0)
+        client.wait_for(Status)
+        noted = client.frame(lambda f: f.time > last.time + 1.0)
+        client.connection.socket.shutdown(socket.SHUT_RDWR)
+    wait_until_alone(url)
+    with client_at(where) as again:
+        assert again.wait_for(Settings).scene == "a"
+        back = again.frame()
+        assert (back.x, back.z) == pytest.approx((noted.x, noted.z), abs=0.05)
+    wait_until_alone(url)
+    with client_at(where) as left:  # who said goodbye begins anew
+        assert left.wait_for(Settings).scene == "empty"

@@ -13,7 +13,8 @@ import typer
 
 from elbowroom.cli.output import print_json
 
-EXAMPLES = "Examples:  elbowroom doctor  |  elbowroom doctor --session --scene d --sessions 4 --seconds 20 --json"
+EXAMPLES = """Examples:  elbowroom doctor  |  elbowroom doctor --session --scene d --sessions 4 --seconds 20 --json  |
+elbowroom doctor --load 16"""
 
 _PACKAGES = ("numpy", "numba", "scipy", "starlette", "uvicorn", "websockets", "typer", "rich")
 WHEEL_BUDGET_MB = 5.0
@@ -21,7 +22,7 @@ WHEEL_BUDGET_MB = 5.0
 
 def doctor(
     *,
-    session: Annotated[bool, typer.Option("--session", help="Measure the cost of one live session.")] = False,
+    session: Annotated[bool, typer.Option("--session", help="Measure the cost of live sessions.")] = False,
     sessions: Annotated[int, typer.Option(min=1, max=8, help="How many live sessions at once.")] = 1,
     seconds: Annotated[float, typer.Option(min=2.0, max=600.0, help="How long to measure.")] = 10.0,
     scene: Annotated[str, typer.Option(help="The scene of the measured session.")] = "a",
@@ -31,6 +32,10 @@ def doctor(
         float | None,
         typer.Option(metavar="MINUTES", min=0.2, max=1440.0, help="Whether memory stays, with clients good and bad."),
     ] = None,
+    load: Annotated[
+        int | None, typer.Option(metavar="N", min=1, max=1000, help="Whether N users who steer are served in time.")
+    ] = None,
+    at: Annotated[str | None, typer.Option(metavar="URL", help="Load this server, not one of its own.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
@@ -52,6 +57,11 @@ def doctor(
 
         with Console(stderr=True).status(f"Clients come and go for {soak:g} minutes ...") as status:
             facts["soak"] = asdict(soaked(soak, lambda how: status.update(f"Clients come and go: {how}")))
+    if load is not None:
+        from elbowroom.cli.load import measure_load
+
+        with Console(stderr=True).status(f"{load} users steer for {seconds:g} s ..."):
+            facts["load"] = asdict(measure_load(load, seconds, at))
     faults = _faults(facts)
     facts["faults"] = faults
     if json:
@@ -149,7 +159,7 @@ def _faults(facts: dict[str, Any]) -> list[str]:
         faults.append("the first plan of a program comes later than its budget")
     if start and (start["first_run_seconds"] or 0.0) > start["first_run_budget_seconds"]:
         faults.append("the first run takes longer than its budget")
-    return faults + _soak_faults(facts.get("soak"))
+    return faults + _soak_faults(facts.get("soak")) + _load_faults(facts.get("load"))
 
 
 def _soak_faults(soaked: dict[str, Any] | None) -> list[str]:
@@ -159,6 +169,12 @@ def _soak_faults(soaked: dict[str, Any] | None) -> list[str]:
     if soaked["long_enough"] and soaked["slope"] > soaked["slope_budget"]:
         faults.append("the server's memory grows faster than its budget")
     return faults
+
+
+def _load_faults(load: dict[str, Any] | None) -> list[str]:
+    from elbowroom.cli.load import Load, load_faults
+
+    return [] if load is None else load_faults(Load(**load))
 
 
 def _as_text(facts: dict[str, Any]) -> str:
@@ -173,6 +189,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         *_session_rows(facts.get("session")),
         *_startup_rows(facts.get("startup")),
         *_soak_rows(facts.get("soak")),
+        *_load_rows(facts.get("load")),
         *(("fault", fault) for fault in facts["faults"]),
     ]
     return "\n".join(f"{name:<10} {text}" for name, text in rows)
@@ -199,6 +216,22 @@ def _session_rows(cost: dict[str, Any] | None) -> list[tuple[str, str]]:
         ("session", f"{cost['sessions']} at once: {cpu} each, {memory}"),
         ("", f"{rate} (95 %: {cost['frame_ms_p95']:.2f}); page ready {cost['ready_seconds']:.1f} s after the start"),
         ("", f"{frames}; {answers}; aim {cost['answer_aim_ms']:g}); {cost['late_plans']} plans too late"),
+    ]
+
+
+def _load_rows(load: dict[str, Any] | None) -> list[tuple[str, str]]:
+    if load is None:
+        return []
+    frames = (
+        f"{load['frames_per_second']:.1f} frames/s each, {load['on_time_percent']:.2f} % of them in time (budget 99)"
+    )
+    half, most, budget = load["answer_ms_p50"], load["answer_ms_p99"], load["answer_budget_ms"]
+    answers = f"commands answered within {half:.0f} ms (half), {most:.0f} (99 %; budget {budget:g})"
+    processor = f"{load['cpu_percent']:.1f} % of one core and {load['own_megabytes']:.1f} MB each"
+    clients = f"the users themselves took {load['clients_cpu_percent']:.0f} % of one core"
+    return [
+        ("load", f"{load['served']} of {load['sessions']} users served for {load['seconds']:.0f} s: {frames}"),
+        ("", f"{answers}; {processor}; {clients}"),
     ]
 
 

@@ -59,7 +59,7 @@ class SessionCost:
 
 
 @dataclass
-class _Tally:
+class Tally:
     """What the client has received."""
 
     frames: int = 0
@@ -153,10 +153,10 @@ def client_of(url: str) -> ClientConnection:
     return connect(url.replace("http", "ws", 1) + "/ws", compression=None, proxy=None, open_timeout=_PATIENCE)
 
 
-def walk_about(client: ClientConnection, seconds: float, hand: Callable[[], Steer] | None = None) -> _Tally:
+def walk_about(client: ClientConnection, seconds: float, hand: Callable[[], Steer] | None = None) -> Tally:
     """Steer for `seconds`, mostly ahead if no `hand` is given; again from the start at the finish, or after a while."""
     hand = hand or _mostly_ahead
-    tally, steer, sent = _Tally(), hand(), -_HEARTBEAT
+    tally, steer, sent = Tally(), hand(), -_HEARTBEAT
     began = start = time.monotonic()
     command, number = Command(), 0
     while (now := time.monotonic()) < began + seconds:

@@ -19,13 +19,18 @@ from starlette.websockets import WebSocket
 from elbowroom import __version__
 from elbowroom.body.permissions import Use
 from elbowroom.errors import InputError
+from elbowroom.server.admission import Admission
 from elbowroom.server.apart.process import ApartError, FullDiskError
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.codec import encode, plain
 from elbowroom.server.courses import BusyError
+from elbowroom.server.door_word import BehindDoor
 from elbowroom.server.guard import Guard, is_loopback
 from elbowroom.server.heap import hand_back
 from elbowroom.server.library import Library
+from elbowroom.server.meter import LATE, PROMPT
+from elbowroom.server.metrics import CONTENT_TYPE as METRICS_TYPE
+from elbowroom.server.metrics import metrics_text
 from elbowroom.server.page_key import page_key
 from elbowroom.server.reception import Reception
 from elbowroom.server.reports import scene_message
@@ -33,6 +38,7 @@ from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.scene_desk import SceneDesk
 from elbowroom.server.schema.progress import Notice
 from elbowroom.server.session import Session
+from elbowroom.server.sharing import bring_file, bring_scene, shared_avatar
 from elbowroom.server.uploads import UploadDesk
 from elbowroom.server.usage import process_usage
 from elbowroom.server.while_there import while_there
@@ -40,9 +46,9 @@ from elbowroom.world.scene import Scene
 
 LOG = logging.getLogger("elbowroom.server")
 
-MAX_SESSIONS = 8
 _WORTH_COMPRESSING = 1024  # bytes
 _TRY_AGAIN_LATER = 1013  # close code
+_SILENT = 2.5  # seconds: a page that is there is heard every second
 
 HOW_TO_BUILD = "The page is not built. In a checkout run `make env`; or install the package again with pip."
 _NO_CLIENT = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Elbowroom</title>
@@ -60,12 +66,23 @@ def client_is_built() -> bool:
     return (client_folder() / "index.html").is_file()
 
 
-def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") -> Starlette:
-    """The application for one server; `bound_host` is the address that it listens on, `name` the name asked for."""
-    handlers, reception = _Handlers(library), Reception(library)
+def make_app(
+    library: Library,
+    bound_host: str = "127.0.0.1",
+    name: str = "",
+    admission: Admission | None = None,
+    word: str = "",
+) -> Starlette:
+    """The application for one server; `bound_host` is the address that it listens on, `name` the name asked for.
+
+    Where `word` is not empty, both are those of a door before it, see `BehindDoor`.
+    """
+    handlers, reception = _Handlers(library, admission or Admission(library.meter)), Reception(library)
     desk, scenes = UploadDesk(library, reception), SceneDesk(library, reception)
     routes: list[BaseRoute] = [
+        Route("/health", handlers.health),
         Route("/api/health", handlers.health),
+        Route("/metrics", handlers.metrics),
         Route("/api/catalog", handlers.catalog),
         Route("/api/scenes", scenes.take, methods=["POST"]),
         Route("/api/walks", scenes.walk, methods=["POST"]),
@@ -84,31 +101,44 @@ def make_app(library: Library, bound_host: str = "127.0.0.1", name: str = "") ->
     ]
     if not client_is_built():
         LOG.warning(HOW_TO_BUILD)
-    return Starlette(routes=routes, middleware=[Middleware(Guard, bound_host=bound_host, name=name)])
+    door = [Middleware(BehindDoor, word=word)] if word else []
+    return Starlette(routes=routes, middleware=[*door, Middleware(Guard, bound_host=bound_host, name=name)])
 
 
 class _Handlers:
     """What the routes do with the library."""
 
-    def __init__(self, library: Library) -> None:
+    def __init__(self, library: Library, admission: Admission) -> None:
         self._library = library
-        self._sessions = 0
+        self._admission = admission
         self._of_pages: dict[str, Session] = {}  # by the key of the page
 
     async def health(self, request: Request) -> Response:  # noqa: ARG002
-        usage = process_usage()
+        usage, meter, admission = process_usage(), self._library.meter, self._admission
+        (frames, late), (answers, slow) = meter.frames.beyond(LATE), meter.answers.beyond(PROMPT)
         return JSONResponse(
             {
-                "status": "ok",
+                "status": "ending" if admission.ending else "ok",
                 "version": __version__,
                 "warm": self._library.warm.is_set(),
-                "sessions": self._sessions,
+                "sessions": admission.sessions,
+                "room": admission.has_room,
+                "refused": admission.refused,
+                "frames": frames,
+                "framesLate": late,
+                "answers": answers,
+                "answersLate": slow,
                 "wallSeconds": usage.wall_seconds,
                 "cpuSeconds": usage.cpu_seconds,
                 "residentBytes": usage.resident_bytes,
                 "ownBytes": usage.own_bytes,
             }
         )
+
+    async def metrics(self, request: Request) -> Response:  # noqa: ARG002
+        """The same and more, as Prometheus reads it."""
+        text = metrics_text(self._library.meter, self._admission, process_usage())
+        return Response(text, headers={"content-type": METRICS_TYPE})
 
     async def catalog(self, request: Request) -> Response:  # noqa: ARG002
         return JSONResponse(plain(self._library.catalog()))
@@ -124,7 +154,10 @@ class _Handlers:
     async def _with_scene(self, request: Request, answer: Callable[[Scene], Response]) -> Response:
         client = request.client.host if request.client else ""
         try:
-            found = self._library.find_scene(request.path_params["name"], client)
+            name = request.path_params["name"]
+            if self._library.shared:
+                await asyncio.to_thread(bring_scene, self._library, name)
+            found = self._library.find_scene(name, client)
             return answer(await while_there(request, found))
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
@@ -160,7 +193,7 @@ class _Handlers:
 
     def avatar(self, request: Request) -> Response:
         try:
-            avatar = self._library.avatars.get(request.path_params["avatar"])
+            avatar = shared_avatar(self._library, request.path_params["avatar"])
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
         refusal = avatar.humanoid.meta.permissions.refusal(Use.HAND_OUT)
@@ -171,6 +204,7 @@ class _Handlers:
         return FileResponse(avatar.glb, media_type="model/gltf-binary", headers={"cache-control": "no-cache"})
 
     def place(self, request: Request) -> Response:
+        bring_file(self._library, request.path_params["place"])
         glb = self._library.places.get(request.path_params["place"])
         if glb is None or not glb.is_file():
             return JSONResponse({"error": "there is no such place here"}, 404)
@@ -178,21 +212,23 @@ class _Handlers:
 
     async def session(self, socket: WebSocket) -> None:
         await socket.accept()
-        if self._sessions >= MAX_SESSIONS:
-            reason = f"this server has {MAX_SESSIONS} sessions already; try again later"
+        machine = socket.client.host if socket.client else ""
+        reason = self._admission.refusal(machine)
+        if reason is not None:
             await socket.send_text(encode(Notice("error", reason)))
             await socket.close(_TRY_AGAIN_LATER, reason)
             return
-        self._sessions += 1
-        key, session = page_key(socket.query_params), Session(socket, self._library)
+        key = page_key(socket.query_params)
+        twin = self._of_pages.get(key)  # a copy of the page has its key
+        session = Session(socket, self._library, resumes=twin is None or twin.silence > _SILENT)
         self._of_pages[key] = session
         try:
-            await session.run()
+            with self._admission.seat(machine):
+                await session.run()
         finally:
-            self._sessions -= 1
             if self._of_pages.get(key) is session:
                 del self._of_pages[key]
-            if self._sessions == 0:
+            if self._admission.sessions == 0:
                 await asyncio.to_thread(hand_back)
 
 

@@ -98,13 +98,15 @@ class AvatarStore:
         """Keep the avatar of a file for good, by the file's name; raises `InputError` if it holds no humanoid."""
         return self._keep(self._free_name(path.stem), Humanoid.load(path, read))
 
-    def add_upload(self, humanoid: Humanoid, file: Path | None, sender: Sender = _NOBODY) -> StoredAvatar:
+    def add_upload(
+        self, humanoid: Humanoid, file: Path | None, sender: Sender = _NOBODY, avatar_id: str = ""
+    ) -> StoredAvatar:
         """Keep an avatar that was sent, its GLB in a file of `folder`, which goes with it.
 
         Menus offer it to the page that sent it alone; whoever is told its id can use it. Raises `InputError`
-        where there is no place for it; the file is gone then.
+        where there is no place for it; the file is gone then. `avatar_id` is what another server has called it.
         """
-        avatar = StoredAvatar(secrets.token_hex(8), replace(humanoid, glb=None), file, sender)
+        avatar = StoredAvatar(avatar_id or secrets.token_hex(8), replace(humanoid, glb=None), file, sender)
         try:
             size = 0 if file is None else file.stat().st_size
             self._uploads.add(avatar.id, avatar, size, sender.shares)

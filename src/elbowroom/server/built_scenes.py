@@ -20,7 +20,10 @@ class BuiltScenes:
     def add(self, scene: Scene) -> Scene:
         """The scene under its name here."""
         digest = hashlib.sha256(json.dumps(scene.to_dict()).encode()).hexdigest()
-        named = replace(scene, name=f"{PREFIX}{digest[:32]}")
+        return self.keep(replace(scene, name=f"{PREFIX}{digest[:32]}"))
+
+    def keep(self, named: Scene) -> Scene:
+        """The same under the name that it has."""
         self._kept.pop(named.name, None)
         self._kept[named.name] = named
         while len(self._kept) > MOST:

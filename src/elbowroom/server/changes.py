@@ -2,7 +2,7 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +15,7 @@ from elbowroom.server.planning_thread import PlanningThread
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
 from elbowroom.server.schema.commands import Configure
 from elbowroom.server.schema.progress import Notice
+from elbowroom.server.sharing import bring
 from elbowroom.server.stage import Stage
 from elbowroom.server.walk import Walk, WalkSettings
 from elbowroom.server.wanted import Wanted
@@ -46,6 +47,8 @@ class Changes:
         while True:
             message = await self._wanted.get()
             try:
+                if self._library.shared:
+                    await asyncio.to_thread(bring, self._library, message.scene, message.avatar, message.clip)
                 await self._configure(self._possible(message))
             except InputError as error:
                 self._outbox.put(Notice("error", str(error)))
@@ -90,9 +93,9 @@ class Changes:
         notice = wanted.loading(now)
         self._outbox.put(notice)
         try:
-            place = None if moved else self._stage.walk.place
+            places = () if moved else (self._stage.walk.place,)
             self._library.hold(self._session, now, wanted)
-            walk = await prepared(self._library, wanted, place, self._session)
+            walk = await prepared(self._library, wanted, places, self._session)
         finally:
             self._library.hold(self._session, Wanted.of(self._stage.walk))
             self._outbox.put(replace(notice, active=False))
@@ -107,19 +110,19 @@ class Changes:
             self._outbox.put(clip_message(walk.stored))
 
 
-async def prepared(library: Library, wanted: Wanted, place: RootState | None, client: Hashable) -> Walk | ClipWalk:
+async def prepared(library: Library, wanted: Wanted, places: Sequence[RootState], client: Hashable) -> Walk | ClipWalk:
     """A walk or a clip from the library, for a client (any key); takes a while. Raises `InputError`."""
     scene = await library.find_scene(wanted.scene, client)
     if wanted.clip:
         await library.clips.get(wanted.clip).read()
-    return await asyncio.to_thread(make_walk, library, wanted, place, scene)
+    return await asyncio.to_thread(make_walk, library, wanted, places, scene)
 
 
-def make_walk(library: Library, wanted: Wanted, place: RootState | None, scene: Scene) -> Walk | ClipWalk:
+def make_walk(library: Library, wanted: Wanted, places: Sequence[RootState], scene: Scene) -> Walk | ClipWalk:
     """The part of `prepared` that computes, for a worker thread."""
     avatar = library.avatars.get(wanted.avatar)
     if wanted.clip:
         stored = library.clips.get(wanted.clip)
         return ClipWalk(avatar, scene, wanted.settings, stored, as_planned=wanted.as_planned)
-    desk = PlanningThread(library.planning)
-    return Walk(avatar, scene, wanted.settings, place, desk, library.motions)
+    desk = PlanningThread(library.planning, library.meter)
+    return Walk(avatar, scene, wanted.settings, places, desk, library.motions)

@@ -2,7 +2,7 @@
 
 import secrets
 import threading
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,8 +34,8 @@ class SentMotions:
 class StoredClip:
     """A clip in the menu; it is read when it is first shown."""
 
-    def __init__(self, title: str, file: MotionFile | SentMotions, name: str) -> None:
-        self.id = secrets.token_hex(8)
+    def __init__(self, title: str, file: MotionFile | SentMotions, name: str, clip_id: str = "") -> None:
+        self.id = clip_id or secrets.token_hex(8)
         self.title, self.name = title, name
         self._file = file
         self._clip: Clip | None = None
@@ -109,14 +109,18 @@ class ClipStore:
             self._kept |= {clip.id: clip for clip in clips}
         return clips
 
-    def add_upload(self, sent: SentMotions) -> list[StoredClip]:
+    def add_upload(self, sent: SentMotions, ids: Sequence[str] = ()) -> list[StoredClip]:
         """Keep the clips of a file that was sent, and the file with them.
 
         Menus offer them to the page that sent it alone; whoever is told an id can use it. Raises `InputError`
-        where there is no place for it; the file is gone then.
+        where there is no place for it; the file is gone then. `ids` are what another server has called them.
         """
         short = sent.format == "BVH" or len(sent.clips) == 1
-        clips = [StoredClip(sent.name if short else name, sent, name) for name in sent.clips]
+        known = ids or [""] * len(sent.clips)
+        clips = [
+            StoredClip(sent.name if short else name, sent, name, clip_id)
+            for name, clip_id in zip(sent.clips, known, strict=True)
+        ]
         try:
             self._uploads.add(sent.path.name, (sent, clips), sent.path.stat().st_size, sent.sender.shares)
         except InputError:

@@ -72,13 +72,23 @@ def _reject_constant(name: str) -> NoReturn:
 
 
 def _plain(value: Any) -> Any:
-    if dataclasses.is_dataclass(value):
-        return {camel(f.name): _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    kind = type(value)
+    if kind in _BARE:
+        return value
+    if dataclasses.is_dataclass(kind):
+        return {wire: _plain(getattr(value, name)) for wire, name in _names(kind)}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
     return value
 
 
+@cache
+def _names(kind: type) -> tuple[tuple[str, str], ...]:
+    """The fields of a message, as they are called on the wire and here."""
+    return tuple((camel(field.name), field.name) for field in dataclasses.fields(kind))
+
+
+_BARE = frozenset((float, int, str, bool, types.NoneType))  # as they are in JSON
 _LARGEST = sys.float_info.max  # also of whole numbers, which Python reads at any length
 
 Reader = Callable[[Any, str], Any]

@@ -14,14 +14,17 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.names import NAMED, PREFIX, parse_name
 from elbowroom.experiment.gauntlet.scenes import load_scene, random_names
+from elbowroom.experiment.parallel import usable_cores
 from elbowroom.planning.names import planner_names
 from elbowroom.server.avatar_store import STOCK, AvatarStore
 from elbowroom.server.built_scenes import BuiltScenes
 from elbowroom.server.clip_store import ClipStore
 from elbowroom.server.courses import Courses
+from elbowroom.server.meter import Meter
 from elbowroom.server.place_files import PlaceFiles
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
 from elbowroom.server.schema.menus import Catalog, SceneChoice
+from elbowroom.server.shelf import OwnShelf, Shelf
 from elbowroom.server.vmc_stream import VmcStream
 from elbowroom.server.walk import WalkSettings
 from elbowroom.world.scene import Scene
@@ -29,13 +32,13 @@ from elbowroom.world.scene import Scene
 if TYPE_CHECKING:
     from elbowroom.server.wanted import Wanted
 
-_SENT = "place:"  # begins the names of scenes that pages have sent
+SENT = "place:"  # begins the names of scenes that pages have sent
 _MOST_PLACES = 8  # of these
-_THREADS = 16  # twice as many as sessions: a walk that was given up may still be planning
 
 
 def _planning_threads() -> Executor:
-    return ThreadPoolExecutor(_THREADS, "planning")
+    """One more than cores: in more, plans that come at once would all come late."""
+    return ThreadPoolExecutor(usable_cores() + 1, "planning")
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +54,11 @@ class Library:
     clip: str = ""  # that a session begins with; "": it walks
     courses: Courses = field(default_factory=Courses)
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
-    planning: Executor = field(default_factory=_planning_threads)  # a thread for each session's plans
+    planning: Executor = field(default_factory=_planning_threads)  # of all sessions
     run: Path | None = None  # a recording that the page opens with
+    meter: Meter = field(default_factory=Meter)  # what all sessions come to
+    shelf: Shelf = field(default_factory=OwnShelf)  # what must outlast a session
+    shared: bool = False  # whether other servers have the same shelf
     vmc: VmcStream | None = None  # where what is shown is sent too
     sent_places: dict[str, Scene] = field(default_factory=dict)  # by name, the oldest first
     built: BuiltScenes = field(default_factory=BuiltScenes)  # on pages
@@ -114,7 +120,11 @@ class Library:
 
         The place that was sent longest ago goes when there are too many; who walks there goes on.
         """
-        own = self.places.adopt(replace(scene, name=f"{_SENT}{secrets.token_hex(8)}"), glb)
+        return self.keep_place(replace(scene, name=f"{SENT}{secrets.token_hex(8)}"), glb)
+
+    def keep_place(self, scene: Scene, glb: Path) -> Scene:
+        """The same under the name that it has."""
+        own = self.places.adopt(scene, glb)
         self.sent_places[own.name] = own
         while len(self.sent_places) > _MOST_PLACES:
             self.places.forget(self.sent_places.pop(next(iter(self.sent_places))))
@@ -124,7 +134,7 @@ class Library:
         """Raises `InputError` if there is no scene and no course of this name."""
         if name in self.scenes or name in self.sent_places or self.built.get(name) is not None:
             return
-        if name.startswith(_SENT):
+        if name.startswith(SENT):
             raise InputError("that place is not here any more; drop its file on the page again")
         if not name.startswith(PREFIX):
             known = ", ".join(self.scenes)

@@ -1,9 +1,11 @@
 """Planning beside playback: a session's plans are made in a thread of their own, where kernels need no GIL."""
 
+import time
 from concurrent.futures import Executor, Future
 
 from elbowroom.control.desk import Job
 from elbowroom.control.wayfinder import Answer
+from elbowroom.server.meter import Meter
 
 
 class PlanningThread:
@@ -11,8 +13,10 @@ class PlanningThread:
 
     immediate = False
 
-    def __init__(self, executor: Executor) -> None:
+    def __init__(self, executor: Executor, meter: Meter | None = None) -> None:
+        """`meter` is told what plans take."""
         self._executor = executor
+        self._meter = meter or Meter()
         self._future: Future[Answer | None] | None = None
 
     @property
@@ -22,7 +26,7 @@ class PlanningThread:
 
     def submit(self, job: Job) -> None:
         """Take on a job; returns at once."""
-        self._future = self._executor.submit(job)
+        self._future = self._executor.submit(self._done, job, time.perf_counter())
 
     def take(self) -> Answer | None:
         """The answer, once, if it is there; raises what the job raised."""
@@ -36,3 +40,10 @@ class PlanningThread:
         if self._future is not None:
             self._future.cancel()
             self._future = None
+
+    def _done(self, job: Job, asked: float) -> Answer | None:
+        spent = time.thread_time()
+        try:
+            return job()
+        finally:
+            self._meter.planned(time.perf_counter() - asked, time.thread_time() - spent)

@@ -4,6 +4,8 @@ from collections import deque
 
 import numpy as np
 
+from elbowroom.server.meter import Meter
+
 _FRAMES = 600  # that are remembered
 _ANSWERS = 1000
 
@@ -11,7 +13,9 @@ _ANSWERS = 1000
 class Punctuality:
     """Remembers how late the last frames were, and how long the last commands waited for a motion of their own."""
 
-    def __init__(self) -> None:
+    def __init__(self, meter: Meter | None = None) -> None:
+        """`meter` counts what all sessions of a server come to."""
+        self._meter = meter or Meter()
         self._late: deque[float] = deque(maxlen=_FRAMES)
         self._answers: deque[float] = deque(maxlen=_ANSWERS)
         self._asked: float | None = None
@@ -19,6 +23,7 @@ class Punctuality:
     def shown(self, late: float) -> None:
         """A frame was ready so long after it was due."""
         self._late.append(late)
+        self._meter.frames.add(late)
 
     def asked(self, now: float) -> None:
         """A command wants something else than the motion that is shown."""
@@ -28,6 +33,7 @@ class Punctuality:
         """The motion that is shown is what the command wants."""
         if self._asked is not None:
             self._answers.append(now - self._asked)
+            self._meter.answers.add(now - self._asked)
             self._asked = None
 
     @property

@@ -18,6 +18,7 @@ from elbowroom.server.reception import Reception
 from elbowroom.server.schema.bounds import MAX_SCENE
 from elbowroom.server.schema.menus import SceneChoice
 from elbowroom.server.schema.scenes import UnseenWalk
+from elbowroom.server.sharing import share_scene, shared_avatar
 from elbowroom.server.while_there import while_there
 from elbowroom.world.scene import Scene
 
@@ -41,6 +42,7 @@ class SceneDesk:
             with self._reception.files() as (file, _):
                 document = await self._read(request, file)
             scene = self._library.built.add(Scene.from_dict(document, _NAME))
+            await asyncio.to_thread(share_scene, self._library, scene)
             return JSONResponse(plain(SceneChoice(scene.name, scene.title)), 201)
 
         return await self._reception.admitted(request, taken)
@@ -49,7 +51,7 @@ class SceneDesk:
         """POST: a scene to be walked unseen by `?avatar=`. Answers with an `UnseenWalk`, or as `take`."""
 
         async def walked(sender: Sender) -> Response:  # noqa: ARG001
-            avatar = await asyncio.to_thread(self._library.avatars.get, request.query_params.get("avatar", ""))
+            avatar = await asyncio.to_thread(shared_avatar, self._library, request.query_params.get("avatar", ""))
             with self._reception.files() as (file, body):
                 await self._reception.receive(request, file, MAX_SCENE)
                 await asyncio.to_thread(body.write_bytes, packed(replace(avatar.humanoid, glb=None, source=None)))

@@ -5,11 +5,14 @@ import contextlib
 import errno
 import socket
 from collections.abc import Callable
+from dataclasses import dataclass
 from types import FrameType
 
 import uvicorn
 
 from elbowroom.errors import InputError
+from elbowroom.experiment.parallel import usable_cores
+from elbowroom.server.admission import Admission
 from elbowroom.server.app import make_app
 from elbowroom.server.connections import BoundedWebSocket, looks_after
 from elbowroom.server.ending import end_at_latest
@@ -64,22 +67,43 @@ def url_of(opened: socket.socket) -> str:
 class Server(uvicorn.Server):
     """uvicorn's, with an eye on its connections, and an end in time."""
 
-    def __init__(self, library: Library, config: uvicorn.Config) -> None:
+    def __init__(self, library: Library, admission: Admission, config: uvicorn.Config) -> None:
         super().__init__(config)
-        self._library = library
+        self._library, self._admission = library, admission
         config.callback_notify = looks_after(lambda: self.server_state.connections)
+
+    def drain(self) -> None:
+        """Begin to end, without ending the process: nobody is let in any more, and sessions are closed."""
+        self._admission.ending = True
+        self.should_exit = True
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """Begin to end; whoever is not ready in a few seconds is not waited for."""
+        self._admission.ending = True
         if not self.should_exit:
             end_at_latest(sig, self._library.close)
         super().handle_exit(sig, frame)
 
 
-def make_server(library: Library, opened: socket.socket, host: str = "") -> Server:
+@dataclass(frozen=True)
+class Front:
+    """The door before a server."""
+
+    word: str  # by which the server knows it
+    bound_host: str  # the address that it listens on
+    name: str  # that was asked for
+    share: float  # of a machine's cores, that the server may use
+
+
+def make_server(library: Library, opened: socket.socket, host: str = "", front: Front | None = None) -> Server:
     """The server of an application for this socket; `run(sockets=[opened])` runs it; `host` as in `listen`."""
+    admission = Admission(library.meter, None if front is None else front.share * usable_cores())
+    if front is None:
+        app = make_app(library, opened.getsockname()[0], host, admission)
+    else:
+        app = make_app(library, front.bound_host, front.name, admission, front.word)
     config = uvicorn.Config(
-        make_app(library, opened.getsockname()[0], host),
+        app,
         http="h11",
         ws=BoundedWebSocket,
         ws_max_size=MAX_MESSAGE,
@@ -93,7 +117,7 @@ def make_server(library: Library, opened: socket.socket, host: str = "") -> Serv
         log_config=None,
         server_header=False,
     )
-    return Server(library, config)
+    return Server(library, admission, config)
 
 
 def serve(library: Library, opened: socket.socket, host: str, on_ready: Callable[[], None]) -> None:

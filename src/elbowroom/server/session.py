@@ -20,12 +20,15 @@ from elbowroom.server.outbox import Outbox, SlowClientError
 from elbowroom.server.page_key import page_key
 from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.reports import avatar_message, clip_message, scene_message
+from elbowroom.server.resuming import NOTED_EVERY, Whereabouts, forget, note, recall
 from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
 from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Push, Reset
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.schema.progress import Loading, Notice, Pong
+from elbowroom.server.sharing import bring
 from elbowroom.server.stage import Stage
 from elbowroom.server.standstill import Standstill
+from elbowroom.server.walk import Walk
 from elbowroom.server.wanted import Wanted
 from elbowroom.server.ways import Ways
 
@@ -36,6 +39,9 @@ _ANSWER_EVERY = 0.008  # seconds between frames in answer to inputs; an input in
 _SELDOM = 0.1  # seconds between status messages, and between frames while paused
 _MESSAGE_RATE = 240.0  # messages a second that a client may send
 _PATIENCE = 200  # wrong or surplus messages before the connection is closed
+_GOODBYE = (1000, 1001)  # close codes of a page that is left
+_LAST_WORDS = 0.5  # seconds in which what a client has said before it went is read
+_NOTED_AGAIN = 60.0  # seconds after which it is noted again where somebody stands
 _TRY_AGAIN_LATER, _POLICY, _INTERNAL = 1013, 1008, 1011  # close codes, RFC 6455 and its registry
 
 
@@ -50,8 +56,15 @@ class _DoneError(Exception):
 class Session:
     """The living part of one connection."""
 
-    def __init__(self, socket: WebSocket, library: Library) -> None:
+    def __init__(self, socket: WebSocket, library: Library, *, resumes: bool = True) -> None:
+        """With `resumes`, a page that was here lately and did not say goodbye goes on where it was."""
         self._socket = socket
+        self._key = page_key(socket.query_params)
+        self._resumes = resumes and bool(self._key)
+        self._there: Whereabouts | None = None
+        self._moved = False  # since that was noted
+        self._noted = 0.0
+        self._code: int | None = None  # with which the client closed
         self._library = library
         self._outbox = Outbox()
         self._standstill = Standstill()
@@ -72,7 +85,7 @@ class Session:
             await self._open()
             await _first_of([sender, *map(asyncio.create_task, self._tasks())])
         except (WebSocketDisconnect, OSError):
-            return
+            await self._heed_goodbye()
         except (_DoneError, SlowClientError, InputError) as error:
             await self._close(sender, error)
         except Exception as error:
@@ -90,6 +103,11 @@ class Session:
         """The walk that is shown, as a `.elbow` file; raises `InputError`."""
         return self._stage.walk.recording()
 
+    @property
+    def silence(self) -> float:
+        """Seconds since the client was heard last."""
+        return self._now() - self._heard
+
     def _tasks(self) -> list[Coroutine[None, None, None]]:
         return [self._read(), self._play(), self._changes.run(), self._ways.run()]
 
@@ -98,12 +116,13 @@ class Session:
 
     async def _open(self) -> None:
         library = self._library
+        await self._recall()
         wanted = Wanted(library.scene, library.avatar, library.walk, library.clip)
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog(page_key(self._socket.query_params))))
         self._outbox.put(Loading("avatar", library.avatar, True))
-        walk = await prepared(library, wanted, None, self)
+        walk = await self._resumed() or await prepared(library, wanted, (), self)
         self._outbox.put(Loading("avatar", library.avatar, False))
-        self._stage = Stage(walk, self._now())
+        self._stage = Stage(walk, self._now(), library.meter)
         self._changes = Changes(library, self._stage, self._outbox, self)
         self._ways = Ways(self._stage, self._outbox)
         self._outbox.put(self._stage.settings())
@@ -113,13 +132,53 @@ class Session:
             self._outbox.put(clip_message(walk.stored))
         self._heard = self._now()
 
+    async def _recall(self) -> None:
+        """Learn where the page's last connection was, and have here what it showed."""
+        if self._resumes:
+            self._there = await asyncio.to_thread(recall, self._library.shelf, self._key)
+        if self._there is not None and self._library.shared:
+            wanted = self._there.wanted
+            await asyncio.to_thread(bring, self._library, wanted.scene, wanted.avatar, wanted.clip)
+
+    async def _resumed(self) -> Walk | ClipWalk | None:
+        """The walk that the page's last connection had, in its place; None where there is none."""
+        if self._there is None:
+            return None
+        try:
+            self._library.hold(self, self._there.wanted)
+            return await prepared(self._library, self._there.wanted, self._there.places, self)
+        except InputError:  # what it was shown is gone
+            return None
+
+    async def _heed_goodbye(self) -> None:
+        """Forget where the user is, if the page was left; that may be read after sending has failed."""
+        with contextlib.suppress(TimeoutError, RuntimeError, WebSocketDisconnect):
+            async with asyncio.timeout(_LAST_WORDS):
+                while self._code is None:
+                    event = await self._socket.receive()
+                    self._code = event.get("code", 1005) if event["type"] == "websocket.disconnect" else None
+        if self._key and self._code in _GOODBYE:
+            forget(self._library.shelf, self._key)
+
+    def _note(self) -> None:
+        """Remember where the user is, for a next connection."""
+        now, walk = self._now(), self._stage.walk
+        place, wanted = (None if isinstance(walk, ClipWalk) else walk.place), Wanted.of(walk)
+        before, self._there = self._there, (self._there or Whereabouts(wanted)).after(wanted, place)
+        self._moved |= before != self._there
+        since = now - self._noted
+        if self._key and (since > _NOTED_AGAIN or (self._moved and since >= NOTED_EVERY)):
+            self._moved, self._noted = False, now
+            note(self._library.shelf, self._key, self._there)
+
     # --- messages in ---------------------------------------------------------------------------------------------
 
     async def _read(self) -> None:
         while True:
             event = await self._socket.receive()
             if event["type"] == "websocket.disconnect":
-                raise WebSocketDisconnect(event.get("code", 1005))
+                self._code = event.get("code", 1005)
+                raise WebSocketDisconnect(self._code)
             self._heard = self._now()
             if not self._bucket.allows(self._heard):
                 self._complain("too many messages: at most 240 a second are read")
@@ -179,6 +238,7 @@ class Session:
             if seldom:
                 self._ways.report()
                 self._report()
+                self._note()
 
     def _show(self) -> None:
         now = self._now()
@@ -195,6 +255,7 @@ class Session:
 
     def _report(self) -> None:
         self._told = self._now()
+        self._library.meter.look()
         self._outbox.put(self._stage.status(self._told))
         if self._stage.overlays.plan:
             self._outbox.put(self._stage.plan())

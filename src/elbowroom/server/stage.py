@@ -12,6 +12,7 @@ from elbowroom.control.steering import steady
 from elbowroom.planning.command import Command
 from elbowroom.server import pose_frame
 from elbowroom.server.clip_walk import ClipWalk
+from elbowroom.server.meter import Meter
 from elbowroom.server.nearest import nearest
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.punctuality import Punctuality
@@ -33,7 +34,8 @@ _NO_CAPSULES = np.empty((0, 6), np.float32)
 class Stage:
     """Advances a walk by a clock that can be paused, slowed down and stepped, and packs what there is to see."""
 
-    def __init__(self, walk: Walk | ClipWalk, now: float) -> None:
+    def __init__(self, walk: Walk | ClipWalk, now: float, meter: Meter | None = None) -> None:
+        """`meter` counts what all sessions of a server come to."""
         self.walk: Walk | ClipWalk = walk
         self.paused = False
         self.speed = 1.0
@@ -47,7 +49,7 @@ class Stage:
         self._advanced = now
         self._stepping = 0.0  # seconds of computing since the last frame was packed
         self._busy: deque[float] = deque(maxlen=_TIMED)
-        self.punctuality = Punctuality()
+        self.punctuality = Punctuality(meter)
 
     def show(self, walk: Walk | ClipWalk) -> None:
         """Go on with another walk; the counters of crossings go on within a scene, and begin anew in another."""
@@ -197,7 +199,7 @@ class Stage:
             crossed=walk.crossed,
             stuck_times=walk.stuck_times,
             clearance=finite(frame.clearance),
-            nearest=self._nearest(),
+            nearest=self._nearest() if self.overlays.capsules else None,
             blocked=blocked_message(plan, walk.surroundings.obstacles.names),
         )
 

@@ -18,6 +18,7 @@ from elbowroom.server.reception import Reception
 from elbowroom.server.runs import run_response, shown_run
 from elbowroom.server.saved_motion import save_motion
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, SceneChoice, Uploaded
+from elbowroom.server.sharing import share_avatar, share_clips, share_scene, shared_avatar
 from elbowroom.server.standalone_page import page_of_sent
 from elbowroom.server.while_there import while_there
 from elbowroom.world.scene import Scene
@@ -60,7 +61,7 @@ class UploadDesk:
         """
 
         async def saved(sender: Sender) -> Response:  # noqa: ARG001
-            avatar = await asyncio.to_thread(self._library.avatars.get, request.query_params.get("avatar", ""))
+            avatar = await asyncio.to_thread(shared_avatar, self._library, request.query_params.get("avatar", ""))
             with self._reception.files() as (file, _):
                 await self._reception.receive(request, file)
                 async with self._reading:
@@ -77,7 +78,7 @@ class UploadDesk:
         """POST: a run as `schema.runs` has it, `?avatar=` the id of its avatar. Answers with a page that plays it."""
 
         async def written(sender: Sender) -> Response:  # noqa: ARG001
-            avatar = await asyncio.to_thread(self._library.avatars.get, request.query_params.get("avatar", ""))
+            avatar = await asyncio.to_thread(shared_avatar, self._library, request.query_params.get("avatar", ""))
             with self._reception.files() as (file, _):
                 await self._reception.receive(request, file)
                 async with self._reading:
@@ -101,12 +102,16 @@ class UploadDesk:
                     document = await while_there(request, read)
             if kind == PLACE:
                 scene = self._library.add_place(Scene.from_dict(document, name), glb)
+                await asyncio.to_thread(share_scene, self._library, scene)
                 return Uploaded(None, [], SceneChoice(scene.name, scene.title))
             avatar, own = None, []
             if humanoid is not None:
                 avatar = self._library.avatars.add_upload(humanoid, glb if glb.exists() else None, sender)
+                await asyncio.to_thread(share_avatar, self._library, avatar)
             if clips:
                 with contextlib.suppress(InputError) if avatar else contextlib.nullcontext():
-                    own = self._library.clips.add_upload(SentMotions(file, name, kind, tuple(clips), sender))
+                    sent = SentMotions(file, name, kind, tuple(clips), sender)
+                    own = self._library.clips.add_upload(sent)
+                    await asyncio.to_thread(share_clips, self._library, sent, own)
         choice = None if avatar is None else AvatarChoice(avatar.id, avatar.title)
         return Uploaded(choice, [ClipChoice(clip.id, clip.title) for clip in own])

@@ -1,6 +1,7 @@
 """One avatar on its way through one scene: the controller, and what a session counts about it. No clock, no socket."""
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
@@ -55,11 +56,11 @@ class Walk:
         avatar: StoredAvatar,
         scene: Scene,
         settings: WalkSettings,
-        place: RootState | None = None,
+        places: Sequence[RootState] = (),
         desk: PlanningDesk | None = None,
         motions: MotionSet = STOCK,
     ) -> None:
-        """Stand at `place`, or at the scene's start where that is None or taken by an obstacle; raises `InputError`.
+        """Stand at the first of `places` where no obstacle is in the way, else at the start; raises `InputError`.
 
         Plans are made at `desk`, by default at once, with the motions that the avatar has learnt. The planners are made
         here, so that the first command need not wait for them.
@@ -69,20 +70,18 @@ class Walk:
         self.settings = settings
         self._desk = desk
         self._motions = motions
-        self._controller = self._made(place)
+        self._controller = self._made(places)
         self._controller.prepare()
         self._log = WalkLog(self._controller)
         self.crossed = 0
         self.stuck_times = 0
         self._begin()
 
-    def _made(self, place: RootState | None) -> Controller:
-        try:
-            return self._controller_at(place)
-        except InputError:
-            if place is None:
-                raise
-            return self._controller_at(None)
+    def _made(self, places: Sequence[RootState]) -> Controller:
+        for place in places:
+            with contextlib.suppress(InputError):
+                return self._controller_at(place)
+        return self._controller_at(None)
 
     def _controller_at(self, place: RootState | None) -> Controller:
         return Controller(

@@ -401,6 +401,7 @@ export interface Status {
   stuckTimes: number;
   /** null: nothing near */
   clearance: number | null;
+  /** null: nothing near, or the capsules are not asked for */
   nearest: Nearest | null;
   /** null: there is a way on */
   blocked: Blocked | null;

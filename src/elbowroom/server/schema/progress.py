@@ -66,7 +66,7 @@ class Status:
     crossed: int  # times that the finish was passed
     stuck_times: int
     clearance: float | None  # None: nothing near
-    nearest: Nearest | None
+    nearest: Nearest | None  # None: nothing near, or the capsules are not asked for
     blocked: Blocked | None  # None: there is a way on
 
 
