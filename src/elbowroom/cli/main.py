@@ -30,6 +30,7 @@ from elbowroom.cli import (
     inspect,
     play,
     replay,
+    serve,
     table1,
     tour,
     verify,
@@ -127,6 +128,7 @@ def _one_line(error: Any) -> str:
 
 
 app.command("play", epilog=play.EXAMPLES)(play.play)
+app.command("serve", epilog=serve.EXAMPLES)(serve.serve)
 app.command("clips", epilog=clips.EXAMPLES)(clips.clips)
 app.command("walk", epilog=walk.EXAMPLES)(walk.walk)
 app.command("tour", epilog=tour.EXAMPLES)(tour.tour)

@@ -14,7 +14,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import MAX_JOBS, check_jobs, usable_cores
 
 if TYPE_CHECKING:
-    from elbowroom.cluster.nodes import Tell
+    from elbowroom.cluster.nodes import Nodes, Tell
     from elbowroom.cluster.workers import RayWorkers
 
 LOCAL = "local"
@@ -36,7 +36,16 @@ def check_address(address: str) -> None:
 
 @contextmanager
 def connected(address: str, tell: "Tell", at_once: int | None = None) -> "Iterator[RayWorkers]":
-    """The workers of a cluster: `local`, or the address of one that runs; at most `at_once` tasks at the same time.
+    """The workers of a cluster: as `joined`; at most `at_once` tasks at the same time."""
+    with joined(address, tell, at_once) as nodes:
+        from elbowroom.cluster.workers import RayWorkers
+
+        yield RayWorkers(nodes)
+
+
+@contextmanager
+def joined(address: str, tell: "Tell", at_once: int | None = None) -> "Iterator[Nodes]":
+    """The nodes of a cluster, of which one is ready: `local`, or the address of one that runs.
 
     `tell` hears, in one line each, of nodes that are lost, or left out since they have another version or kind of
     processor. A local cluster takes calls only from who has its token, as Ray does by itself. Raises `InputError`
@@ -50,7 +59,6 @@ def connected(address: str, tell: "Tell", at_once: int | None = None) -> "Iterat
     import ray
 
     from elbowroom.cluster.nodes import Nodes
-    from elbowroom.cluster.workers import RayWorkers
 
     quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": logging.ERROR}
     own: dict[str, Any] = {"include_dashboard": False, "object_store_memory": _MEMORY}
@@ -67,7 +75,7 @@ def connected(address: str, tell: "Tell", at_once: int | None = None) -> "Iterat
         # Ray prints twenty lines of a lost node's log on stdout; `tell` hears of it in one.
         with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
             nodes.wait()
-            yield RayWorkers(nodes)
+            yield nodes
     finally:
         ray.shutdown()
 
