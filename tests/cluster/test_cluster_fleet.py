@@ -97,9 +97,11 @@ def back(url: str) -> Iterator[Client]:
 
 
 @pytest.mark.long
-def test_who_loses_a_server_or_a_node_goes_on_in_the_same_place() -> None:
+def test_who_loses_a_server_or_a_node_goes_on_in_the_same_place(monkeypatch: pytest.MonkeyPatch) -> None:
     from ray.cluster_utils import Cluster
 
+    monkeypatch.setenv("RAY_USAGE_STATS_ENABLED", "0")
+    monkeypatch.setenv("RAY_worker_niceness", "0")
     cluster: Any = Cluster(initialize_head=True, head_node_args=NODE | {"include_dashboard": False})
     other = cluster.add_node(**NODE)
     told: list[str] = []

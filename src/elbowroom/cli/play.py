@@ -86,10 +86,12 @@ def serve_until_interrupted(
 
     from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.heap import share_one_heap
+    from elbowroom.server.planning_thread import let_frames_go_first
     from elbowroom.server.serving import listen, serve, url_of
     from elbowroom.server.warmup import first_steps
 
     share_one_heap()
+    let_frames_go_first()
     console = Console(stderr=True, highlight=False)
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     with (

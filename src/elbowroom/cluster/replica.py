@@ -13,6 +13,7 @@ from elbowroom.cluster.door import Address
 from elbowroom.cluster.keeper import SharedShelf
 from elbowroom.server.heap import settle, share_one_heap
 from elbowroom.server.library import Library
+from elbowroom.server.planning_thread import let_frames_go_first
 from elbowroom.server.serving import Front, listen, make_server
 from elbowroom.server.walk import WalkSettings
 from elbowroom.server.warmup import first_steps, warm_up
@@ -36,6 +37,7 @@ class Replica:
     def __init__(self, offer: bytes, front: Front, keeper: Any) -> None:
         """`offer` is an `Offer`, pickled; all kernels are loaded when this returns."""
         share_one_heap()
+        let_frames_go_first()
         opened = _opened(pickle.loads(offer))
         self._library = replace(opened, shelf=SharedShelf(keeper), shared=True)
         first_steps(self._library)

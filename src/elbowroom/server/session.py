@@ -90,6 +90,7 @@ class Session:
             await self._close(sender, error)
         except Exception as error:
             LOG.exception("a session failed")
+            forget(self._library.shelf, self._key)  # else it might fail there again and again
             await self._close(sender, error)
         finally:
             self._library.hold(self)
