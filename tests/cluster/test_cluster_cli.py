@@ -28,6 +28,22 @@ def test_wrong_clusters_are_one_line(arguments: list[str], words: str) -> None:
     assert outcome.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--cluster", "no such"], "neither `local` nor an address"),
+        (["--avatar", "missing.vrm"], "--avatar missing.vrm: No such file"),
+        (["--scene", "nowhere"], "nowhere"),
+        (["--port", "99999"], "--port 99999"),
+    ],
+)
+def test_wrong_calls_of_serve_are_one_line(arguments: list[str], words: str) -> None:
+    outcome = CliRunner().invoke(app, ["serve", *arguments])
+    assert outcome.exit_code == 2
+    assert words in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+
+
 def test_without_ray_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("elbowroom.cluster.connection.find_spec", lambda name: None)
     outcome = CliRunner().invoke(app, ["gauntlet", "--cluster", "local"])

@@ -91,7 +91,7 @@ def test_a_wrong_call_is_one_line_and_exit_code_2(
 def test_an_open_server_is_warned_about(capsys: pytest.CaptureFixture[str]) -> None:
     for host, warned in (("127.0.0.1", False), ("0.0.0.0", True)):
         with listen(host, 0) as opened:
-            play_module._tell_openness(Console(stderr=True), opened)
+            play_module.tell_openness(Console(stderr=True), opened)
         assert ("no password" in " ".join(capsys.readouterr().err.split())) is warned
 
 

@@ -104,7 +104,7 @@ def serve_until_interrupted(
         compile_first()
         first_steps(library)
         _tell_port(console, opened, port)
-        _tell_openness(console, opened)
+        tell_openness(console, opened)
         serve(
             library, opened, host, lambda: _ready(library, url_of(opened) + (f"/?{query}" if query else ""), open_page)
         )
@@ -117,7 +117,8 @@ def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None
         console.print(f"[yellow]Port {wanted} is busy; using {found} instead.[/yellow]")
 
 
-def _tell_openness(console: "Console", opened: "socket.socket") -> None:
+def tell_openness(console: "Console", opened: "socket.socket") -> None:
+    """Warn of who can come in, where that is more than this machine."""
     from elbowroom.server.guard import is_loopback
 
     address = opened.getsockname()[0]

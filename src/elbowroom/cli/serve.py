@@ -10,6 +10,7 @@ import typer
 
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.play import tell_openness
 from elbowroom.cli.workers import check_cluster
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -42,6 +43,8 @@ def serve(
     Each session is held by one server; should that be lost, its page goes on at another one, in the same place.
     """
     check_cluster(cluster)
+    from rich.console import Console
+
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     from elbowroom.cluster.fleet import FleetSettings
     from elbowroom.cluster.replica import Offer
@@ -52,6 +55,7 @@ def serve(
 
     offer = Offer(load_scene(scene), WalkSettings(planner=planner, queue_size=queue), _read(avatar))
     with contextlib.suppress(KeyboardInterrupt), ended_by_signals(lambda: None), listen(host, port) as opened:
+        tell_openness(Console(stderr=True, highlight=False), opened)
         compile_first()
         _serve(cluster, opened, offer, FleetSettings(servers, host))
 

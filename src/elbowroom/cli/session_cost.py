@@ -15,6 +15,7 @@ from statistics import median
 from urllib.request import urlopen
 
 import numpy as np
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from elbowroom.errors import InputError
@@ -80,8 +81,16 @@ def measure_session(
     default one who walks mostly ahead.
     """
     began = time.perf_counter()
-    with started_server(scene, dict(os.environ)) as url:
+    with started_server(scene, dict(os.environ)) as url, _all_admitted(sessions):
         return _measured(url, seconds, sessions, hand, time.perf_counter() - began)
+
+
+@contextmanager
+def _all_admitted(sessions: int) -> Iterator[None]:
+    try:
+        yield
+    except ConnectionClosed:
+        raise InputError(f"this machine is too busy for {sessions} sessions at once; see `doctor --load`") from None
 
 
 @contextmanager

@@ -21,6 +21,7 @@ from elbowroom.server.serving import Front
 
 _LOOK_EVERY = 1.0  # seconds between two looks at the nodes
 _AGAIN = 2.0  # seconds until the next try where a server ended at once
+_ANY = ("0.0.0.0", "::")  # addresses of all networks
 _END_IN = 4.0  # seconds
 
 
@@ -89,7 +90,8 @@ class Fleet:
 
     def _made(self, node: Node) -> Any:
         host, each = self._opened.getsockname()[0], self._settings.each or node.cores
-        front = Front(self._word, host, self._settings.name, 1.0 / each)
+        name = socket.gethostname() if host in _ANY else self._settings.name  # the servers' machines have other names
+        front = Front(self._word, host, name, 1.0 / each)
         there = NodeAffinitySchedulingStrategy(node.name, soft=False)
         actor = ray.remote(Replica).options(
             num_cpus=min(node.cores / each, 1.0), scheduling_strategy=there, max_concurrency=4
