@@ -70,7 +70,8 @@ def write_recording(
 ) -> None:
     """A recording by hand, one chunk for each 60 frames."""
     steps = np.zeros(len(q), STEP)
-    steps["q"], steps["root"], steps["dt"], steps["flags"], steps["direction"] = q, roots, 1 / 60, flags, np.nan
+    steps["q"], steps["dt"], steps["flags"], steps["direction"] = q, 1 / 60, flags, np.nan
+    steps["root"][:, : roots.shape[1]] = roots
     text = json.dumps(header).encode()
     crc, data = 0, MAGIC + struct.pack("<I", len(text)) + text + struct.pack("<I", zlib.crc32(text))
     for first in range(0, len(steps), 60):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT, RISES
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.judge.motion import ShownMotion
@@ -96,4 +96,4 @@ def test_the_root_follows_the_ground_and_no_foot_is_under_it(name: str) -> None:
 def test_on_the_plane_nothing_rises() -> None:
     controller = Controller(AVATAR, Scene.load("d"))
     roots = np.stack([controller.step(FORWARD, 1 / 60).root for _ in range(60)])
-    assert not roots[:, HEIGHT:].any()
+    assert not roots[:, HEIGHT:ROOT_STATE].any()

@@ -9,6 +9,7 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
 from elbowroom.control.prediction import slimmer
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.rows import corners_of
@@ -27,8 +28,8 @@ def corridor() -> Scene:
     return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": walls})
 
 
-def capsules(controller: Controller, q: Floats) -> Floats:
-    ends: Floats = posture_capsules(MODEL, q[None], np.array(controller.root)[None])[:, :, 0].astype(np.float64)
+def capsules(frame: Frame) -> Floats:
+    ends: Floats = posture_capsules(MODEL, frame.q[None], frame.root[None])[:, :, 0].astype(np.float64)
     return ends
 
 
@@ -50,7 +51,7 @@ def test_a_prediction_holds_the_avatar_now_and_moves_as_it_walks() -> None:
         frame = controller.step(FORWARD, DT)
     told = controller.prediction().boxes
     boxes, (centers, _) = told.at(frame.time), told.poses(frame.time)
-    ends = capsules(controller, frame.q).reshape(-1, 2, 3)
+    ends = capsules(frame).reshape(-1, 2, 3)
     low = (ends - AVATAR.capsules.radii[:, None, None]).min(axis=(0, 1))
     high = (ends + AVATAR.capsules.radii[:, None, None]).max(axis=(0, 1))
     corners = corners_of(boxes).reshape(-1, 3)
@@ -76,7 +77,7 @@ def meeting(seconds: float, left: tuple[float, float] = (0.0, 0.0), late: float 
         assert not mine.touching
         assert not yours.touching
         if abs(mine.root[1] - yours.root[1]) < 1.0:
-            assert gap(capsules(one, mine.q), capsules(two, yours.q)) > 0.0
+            assert gap(capsules(mine), capsules(yours)) > 0.0
         slow += bool(turn * DT > 1.0 and mine.root[3] < 0.9)
         if mine.root[1] > 4.0 and yours.root[1] < 2.0:
             break
@@ -109,7 +110,7 @@ def test_whether_bodies_touch_is_what_a_slow_judge_says() -> None:
         check.others = (two.prediction(),)
         mine, yours = one.step(Command(), 0.0), two.step(Command(), 0.0)
         said = check.shown_clearance(mine.root, mine.q[3:], 0.0)
-        judged = gap(capsules(one, mine.q), capsules(two, yours.q))
+        judged = gap(capsules(mine), capsules(yours))
         assert said == pytest.approx(judged, abs=2e-3)  # a judge who samples finds a little more
         touching += said < 0.0
     assert 5 < touching < 35
@@ -122,7 +123,7 @@ def test_a_neighbours_body_goes_where_it_is_shown_next() -> None:
     told, shown = controller.prediction(), []
     for _ in range(6):
         frame = controller.step(FORWARD, DT)
-        shown.append((frame.time, capsules(controller, frame.q)))
+        shown.append((frame.time, capsules(frame)))
     for time, axes in shown:
         np.testing.assert_allclose(told.at(time), axes, atol=2e-3)
     np.testing.assert_array_equal(told.at(-1.0), told.axes[0])
@@ -136,14 +137,14 @@ def test_who_means_to_walk_into_another_is_the_one_that_stops() -> None:
     for _ in range(round(1.5 / DT)):
         told = two.prediction()
         walked = two.step(FORWARD, DT)
-        if gap(capsules(one, one.step(Command(), 0.0).q), capsules(two, walked.q)) < 0.06:
+        if gap(capsules(one.step(Command(), 0.0)), capsules(walked)) < 0.06:
             break
     one.others, two.others = (told,), (one.prediction(),)
     for _ in range(30):
         frame = two.step(FORWARD, DT)
         assert not frame.touching
         assert not one.step(Command(), DT).touching
-        assert gap(capsules(one, one.step(Command(), 0.0).q), capsules(two, frame.q)) > 0.0
+        assert gap(capsules(one.step(Command(), 0.0)), capsules(frame)) > 0.0
         one.others, two.others = (two.prediction(),), (one.prediction(),)
 
 

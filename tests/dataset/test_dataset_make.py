@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.cli.main import app
 from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
@@ -97,7 +98,8 @@ def test_rows_are_what_was_walked(made: Path) -> None:
     assert len(rows) == sum(one.walks for one in manifest.shards)
     assert len(rows) >= 3
     for row in rows:
-        q, roots = np.array(row["q"]), np.array(row["root"])
+        q, root = np.array(row["q"]), np.array(row["root"])
+        roots = np.hstack([root, np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"]])
         frames = row["frames"]
         assert len(q) == len(roots) == len(row["time"]) == len(row["near"]) == frames
         assert np.diff(row["time"]) == pytest.approx(1.0 / row["fps"], abs=1e-5)

@@ -1,5 +1,6 @@
 """The one proof: against dense looks at all kinds of pairs, random intervals; and how far points move at most."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import coal
@@ -21,6 +22,7 @@ from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
+from feet_walks import path, random_wish, walked
 
 Floats = NDArray[np.float64]
 DENSE = 2000  # looks in an interval
@@ -125,20 +127,32 @@ def random_frames(rng: np.random.Generator) -> Frames:
     return Frames((first, root), (upper, upper + rng.uniform(-0.1, 0.1, LOCAL)), (0.0, FRAME))
 
 
+def on_feet(rng: np.random.Generator) -> Frames:
+    """Two frames of a walk with feet of its own."""
+    rows = walked(path(random_wish(int(rng.integers(1000))), 60 + int(rng.integers(120)), rng.uniform()))
+    upper, (first, last) = random_upper(rng), rows[-2:].copy()
+    last[:2] -= first[:2]
+    first[:2] = 0.0
+    return Frames((first, last), (upper, upper + rng.uniform(-0.1, 0.1, LOCAL)), (0.0, FRAME))
+
+
 def between(frames: Frames, shares: Floats) -> tuple[Floats, Floats]:
     (a, b), (m, n) = frames.roots, frames.uppers
     return a + shares[:, None] * (b - a), m + shares[:, None] * (n - m)
 
 
-def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said() -> None:
+@pytest.mark.parametrize(("drawn", "near"), [(random_frames, 0.3), (on_feet, 0.1)])
+def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said(
+    drawn: Callable[[np.random.Generator], Frames], near: float
+) -> None:
     rng, nearest = np.random.default_rng(1), 0.0
     for _ in range(60):
-        frames = random_frames(rng)
+        frames = drawn(rng)
         way = longest(body_ends(*between(frames, np.linspace(0.0, 1.0, 200)))).max()
         bound = LEVERS.travel(frames.roots, frames.uppers)
         assert way <= bound + 1e-5
         nearest = max(nearest, float(way / bound))
-    assert nearest > 0.3
+    assert nearest > near
 
 
 def capsule(axis: Floats, radius: float) -> tuple[coal.Capsule, coal.Transform3s]:
@@ -184,11 +198,12 @@ def test_two_avatars_shown_as_free_of_each_other_are_so_between_the_frames(walks
     assert min(found) >= 3
 
 
-def test_what_is_shown_beside_a_wall_is_free_between_the_frames() -> None:
+@pytest.mark.parametrize("drawn", [random_frames, on_feet])
+def test_what_is_shown_beside_a_wall_is_free_between_the_frames(drawn: Callable[[np.random.Generator], Frames]) -> None:
     rng, shares, found = np.random.default_rng(3), np.linspace(0.0, 1.0, DENSE // 10), [0, 0]
     check = BodyCheck(HUMANOID, Scene.load("a"))
     for _ in range(80):
-        frames = random_frames(rng)
+        frames = drawn(rng)
         place = rng.uniform([-1.0, 0.5], [1.0, 6.0])
         for root in frames.roots:
             root[:2] += place

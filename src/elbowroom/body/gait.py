@@ -168,7 +168,7 @@ def _foot_on_ground(
     return px * np.cos(angle) - pz * np.sin(angle), px * np.sin(angle) + pz * np.cos(angle)
 
 
-class _Stride(NamedTuple):
+class Stride(NamedTuple):
     """What a root's velocities make of the cycle."""
 
     forward: float
@@ -184,48 +184,65 @@ class _Stride(NamedTuple):
 
 
 @helper
-def _stride(scale: float, forward: float, lateral: float, turn: float) -> _Stride:
+def _stride(scale: float, forward: float, lateral: float, turn: float) -> Stride:
     period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
     duty = _stance_part(speed, speed * period, scale)
     ahead = min(max(forward * period / (_STEP * scale), -_LONGEST), _LONGEST)
     travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
     effort = travel * travel / (0.5 + travel * travel)
-    return _Stride(forward, lateral, turn, speed, period, duty, ahead, 0.25 * lateral * period / scale, effort, scale)
+    return Stride(forward, lateral, turn, speed, period, duty, ahead, 0.25 * lateral * period / scale, effort, scale)
 
 
 @kernel
-def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) -> None:
-    """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
-    forward, lateral, turn, _, period, duty, ahead, aside, effort, scale = stride
+def stride_of(scale: float, forward: float, lateral: float, turn: float) -> Stride:
+    """What root velocities in m/s and rad/s make of the cycle of a body with legs of this `scale`."""
+    return _stride(scale, forward, lateral, turn)
+
+
+@kernel
+def home_of(legs: Floats, stride: Stride, side: int) -> tuple[float, float]:
+    """Where a flat foot's ankle is in the root frame in the middle of its stance, x and z."""
+    ahead, scale = stride.ahead, stride.scale
     outward = 1.0 if side == 0 else -1.0
-    x0 = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0)) + outward * scale * (
-        np.sqrt(aside * aside + 1e-4) - 1e-2
-    )
-    x0 += outward * 0.02 * scale * min(abs(turn) * period, 1.5)
-    z0 = legs[side, _ANKLE + 2] - _BEHIND * scale * max(ahead, 0.0)
-    half = 0.5 * duty * period
-    lift, gentle, relaxed = 0.0, 0.0, 0.0
-    if u < duty:
-        time = (u - 0.5 * duty) * period
-        x, z = _foot_on_ground(x0, z0, time, forward, lateral, turn)
-        yaw = -turn * time
-    else:
-        w, swing = (u - duty) / (1.0 - duty), (1.0 - duty) * period
-        ax, az = _foot_on_ground(x0, z0, half, forward, lateral, turn)
-        bx, bz = _foot_on_ground(x0, z0, -half, forward, lateral, turn)
-        x = _hermite(ax, swing * (-turn * az - lateral), bx, swing * (-turn * bz - lateral), w)
-        z = _hermite(az, swing * (turn * ax - forward), bz, swing * (turn * bx - forward), w)
-        yaw = _hermite(-turn * half, -turn * swing, turn * half, -turn * swing, w)
-        bump = 16.0 * (w * (1.0 - w)) ** 2
-        sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
-        x -= min(max(sag, -0.1 * scale), 0.1 * scale) * bump
-        lift = _LIFT * scale * effort * bump * (1.0 + _EARLY * (1.0 - 2.0 * w))
-        gentle, relaxed = _ROUND * ahead * ahead * bump, _RELAXED * bump
-    if ahead >= 0.0:
-        pitch = ahead * _pitch_ahead(u, duty)
-    else:
-        pitch = -ahead * _pitch_back(u, duty)
+    x = legs[side, _ANKLE] * (1.0 - 0.25 * min(abs(ahead), 1.0))
+    x += outward * scale * (np.sqrt(stride.aside * stride.aside + 1e-4) - 1e-2)
+    x += outward * 0.02 * scale * min(abs(stride.turn) * stride.period, 1.5)
+    return x, legs[side, _ANKLE + 2] - _BEHIND * scale * max(ahead, 0.0)
+
+
+@helper
+def _bump(w: float) -> float:
+    """0 at both ends of a swing, with no slope, 1 in its middle."""
+    return 16.0 * (w * (1.0 - w)) ** 2
+
+
+@kernel
+def roll_of(stride: Stride, u: float) -> tuple[float, float]:
+    """Pitch of a foot at cycle position `u`, radians, positive toes down; and how high it is lifted, metres."""
+    duty, ahead = stride.duty, stride.ahead
+    lift = 0.0
+    if u >= duty:
+        w = (u - duty) / (1.0 - duty)
+        lift = _LIFT * stride.scale * stride.effort * _bump(w) * (1.0 + _EARLY * (1.0 - 2.0 * w))
+    pitch = ahead * _pitch_ahead(u, duty) if ahead >= 0.0 else -ahead * _pitch_back(u, duty)
+    return pitch, lift
+
+
+@kernel
+def tilt_foot(
+    legs: Floats,
+    side: int,
+    place: tuple[float, float, float],
+    roll: tuple[float, float],
+    ease: tuple[float, float],
+    out: Floats,
+) -> None:
+    """Ankle, yaw, pitch and toe bend (6,) of a foot whose flat place is x, z, yaw, pitched and lifted as `roll` says.
+
+    It turns about its ball or its heel, as gently as `ease_of` its swing says.
+    """
+    (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
     height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
     sine, cosine = np.sin(pitch), np.cos(pitch)
     size = np.sqrt(sine * sine + gentle)
@@ -241,6 +258,44 @@ def _foot_pose(legs: Floats, stride: _Stride, side: int, u: float, out: Floats) 
     out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
 
 
+@kernel
+def ease_of(ahead: float, w: float) -> tuple[float, float]:
+    """How gently heel and ball change places at the part `w` of a swing, and how far the toes hang loose."""
+    return _ROUND * ahead * ahead * _bump(w), _RELAXED * _bump(w)
+
+
+@kernel
+def flat_place(legs: Floats, stride: Stride, side: int, u: float) -> tuple[float, float, float, float]:
+    """Ankle x, z and yaw of the flat foot at cycle position `u` in [0, 1), in the root frame; what is over of a swing.
+
+    That is 0 in the stance.
+    """
+    forward, lateral, turn, period, duty = stride.forward, stride.lateral, stride.turn, stride.period, stride.duty
+    x0, z0 = home_of(legs, stride, side)
+    half, w = 0.5 * duty * period, 0.0
+    if u < duty:
+        time = (u - 0.5 * duty) * period
+        x, z = _foot_on_ground(x0, z0, time, forward, lateral, turn)
+        yaw = -turn * time
+    else:
+        w, swing = (u - duty) / (1.0 - duty), (1.0 - duty) * period
+        ax, az = _foot_on_ground(x0, z0, half, forward, lateral, turn)
+        bx, bz = _foot_on_ground(x0, z0, -half, forward, lateral, turn)
+        x = _hermite(ax, swing * (-turn * az - lateral), bx, swing * (-turn * bz - lateral), w)
+        z = _hermite(az, swing * (turn * ax - forward), bz, swing * (turn * bx - forward), w)
+        yaw = _hermite(-turn * half, -turn * swing, turn * half, -turn * swing, w)
+        sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
+        x -= min(max(sag, -0.1 * stride.scale), 0.1 * stride.scale) * _bump(w)
+    return x, z, yaw, w
+
+
+@kernel
+def _foot_pose(legs: Floats, stride: Stride, side: int, u: float, out: Floats) -> None:
+    """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
+    x, z, yaw, w = flat_place(legs, stride, side, u)
+    tilt_foot(legs, side, (x, z, yaw), roll_of(stride, u), ease_of(stride.ahead, w), out)
+
+
 @helper
 def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
@@ -251,7 +306,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
 
 
 @helper
-def _bob(stride: _Stride, phase: float) -> float:
+def _bob(stride: Stride, phase: float) -> float:
     """How far the hips are below the highest place of their stride: they are lowest while both feet stand."""
     long, wide = stride.ahead**4, stride.aside**2
     ahead = _BOB * 2.0 * long / (1.0 + long) * (0.5 + 0.5 * np.cos(4.0 * np.pi * (phase - _LOWEST)))
@@ -260,7 +315,7 @@ def _bob(stride: _Stride, phase: float) -> float:
 
 
 @kernel
-def _highest(legs: Floats, stride: _Stride, foot: Floats) -> float:
+def _highest(legs: Floats, stride: Stride, foot: Floats) -> float:
     """How far the hips are below T-pose where they are highest, so that feet reach the ground; `foot` is scratch."""
     stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
     low = 0.0

@@ -1,9 +1,9 @@
 """Forward kinematics: where a configuration and a root state put the joints and the collision body.
 
-A posture is `q` (DOF,), a root state (7,); places are metres, Y up. The root frame has its origin on the ground and +Z
-along the heading; the pelvis frame has the same axes, and its origin is the hips joint as the stride has it, before the
-waist lowers it; the chest frame is that of the last spine joint. Capsule arrays have shape (C, 6, N): end points ax,
-ay, az, bx, by, bz.
+A posture is `q` (DOF,), a root state (7,), or (WITH_FEET,) with the feet beside it; places are metres, Y up. The root
+frame has its origin on the ground and +Z along the heading; the pelvis frame has the same axes, and its origin is the
+hips joint as the stride has it, before the waist or a foot lowers it; the chest frame is that of the last spine joint.
+Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
 """
 
 from collections.abc import Sequence
@@ -15,11 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body import posing
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, LOWERING, DofGroup, Turning, followers_of
+from elbowroom.body.footholds import posed_feet
 from elbowroom.body.gait import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.legs import leg_rest, leg_rotations
 from elbowroom.body.rises import raise_feet
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.skeleton import Skeleton
 
 Floats = NDArray[np.float64]
@@ -206,17 +208,27 @@ def _rows(values: ArrayLike, size: int) -> Floats:
 
 
 def _states(values: ArrayLike) -> Floats:
-    """Root states as rows: of ROOT_STATE numbers, or of those before the height."""
+    """Root states as rows: of ROOT_STATE numbers, of those before the height, or WITH_FEET."""
     array = np.ascontiguousarray(values, np.float64)
     return array[None] if array.ndim == 1 else array.reshape(-1, array.shape[-1])
 
 
 def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
-    feet, drops = foot_poses(model.gait.legs, model.gait.scale, states)
-    raise_feet(model.gait.legs, states, feet, drops)
-    sinks = hips_sinks(model.gait.half_leg, drops, np.ascontiguousarray(lowerings))
+    feet, sinks = lower_body(model.gait, states, np.ascontiguousarray(lowerings))
     return leg_rotations(model.leg_rest, feet, sinks), sinks
+
+
+def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
+    """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
+
+    The feet are those of the states (N, WITH_FEET), or of the walking cycle where these have none (N, 7).
+    """
+    if states.shape[1] > ROOT_STATE:
+        return posed_feet(gait.legs, gait.scale, gait.half_leg, states, lowerings)
+    feet, drops = foot_poses(gait.legs, gait.scale, states)
+    raise_feet(gait.legs, states, feet, drops)
+    return feet, hips_sinks(gait.half_leg, drops, lowerings)
 
 
 def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:

@@ -1,4 +1,8 @@
-"""The state of the root: where the body stands, how it moves, where in the stride it is, and what its feet stand on."""
+"""The state of the root: where the body stands, how it moves, where in the stride it is, and what its feet stand on.
+
+Behind it in the same row there may be the state of the feet (`footholds`): WITH_FEET numbers in all. A row without feet
+has those of the walking cycle (`gait`).
+"""
 
 from typing import NamedTuple
 
@@ -31,7 +35,14 @@ class RootState(NamedTuple):
         """The state as an array (ROOT_STATE,)."""
         return np.array(self, dtype=np.float64)
 
+    @classmethod
+    def of(cls, row: NDArray[np.float64]) -> "RootState":
+        """The root state at the beginning of an array (7 or more,)."""
+        return cls(*row[: len(cls._fields)].tolist())
+
 
 ROOT_STATE = len(RootState._fields)  # number of components of a root state array
 HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
+FOOT = 9  # numbers that say where a foot is, see `footholds`
+WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet

@@ -35,7 +35,7 @@ def configuration(root: Floats, upper: Floats) -> Floats:
 class Frames(NamedTuple):
     """Two frames that are shown one after the other."""
 
-    roots: tuple[Floats, Floats]  # (7,)
+    roots: tuple[Floats, Floats]  # (WITH_FEET,)
     uppers: tuple[Floats, Floats]  # (LOCAL,)
     times: tuple[float, float]  # seconds
 
@@ -77,6 +77,8 @@ class BodyCheck:
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
 
+        The root may be followed by its feet, here and below.
+
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
         return np.inf if self.alone else self._least(self._posed(root, upper), root, time)
@@ -84,6 +86,13 @@ class BodyCheck:
     def body(self, root: Floats, upper: Floats) -> Floats:
         """The ends of the capsules as seen from the root's place, and their radii, (C, 7) metres."""
         return np.column_stack([self._posed(root, upper)[:, :, 0], self._radii]).astype(np.float64)
+
+    def room_of_legs(self, root: Floats, upper: Floats, time: float) -> float:
+        """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body."""
+        if self.alone:
+            return np.inf
+        legs = self.model.roots.indices
+        return self._least(self._posed(root, upper)[legs], root, time, others_at=-np.inf, radii=self._radii[legs])
 
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
@@ -162,13 +171,21 @@ class BodyCheck:
         segments = posture_capsules(self.model, postures, roots)
         return self._footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
 
-    def _least(self, segments: Floats32, origin: Floats, time: float, others_at: float | None = None) -> float:
-        """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time."""
-        found = self._obstacles.clearance(segments, self._radii, origin[:2], time)
-        if len(self._loose):
-            found = min(found, self._loose.clearance(segments, self._radii, origin[:2], time))
+    def _least(
+        self,
+        segments: Floats32,
+        origin: Floats,
+        time: float,
+        others_at: float | None = None,
+        radii: Floats32 | None = None,
+    ) -> float:
+        """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time; `radii` (C,) of some."""
         axes, when = np.ascontiguousarray(segments), time if others_at is None else others_at
-        return min([found, *(other.clearance(axes, self._radii, origin, when) for other in self.others)])
+        sizes = self._radii if radii is None else radii
+        found = self._obstacles.clearance(axes, sizes, origin[:2], time)
+        if len(self._loose):
+            found = min(found, self._loose.clearance(axes, sizes, origin[:2], time))
+        return min([found, *(other.clearance(axes, sizes, origin, when) for other in self.others)])
 
     def _near(self, roots: Floats, origin: Floats) -> Floats:
         near = roots.copy()

@@ -1,7 +1,7 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -28,6 +28,7 @@ from elbowroom.control.planners import Planners
 from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
+from elbowroom.control.stepping import Stepping
 from elbowroom.control.wayfinder import Answer, Question, Wayfinder
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -92,6 +93,7 @@ class Controller:
         self._errands = Errands(desk or ImmediateDesk())
         self._wayfinder: Wayfinder
         self._worn = fitted(self.motions, humanoid)
+        self._stepping = Stepping(humanoid, self._worn)
         self._settle_in(scene, ())
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
@@ -189,13 +191,14 @@ class Controller:
         if clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
-        self._free = Playback(self._check.standing(root), upper, np.zeros_like(upper))
+        stood = self._stepping.standing(root) if self.scene.ground.plain else self._check.standing(root)
+        self._shown = self._free = Playback(stood, upper, np.zeros_like(upper))
         self._show(self._free, clearance)
 
     @property
     def root(self) -> RootState:
         """The root state that is shown."""
-        return RootState(*self._shown.root.tolist())
+        return RootState.of(self._shown.root)
 
     @property
     def others(self) -> Sequence[Neighbour]:
@@ -209,7 +212,8 @@ class Controller:
     def prediction(self) -> Neighbour:
         """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
         onward = self._command.forward > 0.0
-        return neighbour(self.humanoid, self._check.model, self._walker(), self._shown, self._queue, onward=onward)
+        model, walker = self._check.model, self._walker()
+        return neighbour(self.humanoid, model, walker, self._shown, self._queue, self._next_pose, onward=onward)
 
     def _walker(self, command: Command | None = None) -> Walker:
         """Where this avatar is, and where to it is asked to go, with what was planned for last or with a command."""
@@ -327,7 +331,7 @@ class Controller:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
         hurry = not self._errands.immediate and steering.changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
-        root, settings = RootState(*start.root.tolist()), self.settings
+        root, settings = RootState.of(start.root), self.settings
         others = self._others_beside(start, time, command)
         query = MotionQuery(
             time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
@@ -397,6 +401,8 @@ class Controller:
     def _stands_still(self, states: Floats, uppers: Floats) -> bool:
         """Whether a motion changes nothing of what is shown: that stands, and so does the motion, in the same pose."""
         shown, stance = self._shown, self._holding.stance
+        if self.scene.ground.plain and not (self._feet_stay or self._stepping.rests(shown.root)):
+            return False
         if not all(map(is_still, (states[:, 3:6], shown.root[3:6], stance, shown.upper_velocity))):
             return False
         return bool(np.abs(uppers - shown.upper).max() < UNMOVED)
@@ -413,8 +419,8 @@ class Controller:
         if ended:
             self._hold(dt)
             return
-        for played, stance in self._holding.over(self._queue.sample(), dt):
-            posed = played._replace(root=self._check.standing(played.root))
+        played = self._holding.over(self._queue.sample(), dt)
+        for posed, stance in self._under(played, dt):
             clearance = self._clearance_of(posed)
             if not self._assist or self._is_free(posed, clearance):
                 self._holding.end(stance)
@@ -427,6 +433,31 @@ class Controller:
             self._clear()
         if self._queue.empty:
             self._next = Phase.RESET
+
+    def _under(self, played: list[tuple[Playback, Floats]], dt: float) -> Iterator[tuple[Playback, Floats]]:
+        """How a motion can be shown, with what it stands on: on plain ground with feet that step."""
+        if self.scene.ground.plain:
+            return self._stepping.under(played, self._shown, self._queue.ahead(), dt, self._room)
+        return ((posed._replace(root=self._check.standing(posed.root)), stance) for posed, stance in played)
+
+    def _next_pose(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
+        """How a pose will be shown `dt` seconds after what is `shown`, if that is free."""
+        if self.scene.ground.plain:
+            return self._stepping.next(shown, planned, dt, ahead, self._room)
+        return planned._replace(root=self._check.standing(planned.root))
+
+    def _settling(self, dt: float) -> Iterator[Playback]:
+        """How the pose that is shown can be held, with what it stands on: best first."""
+        for part in _SETTLING if self._assist else _SETTLING[:1]:
+            held = self._holding.settle(self._shown, part * dt)
+            if self.scene.ground.plain:
+                yield from self._stepping.settling(self._shown, held, dt, self._room)
+            else:
+                yield held._replace(root=self._check.standing(held.root))
+
+    def _room(self, root: Floats, upper: Floats) -> float:
+        """How far the legs are from all that stands and moves, metres."""
+        return self._check.room_of_legs(root, upper, self._queue.time)
 
     def _rate(self, dt: float) -> float:
         """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
@@ -451,9 +482,7 @@ class Controller:
         """Stay in the last good pose; the legs come to a stand where they can."""
         self._clear()
         self._next = Phase.RESET
-        for part in _SETTLING if self._assist else _SETTLING[:1]:
-            held = self._holding.settle(self._shown, part * dt)
-            still = held._replace(root=self._check.standing(held.root))
+        for still in self._settling(dt):
             clearance = self._clearance_of(still)
             if not self._assist or self._is_free(still, clearance):
                 break
@@ -478,6 +507,7 @@ class Controller:
     # --- what is shown -----------------------------------------------------------------------------------------------
 
     def _show(self, playback: Playback, clearance: float) -> None:
+        self._feet_stay = self._stepping.stay(self._shown.root, playback.root)
         self._shown, self._clearance, self._shown_at = playback, clearance, self._queue.time
         if clearance >= 0.0:
             self._free = playback

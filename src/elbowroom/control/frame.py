@@ -6,6 +6,9 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.footholds import standing
+from elbowroom.body.gait import feet_standing
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
@@ -51,7 +54,7 @@ class Frame:
 
     time: float  # seconds since the start, by the sum of all dt
     q: Floats  # (DOF,) the configuration, see `body.dof`
-    root: Floats  # (7,) the root state, see `body.root`
+    root: Floats  # (WITH_FEET,) the root state (7,), see `body.root`, followed by the feet, see `body.footholds`
     phase: Phase  # the flow that the last turn took
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
     stuck: bool  # the user pushes, and planning has found no way on for the root or for the limbs
@@ -61,3 +64,13 @@ class Frame:
     goal: Floats  # (LOCAL,) what the goal functions would show now
     plan: PlanReport | None  # the last planning call
     command: Command = STANDING  # what was obeyed: the user's, or that of a walk to a place
+
+    @property
+    def contacts(self) -> NDArray[np.bool_]:
+        """Which feet, left and right, stand on the ground, (2,): where legs have room, one that does does not move."""
+        return contacts_of(self.root)
+
+
+def contacts_of(root: Floats) -> NDArray[np.bool_]:
+    """Which feet, left and right, stand on the ground (2,) at a root state with feet, or of the cycle (7,)."""
+    return standing(root) if len(root) > ROOT_STATE else feet_standing(1.0, root[None])[0]

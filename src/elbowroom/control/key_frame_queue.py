@@ -94,6 +94,11 @@ class KeyFrameQueue:
         keys = self._coming(self._times)
         return KeyFrames(self._times[keys], self._roots[keys], self._uppers[keys])
 
+    def ahead(self) -> Floats:
+        """Seconds from now and root states (m, 8) of the key frames that are still to come."""
+        keys = self._coming(self._times)
+        return np.column_stack([self._times[keys] - self.time, self._roots[keys]])
+
     def _coming(self, times: Floats) -> NDArray[np.bool_]:
         coming: NDArray[np.bool_] = times > self.time + _SAME_TIME
         return coming

@@ -4,7 +4,9 @@ As far as key frames are known the boxes go with them, and then straight on for 
 on: who walks ahead and makes way to the side will soon be beside.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.body_check import configuration
 from elbowroom.control.key_frame_queue import KeyFrameQueue, KeyFrames, Playback
 from elbowroom.control.neighbour import Neighbour, Walker
@@ -20,6 +23,9 @@ from elbowroom.world.obstacles.shapes import Box, extents_of
 
 Floats = NDArray[np.float64]
 
+# How a pose of the queue is shown some seconds after another, `ahead` (m, 8) of which key frames are still to come.
+Follow = Callable[[Playback, Playback, float, Floats], Playback]
+
 _BEYOND = 2.0  # seconds after the last key frame
 _SPARE = 0.02  # metres: between key frames limbs may reach a little farther
 _THIN = 0.02  # metres: no box becomes thinner
@@ -27,17 +33,28 @@ _MOMENTS = np.arange(10) / 60  # seconds from now: a key interval
 
 
 def neighbour(
-    humanoid: Humanoid, model: BodyModel, walker: Walker, shown: Playback, queue: KeyFrameQueue, *, onward: bool
+    humanoid: Humanoid,
+    model: BodyModel,
+    walker: Walker,
+    shown: Playback,
+    queue: KeyFrameQueue,
+    follow: Follow,
+    *,
+    onward: bool,
 ) -> Neighbour:
     """What others are told about an avatar that is shown now, and will show what is in the queue; as `predicted`."""
     coming = queue.unplayed()
     keys = KeyFrames(
         np.append(queue.time, coming.times),
-        np.vstack([shown.root, coming.roots]),
+        np.vstack([shown.root[:ROOT_STATE], coming.roots]),
         np.vstack([shown.upper, coming.uppers]),
     )
     times = queue.time + (_MOMENTS if len(coming.times) else _MOMENTS[:1])
-    played = [shown, *(queue.at(min(float(time), float(coming.times[-1]))) for time in times[1:])]
+    played = [shown]
+    for before, time in pairwise(times.tolist()):
+        later, still = queue.at(min(time, float(coming.times[-1]))), coming.times > time
+        ahead = np.column_stack([coming.times[still] - time, coming.roots[still]])
+        played.append(follow(played[-1], later, time - before, ahead))
     soon = KeyFrames(times, np.array([one.root for one in played]), np.array([one.upper for one in played]))
     axes = posture_capsules(model, _postures(soon), soon.roots).transpose(2, 0, 1).astype(np.float64)
     return Neighbour(walker, predicted(humanoid, model, keys, onward=onward), times, axes, humanoid.capsules.radii)

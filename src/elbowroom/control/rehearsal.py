@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, columns_of, followers_of
+from elbowroom.body.footholds import gliding
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.root.path import RootPath
@@ -23,7 +25,7 @@ _HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 class Held(NamedTuple):
     """The pose in which an avatar is held after a contact."""
 
-    root: Floats  # (7,)
+    root: Floats  # (WITH_FEET,)
     upper: Floats  # (LOCAL,)
     stance: Floats  # (3,) velocities of the stride in which the legs were held; the root stands
     clearance: float  # metres
@@ -51,18 +53,20 @@ class Rehearsal:
         trial = KeyFrameQueue(path.horizon, path.interval)
         trial.time = path.start_time
         trial.splice(path, uppers, np.zeros_like(self._held.upper))
-        found = []
+        found, root = [], self._held.root
         for _ in range(round(path.interval / _SPACING)):
             trial.advance(_SPACING)
             shown = trial.sample()
             shown.root[3:6] += self._held.stance
-            found.append(self._check.clearance(shown.root, shown.upper, trial.time))
+            steps = len(self._held.root) > ROOT_STATE
+            root = gliding(self._check.model.gait, root, shown.root, _SPACING) if steps else shown.root
+            found.append(self._check.clearance(root, shown.upper, trial.time))
         return np.array(found)
 
 
 def standing_path(path: RootPath, root: Floats) -> RootPath:
     """A path with the key times of `path` on which the root stands at `root` (7,)."""
-    still = root.copy()
+    still = root[:ROOT_STATE].copy()
     still[3:6] = 0.0
     return RootPath(path.start_time, path.interval, np.tile(still, (len(path.states), 1)))
 

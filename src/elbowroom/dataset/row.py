@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import feet_standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.root import HEIGHT, RootState
+from elbowroom.body.root import FOOT, HEIGHT, ROOT_STATE, RootState
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
@@ -52,17 +51,18 @@ def row_of(
         "seed": drawn.seed,
         "fps": fps,
         "frames": len(frames),
-        "reached": scene.finished(RootState(*steps[-1][1].root.tolist())),
+        "reached": scene.finished(RootState.of(steps[-1][1].root)),
         "stuck_frames": sum(frame.stuck for _, frame in steps),
         "scene": json.dumps(scene.to_dict(), separators=(",", ":"), sort_keys=True),
         "obstacles": list(scene.obstacles.names),
         "time": times,
         "command": np.array([_wish(command) for command, _ in kept]),
         "root": roots[:, :HEIGHT],
+        "feet": roots[:, ROOT_STATE:] if roots.shape[1] > ROOT_STATE else np.zeros((len(roots), 2 * FOOT)),
         "q": q,
         "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
         "rotations": local.reshape(len(frames), -1),
-        "contacts": feet_standing(body_model(humanoid).gait.scale, roots),
+        "contacts": np.stack([frame.contacts for frame in frames]),
         "clearance": np.array([frame.clearance for frame in frames]),
         "nearest": _nearest(humanoid, scene, q, roots, times),
         "near": [_near(scene, root) for root in roots],

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
+from elbowroom.body.footholds import beside, gliding, onward, settled
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, RootState
@@ -68,6 +69,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_own_body(humanoid)
     rehearse_detour(humanoid)
     rehearse_crouch(humanoid)
+    rehearse_feet(humanoid)
     rehearse_product()
     rehearse_mesh()
     rehearse_place()
@@ -116,6 +118,13 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
     path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).obstacles)
     keys = np.full(len(path.states), 0.1)
     legs.blocked_intervals(path, keys, np.zeros_like(keys), 0.0)
+
+
+def rehearse_feet(humanoid: Humanoid) -> None:
+    """Stand, glide and step."""
+    gait, root = body_model(humanoid).gait, np.zeros(ROOT_STATE)
+    row = gliding(gait, beside(gait, root), root, 0.01)
+    settled(gait, onward(gait, row, root, 0.01))
 
 
 def rehearse_place() -> None:

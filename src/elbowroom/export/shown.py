@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.recording import RESTART, Recording
+from elbowroom.control.recording import RESTART, Recording, roots_of
 from elbowroom.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -23,7 +22,7 @@ class ShownFrames:
 
     times: Floats  # (N,) seconds, not decreasing
     q: Floats  # (N, DOF) see `body.dof`
-    roots: Floats  # (N, ROOT_STATE) see `body.root`
+    roots: Floats  # (N, WITH_FEET) see `body.root`; (N, ROOT_STATE) of older recordings
     jumps: NDArray[np.bool_]  # (N,) the frame does not follow from the one before it
     clock: Floats  # (N,) the scene's own time
 
@@ -36,7 +35,7 @@ class ShownFrames:
             raise InputError(f"{recording.path}: holds no frames{why}")
         dt = np.asarray(steps["dt"], np.float64)
         q = np.asarray(steps["q"], np.float64).reshape(-1, DOF)
-        roots = np.asarray(steps["root"], np.float64).reshape(-1, ROOT_STATE)
+        roots = roots_of(steps)
         good = np.isfinite(q).all(axis=1) & np.isfinite(roots).all(axis=1) & (dt >= 0.0) & (dt <= _MAX_STEP)
         if not good.all():
             frame = int(np.argmin(good))

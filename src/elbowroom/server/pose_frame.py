@@ -41,11 +41,24 @@ HEAD: tuple[tuple[str, str, str], ...] = (
     ("hips_y", "f", "see hipsX"),
     ("hips_z", "f", "see hipsX"),
 )
-FLAGS = {"stuck": 1, "touching": 2, "paused": 4, "assist": 8, "finished": 16}
+FLAGS = {
+    "stuck": 1,
+    "touching": 2,
+    "paused": 4,
+    "assist": 8,
+    "finished": 16,
+    "left": 32,
+    "right": 64,
+}  # feet that stand
 PHASES = ("plan", "play", "reset")
 
 _HEAD = struct.Struct("<" + "".join(code for _, code, _ in HEAD))
 HEAD_SIZE = _HEAD.size
+
+
+def feet_bits(standing: NDArray[np.bool_]) -> int:
+    """The flags of the feet, left and right (2,), that stand."""
+    return FLAGS["left"] * bool(standing[0]) | FLAGS["right"] * bool(standing[1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -190,9 +190,11 @@ def plan_message(frame: Frame, avatar: StoredAvatar) -> Plan:
     """The key frames that wait, and the wanted beside the chosen posture."""
     keys, root = frame.key_frames, frame.root
     waiting = [configuration(*key) for key in zip(keys.roots, keys.uppers, strict=True)]
-    postures = np.array([*waiting, configuration(root, frame.goal), frame.q])
-    segments = avatar.poser.segments(postures, np.array([*keys.roots, root, root]))
-    rows = np.round(segments.reshape(len(postures), -1).astype(np.float64), 4).tolist()
+    shown = np.array([configuration(root, frame.goal), frame.q])
+    segments = avatar.poser.segments(shown, np.array([root, root]))
+    if waiting:
+        segments = np.concatenate([avatar.poser.segments(np.array(waiting), keys.roots), segments])
+    rows = np.round(segments.reshape(len(segments), -1).astype(np.float64), 4).tolist()
     return Plan(
         times=keys.times.tolist(),
         root=[tuple(state) for state in np.round(keys.roots[:, :3], 4).tolist()],

@@ -12,6 +12,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.frame import contacts_of
 from elbowroom.control.recorded_things import told
 from elbowroom.control.recording import ASSIST, STUCK, TOUCHING, Recording
 from elbowroom.export.shown import ShownFrames
@@ -101,7 +102,7 @@ def _frames(told: _Told, humanoid: Humanoid, scene: Scene) -> list[bytes]:
         frames.append(
             pose_frame.pack(
                 PoseFrame(
-                    flags=_bits(int(told.flags[i])) | pose_frame.FLAGS["finished"] * bool(passed[i]),
+                    flags=_bits(int(told.flags[i]), root) | pose_frame.FLAGS["finished"] * bool(passed[i]),
                     index=len(frames),
                     time=float(shown.times[i] - shown.times[0]),
                     sim_time=sim_time,
@@ -130,10 +131,11 @@ def _frames(told: _Told, humanoid: Humanoid, scene: Scene) -> list[bytes]:
     return frames
 
 
-def _bits(flags: int) -> int:
+def _bits(flags: int, root: NDArray[np.float64]) -> int:
     bits = pose_frame.FLAGS
     return (
-        bits["stuck"] * bool(flags & STUCK)
+        pose_frame.feet_bits(contacts_of(root))
+        | bits["stuck"] * bool(flags & STUCK)
         | bits["touching"] * bool(flags & TOUCHING)
         | bits["assist"] * bool(flags & ASSIST)
     )
@@ -141,7 +143,7 @@ def _bits(flags: int) -> int:
 
 def _passed(shown: ShownFrames, scene: Scene) -> NDArray[np.bool_]:
     """Whether the finish had been passed at each frame (N,) since the last restart."""
-    beyond = np.array([scene.finished(RootState(*root)) for root in shown.roots.tolist()])
+    beyond = np.array([scene.finished(RootState.of(root)) for root in shown.roots])
     latest = np.maximum.accumulate(np.where(beyond, np.arange(len(beyond)), -1))
     begun = np.maximum.accumulate(np.where(shown.jumps, np.arange(len(beyond)), 0))
     return latest >= begun

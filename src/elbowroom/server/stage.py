@@ -243,7 +243,8 @@ class Stage:
     def _flags(self) -> int:
         walk, bits = self.walk, pose_frame.FLAGS
         return (
-            bits["stuck"] * walk.frame.stuck
+            pose_frame.feet_bits(walk.frame.contacts)
+            | bits["stuck"] * walk.frame.stuck
             | bits["touching"] * walk.frame.touching
             | bits["paused"] * self.paused
             | bits["assist"] * walk.settings.assist

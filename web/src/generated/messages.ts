@@ -9,7 +9,7 @@ export const INPUT_TIMEOUT = 1;
 export const POSE_KIND = 1;
 export const POSE_LAYOUT = 1;
 export const POSE_HEAD_SIZE = 88;
-export const POSE_FLAGS = { stuck: 1, touching: 2, paused: 4, assist: 8, finished: 16 } as const;
+export const POSE_FLAGS = { stuck: 1, touching: 2, paused: 4, assist: 8, finished: 16, left: 32, right: 64 } as const;
 export const POSE_PHASES = ["plan", "play", "reset"] as const;
 
 /** What the keys, sticks and pads say now; sent on every change and at least four times a second while held. */

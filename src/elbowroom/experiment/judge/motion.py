@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.recording import ASSIST, RESTART, Recording
+from elbowroom.control.recording import ASSIST, RESTART, Recording, roots_of
 from elbowroom.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -40,7 +39,7 @@ class ShownMotion:
 
     times: Floats  # (F,) seconds; not decreasing
     q: Floats  # (F, DOF) see `body.dof`
-    roots: Floats  # (F, 7) see `body.root`
+    roots: Floats  # (F, WITH_FEET) see `body.root`, or (F, 7) without feet
     jumps: NDArray[np.bool_]  # (F,) the frame does not follow from the one before it: nothing is shown between them
     assisted: NDArray[np.bool_]  # (F,) the planner was at work
     clock: Floats | None = None  # (F,) the scene's own time, by which things move; None: the frames' times
@@ -60,8 +59,9 @@ class ShownMotion:
         steps = recording.steps()
         if len(steps) == 0:
             raise InputError(f"{recording.path}: holds no frames" + _because(recording.note))
-        q, roots, dt = (np.asarray(steps[name], np.float64) for name in ("q", "root", "dt"))
-        _check(recording.path, q.reshape(-1, DOF), roots.reshape(-1, ROOT_STATE), dt)
+        q, dt = (np.asarray(steps[name], np.float64) for name in ("q", "dt"))
+        roots = roots_of(steps)
+        _check(recording.path, q.reshape(-1, DOF), roots, dt)
         jumps = (steps["flags"] & RESTART) != 0
         jumps[0] = True
         assisted, clock = (steps["flags"] & ASSIST) != 0, recording.clock(steps).ends

@@ -1,7 +1,7 @@
 """Forward kinematics once more, plain NumPy over whole arrays of poses: what `body.kinematics` is judged by.
 
 The conventions are those of the body (`body.dof`, `docs/architecture.md`), the arithmetic shares nothing with its
-kernels. Only the tables of the gait (where the feet are at a root state: `body.gait.foot_poses`, `body.rises`) and of
+kernels. Only the tables of the gait (where feet and hips are at a root state, `body.kinematics.lower_body`) and of
 relaxed fingers are taken from there: they say what the walk is, not where the body gets to.
 """
 
@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DofGroup
-from elbowroom.body.gait import foot_poses, gait_shape
+from elbowroom.body.dof import LOWERING, DofGroup
+from elbowroom.body.gait import gait_shape
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.rises import raise_feet
+from elbowroom.body.kinematics import lower_body
 from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
@@ -47,10 +47,12 @@ class Poser:
         self._relaxed = relaxed_rotations(self.skeleton)
 
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
-        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7)."""
-        states = np.ascontiguousarray(roots, np.float64)
-        feet, drops = foot_poses(self._gait.legs, self._gait.scale, states)
-        raise_feet(self._gait.legs, states, feet, drops)
+        """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7).
+
+        The roots may be followed by their feet.
+        """
+        lowerings = np.ascontiguousarray(q[:, LOWERING])
+        feet, sinks = lower_body(self._gait, np.ascontiguousarray(roots, np.float64), lowerings)
         rotations = np.tile(self._relaxed, (len(q), 1, 1))
         (bend, twist, lowering), (nod, turn) = q[:, DofGroup.WAIST.at].T, q[:, DofGroup.HEAD.at].T
         _pose_column(self.skeleton, _SPINE_PARTS, bend, twist, rotations)
@@ -58,7 +60,7 @@ class Poser:
         _pose_arm(self.skeleton, "left", 1.0, q[:, DofGroup.LEFT_ARM.at], rotations)
         _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
         lowered = 0.25 * self._gait.legs[:, 8:10].sum() * lowering[:, None]
-        moved = -(drops[:, None] + lowered) * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
+        moved = -sinks[:, :1] * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
         for side, name in enumerate(("left", "right")):
             _pose_leg(self.skeleton, name, feet[:, side], moved, rotations)
         return rotations, self.skeleton.positions[0] + moved

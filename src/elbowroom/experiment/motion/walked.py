@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import feet_standing
+from elbowroom.body.footholds import standing
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -24,7 +23,7 @@ class Walked:
     """N frames, 1/60 s apart."""
 
     script: Script
-    roots: Floats  # (N, 7)
+    roots: Floats  # (N, WITH_FEET)
     joints: Posed
     standing: Bools  # (N, 2) which feet stand, as the walk means it
     clearances: Floats  # (N,) metres from what is in the way
@@ -46,12 +45,11 @@ def walk(humanoid: Humanoid, script: Script) -> Walked:
         if script.scene.finished(controller.root):
             break
     states = np.array(roots)
-    gait = body_model(humanoid).gait
     return Walked(
         script,
         states,
         posed(humanoid, np.array(qs), states),
-        feet_standing(gait.scale, states),
+        standing(states),
         np.array(clearances),
     )
 

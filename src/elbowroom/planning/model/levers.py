@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of
 from elbowroom.body.gait import hips_sinks
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, pelvis_frames
+from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.posing import Column
-from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
@@ -31,6 +31,11 @@ _STRIDES, _STEP, _SPARE = 2048, 1e-3, 1.25  # strides that are measured, by chan
 _VELOCITIES = np.array([[-1.5, 3.0], [-1.0, 1.0], [-2.5, 2.5]])  # m/s ahead and to the left, rad/s
 _LOWEST = 0.7  # half leg lengths
 _KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by one, or slopes by a radian more
+# Where feet are measured: x from the hip, z, yaw, pitch, lift, share of the swing. Metres of a standard leg, radians.
+_FEET_AT = np.array([[-0.15, 0.15], [-0.5, 0.5], [-0.7, 0.7], [-0.4, 1.2], [0.0, 0.07], [0.0, 1.0]])
+_ON_FEET = MOVES + 2 * (
+    len(_FEET_AT) - 1
+)  # moves of who is on feet: of the root those that lower the hips, of each foot
 
 
 def lift_of(model: BodyModel) -> float:
@@ -101,6 +106,8 @@ class BodyLevers:
     from_pelvis: Floats  # (C, M) in the pelvis frame
     from_chest: Floats  # (C, M) in the chest frame; of the trunk and what hangs on it
     bob: Floats  # (M,) of the pelvis frame above the ground
+    steps: Floats  # (C, K) of the legs' capsules, in the root's frame, for the K moves of feet; 0 of all others
+    dips: Floats  # (K,) of the hips for those
     spans: Floats  # (C,) metres: no point of a capsule's axis gets farther from the root's axis
 
     def between(self, first: Indices, second: Indices, legs: Indices) -> Floats:
@@ -114,15 +121,23 @@ class BodyLevers:
         return levers
 
     def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> float:
-        """No point moves farther, metres, while root states (7,) and upper bodies (LOCAL,) change evenly."""
+        """No point moves farther, metres, while root states and upper bodies (LOCAL,) change evenly.
+
+        The root states have feet (WITH_FEET,) or go with the walking cycle (7,).
+        """
         root, upper = roots[1] - roots[0], uppers[1] - uppers[0]
         moves = np.zeros(len(self.bob))
         for group in LOCAL_GROUPS:
             part, at = upper[columns_of(group)], _columns(group)
             moves[at] = np.hypot(part[0], part[1]), *np.abs(part[2:]), *np.zeros(2 + MOVES - 1 - len(part))
-        moves[-MOVES:] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
-        farthest = (self.from_pelvis @ moves + abs(root[2]) * self.spans).max()
-        way = float(np.hypot(root[0], root[1]) + self.bob @ moves + farthest)
+        if len(root) > ROOT_STATE:
+            steps = _moves_of_feet(root)
+            lower = np.where(self.steps.any(axis=1), self.steps @ steps, self.dips @ steps)
+        else:
+            moves[-MOVES:] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
+            lower = np.full(len(self.steps), self.bob @ moves)
+        farthest = (self.from_pelvis @ moves + lower + abs(root[2]) * self.spans).max()
+        way = float(np.hypot(root[0], root[1]) + farthest)
         return way + abs(root[HEIGHT]) + raised_between(*roots) if len(root) > HEIGHT else way
 
 
@@ -138,7 +153,7 @@ _LEVERS: Shared[BodyLevers] = Shared()
 
 
 def body_levers(humanoid: Humanoid) -> BodyLevers:
-    """The levers of an avatar's body: the same for all who ask. Measured in a twentieth of a second."""
+    """The levers of an avatar's body: the same for all who ask. Measured in a fifth of a second."""
     return _LEVERS.get(humanoid, lambda: _measured(body_model(humanoid)))
 
 
@@ -157,8 +172,9 @@ def _measured(model: BodyModel) -> BodyLevers:
     legs, bob = model.roots.indices, np.zeros(from_pelvis.shape[1])
     from_pelvis[legs, -MOVES:], lowered, bob[-MOVES:] = _stride_levers(model)
     from_pelvis[legs, _columns(DofGroup.WAIST).start + _LOWERING] = lowered
-    aside = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift
-    return BodyLevers(from_pelvis, from_chest, bob, aside + _lengths(model))
+    aside, steps = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift, np.zeros((len(from_pelvis), _ON_FEET))
+    steps[legs], dips = _foot_levers(model)
+    return BodyLevers(from_pelvis, from_chest, bob, steps, dips, aside + _lengths(model))
 
 
 def _lengths(model: BodyModel) -> Floats:
@@ -192,6 +208,58 @@ def _stride_levers(model: BodyModel) -> tuple[Floats, Floats, Floats]:
     ahead_bob, aside_bob, turn_bob, phase_bob, _ = _SPARE / _STEP * np.array(bobs)
     levers = np.stack([np.hypot(ahead, aside), turn, phase], axis=1)
     return levers, lowering, np.array([np.hypot(ahead_bob, aside_bob), turn_bob, phase_bob])
+
+
+def _moves_of_feet(change: Floats) -> Floats:
+    """What feet do, and what of the root lowers the hips, (K,), for a change of a root state with feet.
+
+    Velocity over the ground, turning rate, phase; of each foot its way, yaw, pitch, lift, and share of the swing.
+    """
+    moves = np.empty(_ON_FEET)
+    moves[:MOVES] = np.hypot(change[3], change[4]), abs(change[5]), abs(change[6])
+    feet = change[ROOT_STATE:].reshape(2, FOOT)
+    moves[MOVES:].reshape(2, -1)[:] = np.column_stack([np.hypot(feet[:, 0], feet[:, 1]), np.abs(feet[:, 2:6])])
+    return moves
+
+
+def _foot_levers(model: BodyModel) -> tuple[Floats, Floats]:
+    """Levers of pelvis and legs in the root's frame for the moves of feet (C, K), and of the hips (K,).
+
+    They are measured, on feet everywhere within a stride and some beyond reach, and a quarter more is taken.
+    """
+    gait, drawn = model.gait, evenly_spread(_STRIDES, len(_FEET_AT) * 2 + len(_VELOCITIES) + 2)
+    rows, lowerings = np.zeros((_STRIDES, WITH_FEET)), _LOWEST * np.maximum(2.0 * drawn[:, 0] - 1.0, 0.0)
+    rows[:, 6] = drawn[:, 1]
+    rows[:, 3:6] = _VELOCITIES[:, 0] + drawn[:, 2:5] * np.ptp(_VELOCITIES, axis=1)
+    sizes = np.array([gait.scale, gait.scale, 1.0, 1.0, gait.scale, 1.0])
+    for side, part in enumerate(np.split(drawn[:, 5:], 2, axis=1)):
+        foot = sizes * (_FEET_AT[:, 0] + part * np.ptp(_FEET_AT, axis=1))
+        foot[:, 0] += gait.legs[side, 0]
+        rows[:, ROOT_STATE + FOOT * side :][:, : len(sizes)] = foot
+    begin, ways, dips = _seen_from_root(model, rows, lowerings), [], []
+    for column in (*range(3, 7), *(ROOT_STATE + FOOT * side + i for side in range(2) for i in range(len(_FEET_AT)))):
+        moved = rows.copy()
+        moved[:, column] += _STEP
+        after = _seen_from_root(model, moved, lowerings)
+        ways.append(np.linalg.norm(after[0] - begin[0], axis=2).max(axis=(1, 2)))
+        dips.append(np.abs(after[1] - begin[1]).max())
+    legs, hips = (_SPARE / _STEP * np.array(found) for found in (ways, dips))
+    return _joined(legs).T, _joined(hips)
+
+
+def _joined(levers: Floats) -> Floats:
+    """Levers (18 or so, ...) for each number that is told of root and feet, as those (K, ...) for `_moves_of_feet`."""
+    of_root, of_feet = levers[:4], levers[4:].reshape(2, len(_FEET_AT), *levers.shape[1:])
+    ground = np.hypot(of_feet[:, :1], of_feet[:, 1:2])
+    feet = np.concatenate([ground, of_feet[:, 2:]], axis=1).reshape(-1, *levers.shape[1:])
+    joined: Floats = np.concatenate([np.hypot(of_root[:1], of_root[1:2]), of_root[2:], feet])
+    return joined
+
+
+def _seen_from_root(model: BodyModel, rows: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
+    """The ends (C, 2, 3, N) of the capsules of pelvis and legs in the root's frame, and how deep the hips are (N,)."""
+    ends = leg_capsules(model, rows, lowerings).astype(np.float64).reshape(len(model.roots.radii), 2, 3, -1)
+    return ends, lower_body(model.gait, rows, lowerings)[1][:, 0]
 
 
 def _seen_from_pelvis(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:

@@ -1,0 +1,80 @@
+"""Arms make way for the avatar's own legs where these stand otherwise than the walking cycle has them.
+
+The planner holds arms against the legs of the walking cycle. Feet that stand do not follow a root that turns or goes
+aside, so a thigh may be a few centimetres beside where it was planned, just where a hand passes. Then the arm is spread
+by as much.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import ARMS, DOF, LOCAL, columns_of, limits
+from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.clips.motion_set import MotionSet
+from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.axis_distances import pair_clearances
+from elbowroom.planning.model.self_pairs import self_pairs
+
+Floats = NDArray[np.float64]
+
+_NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
+_ROUNDS, _LEAST = 3, 0.3  # of the way to the hand: what spreading an arm opens at least
+_ABDUCTION = 1  # its place in an arm's components
+
+
+class ArmsBesideLegs:
+    """The arms and legs of one avatar; frozen."""
+
+    def __init__(self, model: BodyModel, motions: MotionSet) -> None:
+        """`motions` are those that it walks with: arms may come as near to the legs as in them."""
+        self._model = model
+        pairs = self_pairs(model, natural_walk(motions))
+        arms = [pairs.capsules[arm] for arm in ARMS]
+        first, second = (np.isin(side, np.concatenate(arms)) for side in (pairs.first, pairs.second))
+        legs = np.isin(pairs.first, model.roots.indices) | np.isin(pairs.second, model.roots.indices)
+        chosen = (first | second) & legs
+        self._first, self._second = pairs.first[chosen], pairs.second[chosen]
+        right = np.isin(self._first, arms[1]) | np.isin(self._second, arms[1])
+        self._kinds, self._limits = right.astype(np.int64), pairs.limits[chosen]
+        self._columns = [columns_of(arm).start + _ABDUCTION for arm in ARMS]
+        self._most = [float(limits(arm)[_ABDUCTION, 1]) for arm in ARMS]
+        self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about
+
+    def apart(self, root: Floats, upper: Floats) -> Floats:
+        """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET,).
+
+        What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near.
+        """
+        here = root[None].copy()
+        here[0, :3] = 0.0
+        gaps = self._gaps(here, upper)
+        if gaps.min() >= _NEAR:
+            return upper
+        wanted, angles, slopes = _widened(gaps), np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
+        spread, found = upper, gaps
+        for _ in range(_ROUNDS):
+            angles = np.clip(angles + (wanted - found) / slopes, 0.0, np.inf)
+            spread = upper.copy()
+            spread[self._columns] = np.maximum(
+                upper[self._columns], np.minimum(upper[self._columns] + angles, self._most)
+            )
+            found = self._gaps(here, spread)
+            opened = np.divide(found - gaps, angles, out=np.full(len(ARMS), self._reach), where=angles > 0.0)
+            slopes = np.clip(opened, _LEAST * self._reach, self._reach)
+        return spread
+
+    def _gaps(self, root: Floats, upper: Floats) -> Floats:
+        """How much nearer the left and the right arm may come to the legs, metres (2,)."""
+        q = np.zeros((1, DOF))
+        q[0, DOF - LOCAL :] = upper
+        capsules = posture_capsules(self._model, q, root)
+        return pair_clearances(capsules, self._first, self._second, self._kinds, self._limits, len(ARMS))[:, 0].astype(
+            np.float64
+        )
+
+
+def _widened(gaps: Floats) -> Floats:
+    """The gaps that are wanted: those that are wide enough as they are, of the others more than the least, smoothly."""
+    more = _NEAR - _LEAST_GAP
+    narrow = _LEAST_GAP + more * np.exp((np.minimum(gaps, _NEAR) - _NEAR) / more)
+    return np.where(gaps >= _NEAR, gaps, narrow)

@@ -1,0 +1,49 @@
+"""Arms make way for legs that stand otherwise than the walking cycle has them, and only then."""
+
+import numpy as np
+
+from elbowroom.body.dof import ARMS, LOCAL, columns_of, limits
+from elbowroom.body.footholds import beside
+from elbowroom.body.kinematics import body_model
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import FOOT, ROOT_STATE
+from elbowroom.clips.motion_set import STOCK
+from elbowroom.control.arms_beside_legs import ArmsBesideLegs
+from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
+from elbowroom.planning.root.path import RootPath
+
+MODEL = body_model(proportional_humanoid())
+ARMS_BESIDE = ArmsBesideLegs(MODEL, STOCK)
+HANGING = natural_walk()(RootPath(0.0, 1.0, np.zeros((2, ROOT_STATE))))[0]
+
+
+def gap(root: np.ndarray, upper: np.ndarray) -> float:
+    """How much nearer any part could come to another, metres."""
+    return float(self_clearances(MODEL, self_pairs(MODEL), root[None], upper[None]).min())
+
+
+def test_arms_that_are_clear_stay_as_they_are() -> None:
+    upper = np.zeros(LOCAL) + HANGING
+    assert ARMS_BESIDE.apart(beside(MODEL.gait, np.zeros(ROOT_STATE)), upper) is upper
+
+
+def test_arms_are_spread_where_a_thigh_stands_aside() -> None:
+    moved = 0
+    for aside in np.linspace(0.0, 0.35, 15):
+        for side in range(2):
+            root = beside(MODEL.gait, np.zeros(ROOT_STATE))
+            root[ROOT_STATE + FOOT * side] += (1.0 - 2.0 * side) * aside
+            spread = ARMS_BESIDE.apart(root, HANGING)
+            assert gap(root, spread) >= -1e-6
+            assert np.flatnonzero(spread - HANGING).tolist() in ([], [columns_of(ARMS[side]).start + 1])
+            moved += spread is not HANGING
+    assert moved > 4
+
+
+def test_no_arm_is_spread_beyond_its_limits() -> None:
+    upper = HANGING.copy()
+    for arm in ARMS:
+        upper[columns_of(arm)] = 1.2, limits(arm)[1, 1], 0.0, 0.0  # it is as far out as it goes
+    root = beside(MODEL.gait, np.zeros(ROOT_STATE))
+    np.testing.assert_array_equal(ARMS_BESIDE.apart(root, upper), upper)
