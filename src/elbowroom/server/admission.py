@@ -9,7 +9,8 @@ from elbowroom.experiment.parallel import usable_cores
 from elbowroom.server.guard import is_loopback
 from elbowroom.server.meter import Meter, Reading
 
-FIRST = 2  # sessions that are let in whatever was measured: one alone on a busy machine is not sent away
+FIRST = 8  # sessions that are let in whatever was measured: a few on a busy machine are not sent away
+AMONG = 2  # the same for a server among others, which may have room
 EACH = 8  # sessions of one machine that is not this one
 MOST = 128  # sessions, each of which holds memory
 
@@ -23,9 +24,15 @@ _FRESH = 3.0  # seconds in which a session counts as just begun
 class Admission:
     """Counts sessions and says whether there is room for another."""
 
-    def __init__(self, meter: Meter, cores: float | None = None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        meter: Meter,
+        cores: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        first: int = FIRST,
+    ) -> None:
         """`cores` that there are for sessions, by default all that the process may use."""
-        self._meter, self._clock = meter, clock
+        self._meter, self._clock, self._first = meter, clock, first
         self._cores = float(usable_cores()) if cores is None else cores
         self._of_machines: Counter[str] = Counter()
         self._begun: deque[float] = deque()
@@ -63,7 +70,7 @@ class Admission:
             return "this server is about to end; try again in a moment"
         if not is_loopback(machine) and self._of_machines[machine] >= EACH:
             return f"your machine has {EACH} sessions here already"
-        if self.sessions >= MOST or (self.sessions >= FIRST and self._is_busy(self._meter.lately())):
+        if self.sessions >= MOST or (self.sessions >= self._first and self._is_busy(self._meter.lately())):
             return f"this server has {self.sessions} sessions already, as many as it can show in time; try again later"
         return None
 

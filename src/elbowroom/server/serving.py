@@ -12,7 +12,7 @@ import uvicorn
 
 from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import usable_cores
-from elbowroom.server.admission import Admission
+from elbowroom.server.admission import AMONG, Admission
 from elbowroom.server.app import make_app
 from elbowroom.server.connections import BoundedWebSocket, looks_after
 from elbowroom.server.ending import end_at_latest
@@ -97,10 +97,11 @@ class Front:
 
 def make_server(library: Library, opened: socket.socket, host: str = "", front: Front | None = None) -> Server:
     """The server of an application for this socket; `run(sockets=[opened])` runs it; `host` as in `listen`."""
-    admission = Admission(library.meter, None if front is None else front.share * usable_cores())
     if front is None:
+        admission = Admission(library.meter)
         app = make_app(library, opened.getsockname()[0], host, admission)
     else:
+        admission = Admission(library.meter, front.share * usable_cores(), first=AMONG)
         app = make_app(library, front.bound_host, front.name, admission, front.word)
     config = uvicorn.Config(
         app,
