@@ -120,3 +120,19 @@ def test_a_scene_is_built_by_the_pad(open_page: Open) -> None:
     live.wait("s.build.selected !== null")
     press(live, B, B)
     live.wait("s.build === null")
+
+
+def test_a_thing_is_pushed_by_the_pad(open_page: Open) -> None:
+    live = open_page("scene=d", viewport=(640, 480), script=PAD)
+    live.wait("s.scene === 'd'")
+    press(live, START)
+    live.page.wait_for_selector("#menu:not(.closed)")
+    live.page.focus("#push")
+    press(live, A)
+    number = live.wait("s.held !== null")["held"]
+    press(live, B)
+    live.page.evaluate(f"window.pad.down = [{UP}]")
+    live.wait(f"s.pushed.some((thing) => thing.number === {number})")
+    live.page.evaluate("window.pad.down = []")
+    press(live, B)
+    live.wait("s.held === null")

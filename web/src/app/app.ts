@@ -175,6 +175,7 @@ export class App {
       cameraHeading: () => this.picture.camera.heading,
       steering: () => this.taste.steering,
       openMenu: (open) => this.menu.showByPad(open),
+      pushes: () => this.pushing.byArrows,
     };
   }
 }

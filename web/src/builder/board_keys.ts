@@ -13,7 +13,8 @@ export interface KeyedBoard {
 }
 
 const ARROWS: Readonly<Record<string, Vec2>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-const ZOOM = 1.25;
+/** How much nearer or farther one press brings the board. */
+export const ZOOM = 1.25;
 
 /** Does what a key is for, and says whether it is for anything. */
 export function boardKey(event: KeyboardEvent, editor: Editor, board: KeyedBoard): boolean {

@@ -8,6 +8,7 @@ import { SNAPS, type Editor, type Tool } from "./editor";
 import { Form } from "./form";
 import { KINDS } from "./shapes";
 import { verdictWords } from "./verdict_words";
+import { ZOOM } from "./board_keys";
 import "./build.css";
 
 /** What the user does with the panel that is no edit. */
@@ -34,6 +35,8 @@ const ICONS = {
   redo: "M13 4.5 16.5 8 13 11.5M16.5 8H8a4.5 4.5 0 0 0 0 9h4",
   copy: "M7 7h9v9H7zM4 13V4h9",
   remove: "M4 6h12M8 6V4h4v2M6 6l1 10.5h6L14 6",
+  nearer: "M8.5 3a5.5 5.5 0 1 1 0 11 5.5 5.5 0 0 1 0-11M13 13l4 4M6 8.5h5M8.5 6v5",
+  farther: "M8.5 3a5.5 5.5 0 1 1 0 11 5.5 5.5 0 0 1 0-11M13 13l4 4M6 8.5h5",
   fit: "M3 7V3h4M17 7V3h-4M3 13v4h4M17 13v4h-4",
 } as const;
 
@@ -102,13 +105,15 @@ export class BuildPanel {
     const kinds = KINDS.map((kind, i) => this.tool(kind, `${text(`build.${kind}`)} (${i + 1})`));
     const track = this.tool("track", `${text("build.track")} (T)`);
     const stop = this.tool("stop", `${text("build.stop")} (S)`);
+    const nearer = this.button("nearer", `${text("build.nearer")} (I)`, () => this.board.zoom(1 / ZOOM));
+    const farther = this.button("farther", `${text("build.farther")} (O)`, () => this.board.zoom(ZOOM));
     const fit = this.button("fit", `${text("build.fit")} (Home)`, () => this.board.fit());
     for (const metres of SNAPS) this.snap.add(new Option(metres === 0 ? text("build.noSnap") : `${metres * 100} cm`, String(metres)));
     this.snap.value = String(this.editor.snap);
     this.sideButton.title = `${text("build.look")} (V)`;
     return make("div", { class: "tools", role: "toolbar", "aria-label": text("build.tools") },
       ...kinds, track, stop, make("i", { class: "gap", "aria-hidden": "true" }), this.copy, this.remove, make("i", { class: "gap", "aria-hidden": "true" }),
-      this.sideButton, fit, this.snap, this.check);
+      this.sideButton, nearer, farther, fit, this.snap, this.check);
   }
 
   private foot(): HTMLElement {

@@ -19,6 +19,8 @@ export interface ControlsHost {
   cameraHeading(): number;
   steering(): SteeringMode;
   openMenu(open: boolean): void;
+  /** Whether a thing is in hand that the arrow keys push. */
+  pushes(): boolean;
 }
 
 export class Controls {
@@ -31,7 +33,7 @@ export class Controls {
   private sequence = 0;
 
   constructor(private readonly host: ControlsHost, stickRing: HTMLElement, keys: KeyMap) {
-    this.gamepads = new Gamepads(new PadFocus({ openMenu: (open) => host.openMenu(open), back: () => host.action("escape") }));
+    this.gamepads = new Gamepads(new PadFocus({ openMenu: (open) => host.openMenu(open), back: () => host.action("escape"), pushes: () => host.pushes() }));
     this.keyboard = new Keyboard(keys, (action) => host.action(action), () => this.flush());
     this.stick = new TouchStick(stickRing, () => this.flush());
   }

@@ -4,6 +4,7 @@ import { padOnBoard } from "./pad_board";
 
 const [A, B, START, UP, DOWN, LEFT, RIGHT] = [0, 1, 9, 12, 13, 14, 15] as const;
 const CROSS: readonly number[] = [UP, DOWN, LEFT, RIGHT];
+const ARROWS = [[UP, "ArrowUp"], [DOWN, "ArrowDown"], [LEFT, "ArrowLeft"], [RIGHT, "ArrowRight"]] as const;
 const WORKED = [A, B, ...CROSS];
 /** Seconds until a held cross goes on, and from then on. */
 const WAIT = 0.4;
@@ -19,12 +20,15 @@ export interface PadFocusHost {
   openMenu(open: boolean): void;
   /** What Escape does. */
   back(): void;
+  /** Whether a thing is in hand, which the cross pushes. */
+  pushes(): boolean;
 }
 
 export class PadFocus {
   /** The menu was opened by the pad. */
   private inMenu = false;
   private entering = false;
+  private readonly pushing = new Set<number>();
   private held: number | null = null;
   private due = 0;
 
@@ -41,6 +45,7 @@ export class PadFocus {
     if (fresh.has(START)) this.toggleMenu();
     if (this.entering) this.enter();
     const panels = this.panels();
+    if (panels.length === 0 && this.host.pushes()) return this.push(down, fresh);
     if (panels.length === 0) return new Set([START]);
     const controls = panels.flatMap((panel) => [...panel.querySelectorAll<HTMLElement>(CONTROLS)]).filter(canBeUsed);
     const onBoard = new Set([...fresh].filter((button) => !CROSS.includes(button) && padOnBoard(button)));
@@ -48,6 +53,17 @@ export class PadFocus {
     else if (fresh.has(A) && !onBoard.has(A)) (focused(controls) ?? focus(controls[0]))?.click();
     for (const button of CROSS) if (this.goes(button, down, fresh, now) && !padOnBoard(button)) move(controls, button);
     return new Set([START, ...WORKED, ...(panels[0]?.id === "build" ? down : [])]);
+  }
+
+  /** The cross does as the arrow keys, B as Escape. */
+  private push(down: ReadonlySet<number>, fresh: ReadonlySet<number>): ReadonlySet<number> {
+    for (const [button, code] of ARROWS) {
+      if (down.has(button) !== this.pushing.has(button)) press(down.has(button) ? "keydown" : "keyup", code);
+      if (down.has(button)) this.pushing.add(button);
+      else this.pushing.delete(button);
+    }
+    if (fresh.has(B)) press("keydown", "Escape");
+    return new Set([START, B, ...CROSS]);
   }
 
   private toggleMenu(): void {
@@ -88,6 +104,10 @@ export class PadFocus {
     this.due = now + AGAIN;
     return true;
   }
+}
+
+function press(kind: "keydown" | "keyup", code: string): void {
+  window.dispatchEvent(new KeyboardEvent(kind, { code, cancelable: true }));
 }
 
 function move(controls: readonly HTMLElement[], button: number): void {

@@ -34,6 +34,11 @@ export class ArrowPushing {
     window.addEventListener("blur", () => this.held.clear());
   }
 
+  /** Whether a thing is in hand. */
+  get holds(): boolean {
+    return this.chosen !== null;
+  }
+
   /** Takes the next thing in hand; after the last one, none. */
   next(): void {
     const offered = this.host.offered();

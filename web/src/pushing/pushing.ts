@@ -42,6 +42,11 @@ export class Pushing {
     return this.hand.number;
   }
 
+  /** Whether the arrow keys push a thing. */
+  get byArrows(): boolean {
+    return this.arrows.holds;
+  }
+
   /** What was pushed in the live scene. */
   get loose(): Loose {
     return this.things?.loose ?? NOTHING_LOOSE;

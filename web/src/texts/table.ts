@@ -9,7 +9,7 @@ const said = (en: string, zhHant: string): Texts => ({ en, "zh-Hant": zhHant });
 export const TABLE = {
   "alone.camera": said("Next camera", "下一個鏡頭"),
   "push.none": said("Nothing in this scene can be pushed", "此場景中沒有可推動的物件"),
-  "push.inHand": said("{0} is in hand: arrow keys push it, G takes the next, Esc lets go", "已抓住 {0}：以方向鍵推動，按 G 換下一個，按 Esc 放開"),
+  "push.inHand": said("{0} is in hand: arrow keys or the cross push it, G takes the next, Esc or B lets go", "已抓住 {0}：以方向鍵或十字鍵推動，按 G 換下一個，按 Esc 或 B 放開"),
   "replay.title": said("Replay", "重播"),
   "replay.open": said("Replay the last walk", "重播上一次行走"),
   "replay.none": said("Nothing to replay yet: walk a few steps first", "還沒有可重播的內容：請先走幾步"),
@@ -104,6 +104,8 @@ export const TABLE = {
   "build.redo": said("Redo", "重做"),
   "build.copy": said("Copy", "複製"),
   "build.remove": said("Delete", "刪除"),
+  "build.nearer": said("Zoom in", "放大"),
+  "build.farther": said("Zoom out", "縮小"),
   "build.fit": said("Show all of it", "顯示全部"),
   "build.top": said("Top", "俯視"),
   "build.side": said("Side", "側視"),

@@ -49,7 +49,7 @@ export class Help {
 function drawn({ title, rows }: Section, capNow: (cap: string) => string): HTMLElement {
   const list = make("dl", { class: "keys" });
   for (const [keys, meaning] of rows) {
-    const kbd = (key: string) => make("kbd", {}, title === "Gamepad" ? key : capNow(key));
+    const kbd = (key: string) => make("kbd", {}, worded(title === "Gamepad" ? key : capNow(key)));
     const caps = keys.flatMap((key, i) => (i === 0 ? [kbd(key)] : [" ", kbd(key)]));
     list.append(make("dt", {}, ...caps), make("dd", {}, worded(meaning)));
   }
