@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.ground.ground import STEP, Ground, Sole, height_along, height_at, sole_on
+from elbowroom.world.ground.ground import STEP, Ground, Sole, height_along, height_at, level_about, sole_on
 from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 
@@ -150,3 +150,22 @@ def test_on_an_edge_and_on_a_cable_a_sole_is_level_and_on_the_highest() -> None:
     assert sole_on(kerb, SOLE, (0.0, 0.0, 1.9), 0.0) == pytest.approx((0.15, 0.0))
     cable = scene_with(box((0.0, 0.03, 2.0), (4.0, 0.06, 0.02))).ground
     assert sole_on(cable, Sole(0.06, 0.18, 0.04), (0.0, 0.0, 1.988), 0.0) == pytest.approx((0.06, 0.0))
+
+
+def test_where_ground_is_told_to_be_level_it_is() -> None:
+    """Against `height_at` at many places, over steps, a ramp and holes between boxes."""
+    boxes = [[x, 0.5 * top, z, 1.0, top, 1.0] for x, z, top in [(1, 2, 0.1), (2, 2, 0.2), (1, 3, 0.1), (3, 5, 0.15)]]
+    obstacles = [
+        {"type": "box", "center": [x, y, z], "size": [wide, tall, deep]} for x, y, z, wide, tall, deep in boxes
+    ]
+    ground = Scene.of("boxes", obstacles, finish=(0.0, 9.0)).ground
+    rng, told = np.random.default_rng(3), 0
+    for x, z in rng.uniform((-1.0, 0.0), (4.0, 7.0), (400, 2)):
+        reach, near = float(rng.uniform(0.05, 0.5)), float(rng.choice([0.0, 0.1, 0.2]))
+        level = level_about(ground, x, z, reach, near)
+        if math.isfinite(level):
+            told += 1
+            around = np.array([x, z]) + rng.uniform(-reach, reach, (50, 2))
+            heights = [height_at(ground, float(a), float(b), level) for a, b in around]
+            assert heights == pytest.approx([level] * len(heights), abs=1e-3)
+    assert told > 100, "level ground is hardly ever noticed"

@@ -19,7 +19,7 @@ from elbowroom.body.gait import stood_places
 from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, sole_on
+from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 
 Floats = NDArray[np.float64]
@@ -173,6 +173,23 @@ def _stand(ground: Ground, sole: Sole, root: Floats, x: float, z: float, yaw: fl
 
 
 @exact_kernel
+def _level_under(ground: Ground, sole: Sole, root: Floats, places: Floats) -> float:
+    """The height of the ground where it is one level under a root and a foot at `places` (3,) or (6,), and in between.
+
+    Minus infinity where it is not.
+    """
+    sine, cosine = math.sin(root[2]), math.cos(root[2])
+    low_x, high_x, low_z, high_z = 0.0, 0.0, 0.0, 0.0
+    for i in range(0, places.shape[0], 3):
+        x, z = places[i] * cosine + places[i + 1] * sine, places[i + 1] * cosine - places[i] * sine
+        low_x, high_x, low_z, high_z = min(low_x, x), max(high_x, x), min(low_z, z), max(high_z, z)
+    around = math.hypot(max(sole.back, sole.ahead) + _BESIDE, sole.aside)
+    reach = 0.5 * max(high_x - low_x, high_z - low_z) + around
+    middle_x, middle_z = root[0] + 0.5 * (low_x + high_x), root[1] + 0.5 * (low_z + high_z)
+    return level_about(ground, middle_x, middle_z, reach, root[HEIGHT])
+
+
+@exact_kernel
 def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -> tuple[float, float]:
     """Height and slope of a swinging foot between the `places` (6,) where it stood and will, the part `w` of it over.
 
@@ -204,7 +221,10 @@ def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Flo
         root = roots[n]
         for side in range(2):
             w, at = stood_places(legs, scale, root, side, places), RISES + 2 * side
-            if w > 0.0:
+            level = _level_under(ground, sole, root, places[:6] if w > 0.0 else places[:3])
+            if level > _NONE:
+                height, slope = level, 0.0
+            elif w > 0.0:
                 height, slope = _swung(ground, sole, root, places, w)
             else:
                 height, slope = _stand(ground, sole, root, places[0], places[1], places[2])

@@ -23,6 +23,7 @@ STEEPEST = math.radians(30.0)  # of a surface that one walks on
 PLACE = 0.1  # metres between places that a way over the ground is looked at
 _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
+_EVEN, _ABOUT = 2e-4, 0.1  # metres by which what is level may differ; and a body's height from the ground about it
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
@@ -42,6 +43,8 @@ class Ground(NamedTuple):
     triangles: Floats  # (T, 9) x, z, height of a corner; x, z of the next two, all to the left; grade along x and z
     level: Bools  # (cells,) where the plane at height 0 is ground
     beyond: bool  # whether it is, outside of the grid
+    even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
+    evens: Floats  # (E,) heights at which the ground is level all over a cell, with nothing up to a step above
 
 
 class Sole(NamedTuple):
@@ -54,7 +57,7 @@ class Sole(NamedTuple):
 
 PLAIN = Ground(
     True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 9)),
-    np.zeros(0, np.bool_), True,
+    np.zeros(0, np.bool_), True, np.zeros(1, np.int64), np.zeros(0),
 )  # fmt: skip
 
 
@@ -115,6 +118,33 @@ def height_at(ground: Ground, x: float, z: float, near: float) -> float:
 
 
 @exact_kernel
+def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -> float:
+    """The height of the ground if it is one level as far as `reach` metres from a place, about the height `near`.
+
+    Minus infinity where it is not, or that is not known.
+    """
+    left, back = x - ground.corner[0], z - ground.corner[1]
+    low_x, high_x = math.floor((left - reach) / ground.cell), math.floor((left + reach) / ground.cell)
+    low_z, high_z = math.floor((back - reach) / ground.cell), math.floor((back + reach) / ground.cell)
+    found = _NONE
+    for ix in range(int(low_x), int(high_x) + 1):
+        for iz in range(int(low_z), int(high_z) + 1):
+            here, about = _NONE, near if found == _NONE else found
+            within = _EVEN if found > _NONE else _ABOUT
+            if 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]:
+                cell = ix * ground.shape[1] + iz
+                for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
+                    if abs(ground.evens[e] - about) <= within:
+                        here = ground.evens[e]
+            elif ground.beyond and abs(about) <= within:
+                here = 0.0
+            if here == _NONE:
+                return _NONE
+            found = here if found == _NONE else found
+    return found
+
+
+@exact_kernel
 def height_along(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
     """The ground at a place as one comes to it from `start` (x, height, z), step by step; minus infinity without any.
 
@@ -172,6 +202,10 @@ def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z:
     """
     if ground.plain:
         return 0.0
+    reach = _EASED + max(abs(x - start[0]), abs(z - start[2]))
+    level = level_about(ground, x, z, reach, start[1])
+    if level > _NONE:
+        return level
     middle = height_along(ground, start, x, z)
     total = middle
     for i in range(_AROUND):

@@ -18,8 +18,9 @@ Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 RISE = 0.005  # metres: what rises no higher from the plane is the plane
-_CELL = 0.25  # metres
+_CELL = 0.08  # metres
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
+_LEVEL, _SAME, _WHOLE = 1e-4, 2e-4, 0.9999  # grade, metres, share of a cell: what is level, as high, and covered
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
 
@@ -93,7 +94,14 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
     starts, members = _members(spans, wide, deep, count)
     begins = (float(least[0]), float(least[1]))
     level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
-    return Ground(False, STEP, begins, cell, (wide, deep), starts, members, _planes(triangles), level, floor is None)
+    planes = _planes(triangles)
+    even = np.zeros(wide * deep + 1, np.int64)
+    args = planes, starts, members, level, (begins[0], begins[1], cell), deep
+    _even(*args, even, np.empty(0), False)
+    np.cumsum(even, out=even)
+    heights = np.empty(int(even[-1]))
+    _even(*args, even, heights, True)
+    return Ground(False, STEP, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
 
 
 def _planes(triangles: Floats) -> Floats:
@@ -137,6 +145,82 @@ def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Lon
                 members[filled[cell]] = t
                 filled[cell] += 1
     return starts, members
+
+
+@exact_kernel
+def _even(
+    planes: Floats, starts: Longs, members: Longs, level: Bools, grid: tuple[float, float, float], deep: int,
+    counts: Longs, out: Floats, writes: bool,
+) -> None:  # fmt: skip
+    """Count the even heights of each cell (in `counts`, one further on), or write them to where these begin."""
+    x, z, side = grid
+    for cell in range(counts.shape[0] - 1):
+        found, corner = 0, (x + side * (cell // deep), z + side * (cell % deep))
+        own = members[starts[cell] : starts[cell + 1]]
+        if level[cell] and not _rises_above(planes, own, 0.0):
+            if writes:
+                out[counts[cell]] = 0.0
+            found += 1
+        for k in range(own.shape[0]):
+            height = planes[own[k], 2]
+            if abs(planes[own[k], 7]) + abs(planes[own[k], 8]) > _LEVEL or (level[cell] and abs(height) <= STEP):
+                continue
+            first = True
+            for j in range(k):
+                first = first and abs(planes[own[j], 2] - height) > _SAME
+            if not first or _rises_above(planes, own, height):
+                continue
+            covered = 0.0
+            for m in own:
+                if abs(planes[m, 7]) + abs(planes[m, 8]) <= _LEVEL and abs(planes[m, 2] - height) <= _SAME:
+                    covered += _area_in(planes[m], corner, side)
+            if covered >= _WHOLE * side * side:
+                if writes:
+                    out[counts[cell] + found] = height
+                found += 1
+        if not writes:
+            counts[cell + 1] = found
+
+
+@exact_kernel
+def _rises_above(planes: Floats, own: Longs, height: float) -> bool:
+    """Whether any of the triangles is higher than a height somewhere, and not everywhere by more than a step."""
+    for m in own:
+        t = planes[m]
+        second = t[2] + t[7] * (t[3] - t[0]) + t[8] * (t[4] - t[1])
+        third = t[2] + t[7] * (t[5] - t[0]) + t[8] * (t[6] - t[1])
+        if max(t[2], second, third) > height + _SAME and min(t[2], second, third) <= height + STEP + _SAME:
+            return True
+    return False
+
+
+@exact_kernel
+def _area_in(triangle: Floats, corner: tuple[float, float], side: float) -> float:
+    """The area of a triangle within a square, seen from above: cut at its four sides (Sutherland and Hodgman, 1974)."""
+    points, other, count = np.empty((8, 2)), np.empty((8, 2)), 3
+    for i, at in enumerate((0, 3, 5)):
+        points[i, 0], points[i, 1] = triangle[at], triangle[at + 1]
+    for edge in range(4):
+        axis, sign = edge % 2, 1.0 if edge < 2 else -1.0
+        bound, made = corner[axis] + (0.0 if edge < 2 else side), 0
+        for i in range(count):
+            j = (i + 1) % count
+            here, there = sign * (points[i, axis] - bound), sign * (points[j, axis] - bound)
+            if here >= 0.0:
+                other[made] = points[i]
+                made += 1
+            if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
+                share = here / (here - there)
+                for k in range(2):
+                    other[made, k] = points[i, k] + share * (points[j, k] - points[i, k])
+                made += 1
+        count = made
+        points[:count] = other[:count]
+    area = 0.0
+    for i in range(count):
+        j = (i + 1) % count
+        area += points[i, 0] * points[j, 1] - points[j, 0] * points[i, 1]
+    return 0.5 * abs(area)
 
 
 def _floor_cells(floor: FloorArea, corner: tuple[float, float], cell: float, shape: tuple[int, int]) -> Bools:
