@@ -113,17 +113,17 @@ def _is_number(value: object) -> bool:
     return math.isfinite(value) and abs(value) <= _LARGEST
 
 
-def parse_json(text: bytes, name: str) -> dict[str, Any]:
+def parse_json(text: bytes, name: str, nulls: bool = False) -> dict[str, Any]:
     """A JSON object from untrusted bytes; `name` stands for the file in messages. Raises `InputError`.
 
-    Its numbers are finite, and a member that is null is none: so whoever passes it on can count on both.
+    Its numbers are finite, and a member that is null is none (but with `nulls`): who passes it on can count on both.
     """
     if len(text) > _MAX_JSON_BYTES:
         raise InputError(f"{name}: the JSON part has {len(text) >> 20} MB: at most {_MAX_JSON_BYTES >> 20} MB are read")
     try:
         value = json.loads(
             text.decode("utf-8-sig").rstrip("\x00 \t\r\n"),
-            object_pairs_hook=_present,
+            object_pairs_hook=None if nulls else _present,
             parse_float=_finite,
             parse_constant=_not_a_number,
         )

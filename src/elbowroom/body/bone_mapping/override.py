@@ -30,7 +30,7 @@ def read_override(path: Path) -> Field:
 
 def parse_override(data: bytes, name: str) -> Field:
     """The same from bytes."""
-    return Field(parse_json(data, name), name)
+    return Field(parse_json(data, name, nulls=True), name)
 
 
 def override_nodes(override: Field, nodes: FileNodes) -> dict[str, int | None]:
