@@ -12,10 +12,12 @@ if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid as Humanoid
     from elbowroom.body.root import RootState as RootState
     from elbowroom.clips.clip import Clip as Clip
+    from elbowroom.clips.clip import motions_of as motions_of
     from elbowroom.control.body_check import BodyCheck as BodyCheck
     from elbowroom.control.controller import Controller as Controller
     from elbowroom.control.frame import Frame as Frame
     from elbowroom.control.frame import Phase as Phase
+    from elbowroom.control.lookahead import Lookahead as Lookahead
     from elbowroom.control.recording import Recorder as Recorder
     from elbowroom.errors import InputError as InputError
     from elbowroom.planning.command import Command as Command
@@ -43,6 +45,7 @@ _HOMES = {
     "Humanoid": "body.humanoid",
     "InputError": "errors",
     "LocalPlan": "planning.result",
+    "Lookahead": "control.lookahead",
     "Phase": "control.frame",
     "PlaceOptions": "world.places.options",
     "PlanStatus": "planning.result",
@@ -51,6 +54,7 @@ _HOMES = {
     "RootPath": "planning.root.path",
     "RootState": "body.root",
     "Scene": "world.scene",
+    "motions_of": "clips.clip",
     "natural_walk": "planning.goal",
     "register_planner": "planning.planner",
     "show": "server.notebook",

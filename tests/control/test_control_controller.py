@@ -9,6 +9,7 @@ from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
@@ -160,9 +161,12 @@ def test_impossible_steps_are_plain_errors(dt: float) -> None:
 
 def test_settings_out_of_range_are_plain_errors() -> None:
     scene = Scene.load("empty")
-    for name, value in {"queue_size": 1, "interval": 5.0, "seed": -1, "planner": "none"}.items():
+    for ahead in (Lookahead(queue_size=1), Lookahead(interval=5.0)):
         with pytest.raises(InputError):
-            Controller(HUMANOID, scene, **{name: value})  # type: ignore[arg-type]
+            Controller(HUMANOID, scene, ahead=ahead)
+    for seed, planner in ((-1, "exact"), (0, "none")):
+        with pytest.raises(InputError):
+            Controller(HUMANOID, scene, seed=seed, planner=planner)
 
 
 def test_a_start_in_an_obstacle_is_a_plain_error() -> None:

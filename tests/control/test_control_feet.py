@@ -12,6 +12,7 @@ from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from feet_walks import in_world
@@ -46,7 +47,8 @@ def slides(rows: Floats, roomy: Bools | None = None) -> float:
 
 def shown(scene: str, desk: LateDesk | None = None) -> Floats:
     """What is shown while commands follow on one another, in frames of uneven length."""
-    controller, rng, rows = Controller(HUMANOID, Scene.load(scene), desk=desk), np.random.default_rng(0), []
+    controller = Controller(HUMANOID, Scene.load(scene), ahead=Lookahead(desk=desk))
+    rng, rows = np.random.default_rng(0), []
     for k in range(12 * HELD):
         if desk is not None:
             desk.next_turn()

@@ -15,6 +15,7 @@ from elbowroom.control import planners as module
 from elbowroom.control.canned import canned_walk
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.memory import RootMemory
@@ -67,7 +68,7 @@ def make(monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
     def controller(outcomes: list[bool]) -> Controller:
         monkeypatch.setattr(module, "RootPlanner", FakeRootPlanner)
         monkeypatch.setattr(module, "make_planner", lambda *_: FakePlanner(iter(outcomes)))
-        return Controller(HUMANOID, Scene.load("empty"), queue_size=SIZE, interval=INTERVAL)
+        return Controller(HUMANOID, Scene.load("empty"), ahead=Lookahead(SIZE, INTERVAL))
 
     return controller
 
@@ -111,7 +112,7 @@ def test_flows_follow_the_figure(outcomes: list[bool]) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "RootPlanner", FakeRootPlanner)
         patch.setattr(module, "make_planner", lambda *_: FakePlanner(iter(outcomes)))
-        controller = Controller(HUMANOID, Scene.load("empty"), queue_size=SIZE, interval=INTERVAL)
+        controller = Controller(HUMANOID, Scene.load("empty"), ahead=Lookahead(SIZE, INTERVAL))
         flows = [controller.step(WALK, DT).phase for _ in range(300)]
     assert flows == naive_flows(outcomes, 300)
 

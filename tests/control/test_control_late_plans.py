@@ -11,6 +11,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.desk import Job
 from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.frame import Frame
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from late_desk import LateDesk
@@ -26,7 +27,7 @@ def late_walk(
     scene: str, turns: int, commands: list[Command], planner: str = "exact"
 ) -> tuple[Controller, list[Frame]]:
     desk = LateDesk(turns)
-    controller = Controller(HUMANOID, Scene.load(scene), planner=planner, desk=desk)
+    controller = Controller(HUMANOID, Scene.load(scene), planner=planner, ahead=Lookahead(desk=desk))
     frames = []
     for command in commands:
         desk.next_turn()
@@ -109,7 +110,7 @@ def test_the_same_late_turns_give_the_same_frames() -> None:
 
 def test_a_reset_forgets_the_plan_in_the_making() -> None:
     desk = LateDesk(10)
-    controller = Controller(HUMANOID, Scene.load("empty"), desk=desk)
+    controller = Controller(HUMANOID, Scene.load("empty"), ahead=Lookahead(desk=desk))
     start = controller.step(Command(), 0.0).q
     for _ in range(30):
         desk.next_turn()
@@ -172,7 +173,7 @@ class HiccupDesk(LateDesk):
 
 def test_a_plan_in_a_hurry_that_comes_too_late_is_soon_made_up_for() -> None:
     desk = HiccupDesk(5)
-    controller = Controller(HUMANOID, Scene.load("empty"), desk=desk)
+    controller = Controller(HUMANOID, Scene.load("empty"), ahead=Lookahead(desk=desk))
     turned, answered = Command(forward=1.0, strafe=1.0), 0
     for turn in range(3 * SECOND):
         desk.next_turn()
@@ -195,7 +196,7 @@ def test_what_is_planned_after_a_reset_is_what_was_planned_at_first() -> None:
         return shown
 
     desk = LateDesk(3)
-    controller = Controller(HUMANOID, Scene.load("d"), desk=desk)
+    controller = Controller(HUMANOID, Scene.load("d"), ahead=Lookahead(desk=desk))
     controller.prepare()
     first = crossing(controller, desk, 4 * SECOND)
     for asks in (True, False):

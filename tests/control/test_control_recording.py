@@ -18,6 +18,7 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.control import recording as recordings
 from elbowroom.control.controller import Controller
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.recording import MAGIC, STEP, STEPS_PER_CHUNK, Recorder, Recording, command_of, roots_of
 from elbowroom.control.replay import replay
 from elbowroom.errors import InputError
@@ -29,7 +30,7 @@ STEPS = 150
 
 
 def record(path: Path, steps: int = STEPS, scene: str = "empty") -> list[tuple[Command, float, np.ndarray]]:
-    controller = Controller(HUMANOID, Scene.load(scene), seed=3, queue_size=4)
+    controller = Controller(HUMANOID, Scene.load(scene), seed=3, ahead=Lookahead(4))
     rng = np.random.default_rng(1)
     shown = []
     with Recorder(path, controller) as recorder:

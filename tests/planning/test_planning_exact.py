@@ -14,6 +14,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -120,7 +121,7 @@ def low_beam() -> Scene:
 
 
 def test_it_stops_before_what_it_cannot_pass_and_walks_on_elsewhere(humanoid: Humanoid) -> None:
-    controller = Controller(humanoid, low_beam(), planner="exact", queue_size=5)
+    controller = Controller(humanoid, low_beam(), planner="exact", ahead=Lookahead(5))
     frames = [controller.step(FORWARD, DT) for _ in range(360)]
     assert min(frame.clearance for frame in frames) > 0.0
     assert frames[-1].stuck
@@ -135,7 +136,7 @@ def test_it_stops_before_what_it_cannot_pass_and_walks_on_elsewhere(humanoid: Hu
 @pytest.mark.parametrize("queue_size", [3, 7])
 def test_scene_d_is_crossed_straight_with_any_queue(humanoid: Humanoid, queue_size: int) -> None:
     scene = Scene.load("d")
-    controller = Controller(humanoid, scene, planner="exact", queue_size=queue_size)
+    controller = Controller(humanoid, scene, planner="exact", ahead=Lookahead(queue_size))
     frames: list[Frame] = []
     while not scene.finished(controller.root) and len(frames) < 900:
         frames.append(controller.step(FORWARD, DT))

@@ -22,7 +22,7 @@ class Moment(NamedTuple):
     """The avatar at one time."""
 
     root: Floats  # (7,) root state
-    upper: Floats  # (LOCAL,) waist, left arm, right arm, as planning keeps them
+    upper: Floats  # (LOCAL,) the local groups, as planning keeps them
     rotations: Floats  # (J, 4) normalised local rotations; the hips' own is in the root's axes
     hips: Floats  # (3,) the hips joint in the root's frame, metres
 

@@ -70,7 +70,7 @@ def _column(motion: BodyMotion, group: DofGroup, turns: Floats) -> Floats:
 
 
 def upper_body(motion: PlanningMotion) -> Floats:
-    """The local groups side by side: waist, left arm, right arm."""
+    """The local groups side by side (m, LOCAL), in the order of the table."""
     return side_by_side(motion.groups)
 
 

@@ -3,33 +3,33 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
-from elbowroom.clips.clip import Clip, motions_of
-from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, Frames, configuration
 from elbowroom.control.canned import standing_posture
-from elbowroom.control.desk import ImmediateDesk, PlanningDesk
+from elbowroom.control.desk import ImmediateDesk
 from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.loose import Hand, Loose, Thing
+from elbowroom.control.lookahead import STOCK_LOOKAHEAD, Lookahead
+from elbowroom.control.loose import Hand, Thing
 from elbowroom.control.neighbour import Neighbour, Walker
 from elbowroom.control.passing import expected, way_made
-from elbowroom.control.planners import Planners
+from elbowroom.control.planning_scene import PlanningScene
 from elbowroom.control.prediction import neighbour, slimmer
+from elbowroom.control.pushing import Pushing
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.stepping import Stepping
-from elbowroom.control.wayfinder import Answer, Question, Wayfinder
+from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.model.fitted_swing import fitted
@@ -69,32 +69,27 @@ class Controller:
         scene: Scene,
         *,
         planner: str = DEFAULT_PLANNER,
-        queue_size: int = 5,
-        interval: float = ControlSettings.interval,
         seed: int = 0,
         assist: bool = True,
         start: RootState | None = None,
-        desk: PlanningDesk | None = None,
-        swing: Clip | None = None,
-        dodge: Sequence[Clip] = (),
-        motions: MotionSet | None = None,
+        motions: MotionSet = STOCK,
+        ahead: Lookahead = STOCK_LOOKAHEAD,
     ) -> None:
         """Stand the humanoid at the scene's start, or at `start`.
 
-        It walks as in the clip `swing` and has learnt to do what the clips `dodge` show; `motions` stands for both.
+        It walks as `motions` say, and evades by them (`motions_of` makes them of clips). Plans lead so far `ahead`.
 
         Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
         """
         self.humanoid = humanoid  # who walks
         self.scene = scene  # where
-        self.settings = ControlSettings(planner, queue_size, interval, seed, assist)  # what it was told, in one object
+        self.settings = ControlSettings(planner, ahead.queue_size, ahead.interval, seed, assist)  # what it was told
         self.start = scene.start if start is None else start  # where it stands after a reset
-        self.motions = motions_of(swing, tuple(dodge)) if motions is None else motions  # how it walks and evades
-        self._errands = Errands(desk or ImmediateDesk())
-        self._wayfinder: Wayfinder
-        self._worn = fitted(self.motions, humanoid)
-        self._stepping = Stepping(humanoid, self._worn)
-        self._settle_in(scene, ())
+        self.motions = motions  # how it walks and evades
+        self._errands = Errands(ahead.desk or ImmediateDesk())
+        self._fitted = fitted(motions, humanoid)
+        self._stepping = Stepping(humanoid, self._fitted)
+        self._around = PlanningScene(humanoid, scene, self.settings, self._fitted)
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
 
@@ -102,29 +97,30 @@ class Controller:
         """Back to the start, as if newly made."""
         self._errands.forget()
         self.journey = None
-        if len(self._loose):
-            self._settle_in(self.scene, self.others)
+        if self._pushing.things:
+            self._settle_in(self.scene)
         else:
-            self._wayfinder = self._wayfinder.afresh()
+            self._around.forget()
         self._begin()
 
-    def _settle_in(self, standing: Scene, others: Sequence[Neighbour]) -> None:
-        """Check and plan among what stands: all of the scene, or all but what is loose."""
-        self._check = BodyCheck(self.humanoid, standing)
+    def _settle_in(self, standing: Scene) -> None:
+        """Check and plan among what stands now: all of the scene, or all but what is loose."""
+        others = self.others
+        self._around = PlanningScene(self.humanoid, standing, self.settings, self._fitted)
         self.others = others
-        self._planners = Planners(self.settings.planner, self.humanoid, standing, self._worn)
-        self._wayfinder = Wayfinder(self.settings, self._check, self._worn, self._planners)
-        self._standing = standing
-        self.__dict__.pop("navigator", None)
+
+    @property
+    def _check(self) -> BodyCheck:
+        return self._around.check
 
     def prepare(self) -> None:
         """Make the planners now, in the caller's thread, so that the first plan need not wait for that."""
-        self._planners.make()
+        self._around.planners.make()
 
-    @cached_property
+    @property
     def navigator(self) -> Navigator:
         """Finds ways in the scene, for `goto` and for who wants to find them in another thread."""
-        return Navigator(self.humanoid, self._standing)
+        return self._around.navigator
 
     def goto(self, place: Place | Spot, pace: Command = FORWARD) -> Journey:
         """Go to a place (x, z) or (x, height, z), with the following steps; a command that is not idle takes over.
@@ -143,17 +139,17 @@ class Controller:
     @property
     def things(self) -> Mapping[int, Thing]:
         """What was pushed since the start, by its number among the scene's standing obstacles."""
-        return self._loose.things
+        return self._pushing.things
 
     @property
     def surroundings(self) -> Scene:
         """The scene as it is now: what was pushed is where it is."""
-        return self._loose.surroundings(self._queue.time)
+        return self._pushing.scene_at(self._queue.time)
 
     @property
     def hand(self) -> Hand | None:
         """What is pushed now, and where to."""
-        return self._loose.hand
+        return self._pushing.hand
 
     def push(self, number: int, place: tuple[float, float]) -> None:
         """Push a standing obstacle over the ground, with the following steps, until it is at a place (x, z).
@@ -161,16 +157,17 @@ class Controller:
         It is told by its number in the scene, upright and small, moves at up to `loose.FASTEST`, and stops before the
         body that is shown. It stays where it is left, until `reset`. Raises `InputError` for what cannot be pushed.
         """
-        if self._loose.take(Hand(number, place)):
-            self._settle_in(self._loose.scene(), self.others)
-            self._check.loose = self._loose.at_rest(self._queue.time)
+        standing = self._pushing.take(Hand(number, place))
+        if standing is not None:
+            self._settle_in(standing)
+            self._pushing.rest(self._check, self._queue.time)
 
     def let_go(self) -> None:
         """Push nothing any more."""
-        self._loose.let_go()
+        self._pushing.let_go()
 
     def _begin(self) -> None:
-        self._loose = Loose(self.scene)
+        self._pushing = Pushing(self.scene)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._errands.begin()
         self._holding = Holding()
@@ -278,7 +275,7 @@ class Controller:
         self._stands_by = command.idle
         if not command.idle or not self.others or not self._assist:
             return command
-        shown, free_map = self._shown, self._standing.obstacles.free_map
+        shown, free_map = self._shown, self._around.scene.obstacles.free_map
         body = self._check.body(shown.root, shown.upper)
         return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
 
@@ -296,16 +293,9 @@ class Controller:
 
     def _move_things(self, dt: float) -> None:
         """What is loose goes on; who rests looks up."""
-        if not len(self._loose):
-            return
-        self._check.loose = self._loose.advance(self._queue.time, dt, self._left_alone)
-        if self._resting and self._loose.moves:
+        self._pushing.advance(self._check, self._shown, self._queue.time, dt)
+        if self._resting and self._pushing.moves:
             self._resting, self._next = False, Phase.PLAN
-
-    def _left_alone(self, thing: Moving, way: float) -> bool:
-        """Whether a thing may move so as it does on its track, `way` metres."""
-        first, last = thing.tracks[0].times.tolist()
-        return self._check.leaves_alone(thing, (self._shown.root, self._shown.upper), (first, last), way)
 
     def _choose_flow(self, command: Command) -> Phase:
         """Figure 4 (b): which flow this turn takes."""
@@ -341,26 +331,18 @@ class Controller:
         if self._holding.active and self._assist:
             held = Held(start.root, start.upper, self._holding.stance, self._clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        self._errands.ask(Question(query, self._assist, held, reserve), self._wayfinder.answer, self._queue)
+        self._errands.ask(Question(query, self._assist, held, reserve), self._around.wayfinder.answer, self._queue)
         self._take_plan(command)
 
     def _others_beside(self, start: Playback, time: float, command: Command) -> Moving:
         """The others' boxes; slimmer, where a motion starts within one: it is larger than the body that it holds."""
-        things = self._foreseen(start, time)
+        things = self._pushing.foreseen(self._check, start, self._queue.time, time)
         if not self.others:
             return things
         body = self._check.body(start.root, start.upper)
-        others = expected(self._walker(command), body, self.others, self._standing.obstacles.free_map)
+        others = expected(self._walker(command), body, self.others, self._around.scene.obstacles.free_map)
         clearance = self._check.clearance_from(others, start.root, start.upper, time)
         return things + (slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others)
-
-    def _foreseen(self, start: Playback, time: float) -> Moving:
-        """Where what is loose will be, for a plan that starts so, then."""
-
-        def clear(thing: Moving) -> bool:
-            return self._check.clearance_from(thing, start.root, start.upper, time) >= 0.0
-
-        return self._loose.foreseen(self._queue.time, time, clear)
 
     def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
         """When and from where to plan; where nothing is left to play, it is what is shown now."""

@@ -22,7 +22,7 @@ class KeyFrames(NamedTuple):
 
     times: Floats  # (m,) seconds
     roots: Floats  # (m, 7) root states
-    uppers: Floats  # (m, LOCAL) waist, left arm, right arm
+    uppers: Floats  # (m, LOCAL) the local groups side by side
 
 
 class Playback(NamedTuple):

@@ -10,6 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.recorded_things import obey, same_places
 from elbowroom.control.recording import ASSIST, RESTART, Recording, command_of
 from elbowroom.world.scene import Scene
@@ -53,12 +54,11 @@ def controller_for(recording: Recording, humanoid: Humanoid) -> Controller:
         humanoid,
         Scene.from_dict(header.scene, str(recording.path)),
         planner=settings.planner,
-        queue_size=settings.queue_size,
-        interval=settings.interval,
         seed=settings.seed,
         assist=settings.assist,
         start=header.start,
         motions=header.motions,
+        ahead=Lookahead(settings.queue_size, settings.interval),
     )
 
 

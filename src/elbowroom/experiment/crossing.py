@@ -12,6 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.errors import InputError
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.pacing import is_realtime, late_frames
@@ -106,11 +107,10 @@ def controller_for(
         humanoid,
         scene,
         planner=settings.planner,
-        queue_size=settings.queue_size,
         seed=settings.seed,
         start=start_for(scene, settings.seed),
         motions=motions,
-        desk=desk,
+        ahead=Lookahead(settings.queue_size, desk=desk),
     )
 
 

@@ -11,6 +11,7 @@ from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
 from elbowroom.control.journey import Journey
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.loose import Thing
 from elbowroom.control.settings import check_queue_size
 from elbowroom.errors import InputError
@@ -88,11 +89,10 @@ class Walk:
             self.avatar.humanoid,
             self.scene,
             planner=self.settings.planner,
-            queue_size=self.settings.queue_size,
             assist=self.settings.assist,
             start=place,
-            desk=self._desk,
             motions=self._motions,
+            ahead=Lookahead(self.settings.queue_size, desk=self._desk),
         )
 
     def _begin(self) -> None:

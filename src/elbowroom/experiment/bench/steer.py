@@ -13,6 +13,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.desk import ImmediateDesk, Job
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.wayfinder import Answer
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.steer_scenes import SteeredScene, steered_scenes, wanted_way
@@ -128,7 +129,7 @@ def amount(settings: SteerSettings) -> int:
 def steered_walk(humanoid: Humanoid, steered: SteeredScene, seconds: float, seed: int = 0) -> _Walked:
     """Steer an avatar through a scene until the finish, at most for `seconds`; from the start that the seed draws."""
     desk, hand = _TimedDesk(), steered.hand(steered.route)
-    controller = Controller(humanoid, steered.scene, desk=desk, start=start_for(steered.scene, seed))
+    controller = Controller(humanoid, steered.scene, start=start_for(steered.scene, seed), ahead=Lookahead(desk=desk))
     controller.prepare()
     stuck, touching, made, asked, frames = 0, 0, 0.0, 0.0, round(seconds / DT)
     for number in range(frames):

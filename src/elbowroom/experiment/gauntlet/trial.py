@@ -9,6 +9,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.lookahead import Lookahead
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course
 from elbowroom.experiment.gauntlet.user import CourseUser
@@ -64,9 +65,8 @@ class TrialResult:
 
 def controller_on(humanoid: Humanoid, course: Course, settings: TrialSettings) -> Controller:
     """The controller at the start of a course."""
-    return Controller(
-        humanoid, course.scene, planner=settings.planner, queue_size=settings.queue_size, seed=course.seed
-    )
+    ahead = Lookahead(settings.queue_size)
+    return Controller(humanoid, course.scene, planner=settings.planner, seed=course.seed, ahead=ahead)
 
 
 def walk_course(controller: Controller, course: Course, listener: Listener | None = None) -> TrialResult:
