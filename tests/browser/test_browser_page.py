@@ -22,6 +22,7 @@ if SHARED is not None:
     FILES.append(pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D"))
     FILES.append(pytest.param(SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments"))
 
+SMALL = (480, 320)  # drawn soon; for tests that look at no panel
 DROP = """
 ([name, text]) => {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -107,7 +108,7 @@ def test_menus_change_the_session(open_page: Open) -> None:
 
 @pytest.mark.parametrize("path", FILES)
 def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
-    live = open_page("scene=empty")
+    live = open_page("scene=empty", viewport=SMALL)
     live.page.evaluate(DROP, ["newcomer" + path.suffix, base64.b64encode(path.read_bytes()).decode()])
     state = live.wait(
         "s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60
@@ -120,11 +121,13 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
 
 def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     titles = "[...document.querySelectorAll('#avatar option')].map((option) => option.value)"
-    mine = open_page("scene=empty")
+    mine = open_page("scene=empty", viewport=SMALL)
     mine.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
     avatar = mine.wait("s.settings.avatar !== 'stock'", 60)["settings"]["avatar"]
-    assert avatar not in open_page("scene=empty").page.evaluate(titles)
-    open_page(f"scene=empty&avatar={avatar}").wait(f"s.settings.avatar === '{avatar}'")  # whoever is told may use it
+    assert avatar not in open_page("scene=empty", viewport=SMALL).page.evaluate(titles)
+    open_page(f"scene=empty&avatar={avatar}", viewport=SMALL).wait(
+        f"s.settings.avatar === '{avatar}'"
+    )  # whoever is told may use it
     mine.page.reload()
     mine.wait("s.settings && s.connected")
     assert avatar in mine.page.evaluate(titles)
@@ -153,7 +156,7 @@ def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:
 
 def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) -> None:
     with LiveServer() as server:
-        live = open_page("scene=c", server=server)
+        live = open_page("scene=c", viewport=SMALL, server=server)
         live.wait("s.scene === 'c'")
         live.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
         live.wait("s.settings.avatar !== 'stock'", 60)

@@ -72,7 +72,7 @@ def test_a_replay_is_filmed_to_its_end(open_page: Open) -> None:
     _walk_to(live, 1.0)
     live.page.keyboard.press("k")
     live.wait("s.replay")
-    live.page.locator("#replay .transport select").select_option("4")
+    live.page.locator("#replay .transport select").select_option("2")
     with live.page.expect_download() as download:
         live.page.locator("#replay .rec").click()
     assert download.value.suggested_filename.rpartition(".")[2] in ("mp4", "webm")

@@ -51,6 +51,7 @@ def test_without_ray_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch)
     assert "pip install 'elbowroom[cluster]'" in outcome.stderr
 
 
+@pytest.mark.long
 def test_the_benchmark_starts_a_cluster_and_ends_it() -> None:
     import ray
 

@@ -91,6 +91,7 @@ def test_courses_are_walked_as_in_processes_to_the_bit(workers: RayWorkers, tmp_
     assert run_gauntlet(settings, _Nobody(), tmp_path).results == far.results  # all lies in the log
 
 
+@pytest.mark.long
 def test_a_node_that_is_taken_away_and_one_that_comes(cluster: Any, workers: RayWorkers, told: list[str]) -> None:
     """The last test here, since it leaves another cluster."""
     gone = cluster.worker_nodes.copy().pop()

@@ -47,7 +47,7 @@ def test_cut_off_files(length: int) -> None:
     _load(SMALL[:length])
 
 
-@settings(CALM, max_examples=150)
+@settings(CALM, max_examples=60)
 @given(st.data())
 def test_a_wrong_value_anywhere_in_the_json(data: st.DataObject) -> None:
     content = copy.deepcopy(json_of(MESHED))

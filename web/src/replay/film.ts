@@ -5,6 +5,7 @@ const TYPES = [
 ] as const;
 const FRAMES_PER_SECOND = 30;
 const BITS_PER_SECOND = 8_000_000;
+const TAIL = 300; // milliseconds that the last picture stays: a slow machine has drawn none other
 
 export class Film {
   private recorder: MediaRecorder | null = null;
@@ -33,10 +34,13 @@ export class Film {
     this.recorder = recorder;
   }
 
-  /** Ends the film and hands it over. */
+  /** Ends the film with the picture that is there now, and hands it over. */
   end(): void {
-    this.recorder?.stop();
+    const { recorder } = this;
     this.recorder = null;
+    if (!recorder) return;
+    for (const track of recorder.stream.getVideoTracks()) (track as CanvasCaptureMediaStreamTrack).requestFrame();
+    window.setTimeout(() => recorder.stop(), TAIL);
   }
 }
 
