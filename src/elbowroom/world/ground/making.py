@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel
+from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.ground import PLAIN, STEEPEST, STEP, Ground
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
@@ -97,10 +98,10 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
     planes = _planes(triangles)
     even = np.zeros(wide * deep + 1, np.int64)
     args = planes, starts, members, level, (begins[0], begins[1], cell), deep
-    _even(*args, even, np.empty(0), False)
+    _even(*args, even, np.empty(0))
     np.cumsum(even, out=even)
     heights = np.empty(int(even[-1]))
-    _even(*args, even, heights, True)
+    _even(*args, even, heights)
     return Ground(False, STEP, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
 
 
@@ -150,10 +151,11 @@ def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Lon
 @exact_kernel
 def _even(
     planes: Floats, starts: Longs, members: Longs, level: Bools, grid: tuple[float, float, float], deep: int,
-    counts: Longs, out: Floats, writes: bool,
+    counts: Longs, out: Floats,
 ) -> None:  # fmt: skip
-    """Count the even heights of each cell (in `counts`, one further on), or write them to where these begin."""
+    """Count the even heights of each cell (in `counts`, one further on), or write them in `out` from there."""
     x, z, side = grid
+    writes = len(out) > 0
     for cell in range(counts.shape[0] - 1):
         found, corner = 0, (x + side * (cell // deep), z + side * (cell % deep))
         own = members[starts[cell] : starts[cell + 1]]
@@ -196,30 +198,18 @@ def _rises_above(planes: Floats, own: Longs, height: float) -> bool:
 
 @exact_kernel
 def _area_in(triangle: Floats, corner: tuple[float, float], side: float) -> float:
-    """The area of a triangle within a square, seen from above: cut at its four sides (Sutherland and Hodgman, 1974)."""
-    points, other, count = np.empty((8, 2)), np.empty((8, 2)), 3
+    """The area of a triangle within a square, seen from above."""
+    piece, other = np.zeros((8, 3)), np.zeros((8, 3))
     for i, at in enumerate((0, 3, 5)):
-        points[i, 0], points[i, 1] = triangle[at], triangle[at + 1]
-    for edge in range(4):
-        axis, sign = edge % 2, 1.0 if edge < 2 else -1.0
-        bound, made = corner[axis] + (0.0 if edge < 2 else side), 0
-        for i in range(count):
-            j = (i + 1) % count
-            here, there = sign * (points[i, axis] - bound), sign * (points[j, axis] - bound)
-            if here >= 0.0:
-                other[made] = points[i]
-                made += 1
-            if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
-                share = here / (here - there)
-                for k in range(2):
-                    other[made, k] = points[i, k] + share * (points[j, k] - points[i, k])
-                made += 1
-        count = made
-        points[:count] = other[:count]
+        piece[i, 0], piece[i, 2] = triangle[at], triangle[at + 1]
+    count = clipped(piece, 3, 0, corner[0], 1.0, other)
+    count = clipped(other, count, 2, corner[1], 1.0, piece)
+    count = clipped(piece, count, 0, corner[0] + side, -1.0, other)
+    count = clipped(other, count, 2, corner[1] + side, -1.0, piece)
     area = 0.0
     for i in range(count):
         j = (i + 1) % count
-        area += points[i, 0] * points[j, 1] - points[j, 0] * points[i, 1]
+        area += piece[i, 0] * piece[j, 2] - piece[j, 0] * piece[i, 2]
     return 0.5 * abs(area)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.jit import exact_kernel
+from elbowroom.world.clipping import clipped
 from elbowroom.world.places.place import Place
 
 Floats = NDArray[np.float64]
@@ -107,14 +108,14 @@ def _fill(triangles: Floats, level: Flags, width: int, depth: int, most: int, ou
         triangle = triangles[t]
         first, last = _range_of(triangle, 3, 0, width)
         for ix in range(first, last + 1):
-            corners = _clipped(triangle, 3, 0, float(ix), 1.0, part)
-            corners = _clipped(part, corners, 0, float(ix + 1), -1.0, strip)
+            corners = clipped(triangle, 3, 0, float(ix), 1.0, part)
+            corners = clipped(part, corners, 0, float(ix + 1), -1.0, strip)
             if corners == 0:
                 continue
             low_z, high_z = _range_of(strip, corners, 2, depth)
             for iz in range(low_z, high_z + 1):
-                left = _clipped(strip, corners, 2, float(iz), 1.0, part)
-                left = _clipped(part, left, 2, float(iz + 1), -1.0, piece)
+                left = clipped(strip, corners, 2, float(iz), 1.0, part)
+                left = clipped(part, left, 2, float(iz + 1), -1.0, piece)
                 if left == 0:
                     continue
                 if count < len(out):
@@ -132,27 +133,6 @@ def _range_of(points: Floats, count: int, axis: int, cells: int) -> tuple[int, i
     for i in range(1, count):
         least, most = min(least, points[i, axis]), max(most, points[i, axis])
     return max(0, min(cells - 1, int(least))), max(0, min(cells - 1, int(most)))
-
-
-@exact_kernel
-def _clipped(points: Floats, count: int, axis: int, at: float, side: float, out: Floats) -> int:
-    """The part of a polygon beyond a plane across an axis (before it, where `side` is -1); how many corners it has.
-
-    Sutherland and Hodgman, 1974.
-    """
-    made = 0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        here, there = side * (points[i, axis] - at), side * (points[j, axis] - at)
-        if here >= 0.0:
-            out[made] = points[i]
-            made += 1
-        if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
-            share = here / (here - there)
-            for k in range(3):
-                out[made, k] = points[i, k] + share * (points[j, k] - points[i, k])
-            made += 1
-    return made
 
 
 @exact_kernel
