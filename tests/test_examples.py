@@ -32,7 +32,8 @@ def run(name: str, monkeypatch: pytest.MonkeyPatch, *arguments: str) -> None:
 
 
 def test_every_example_is_tested_and_short() -> None:
-    assert {path.stem for path in EXAMPLES.glob("*.py")} == set(TOLD)
+    trained = {"train_on_walks"}  # with PyTorch, in the tests of datasets
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == set(TOLD) | trained
     for path in EXAMPLES.glob("*.py"):
         assert len(path.read_text("utf-8").splitlines()) <= LONGEST, path.name
 

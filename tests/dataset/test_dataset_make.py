@@ -18,12 +18,14 @@ pytest.importorskip("coal", reason="needs coal: pip install 'elbowroom[judge]'")
 import duckdb
 import pyarrow.parquet as pq
 
+from bvh_builder import BvhRecipe, write_bvh
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.cli.main import app
 from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
+from elbowroom.dataset.figures import Figures
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.manifest import Manifest
 from elbowroom.dataset.spec import DatasetSpec
@@ -31,6 +33,8 @@ from elbowroom.dataset.walk import WalkTask, draw
 from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import Processes
 from elbowroom.world.scene import Scene
+from made_walk import FPS, made_walk
+from place_builder import Boxes, write_place
 
 SPEC = DatasetSpec(
     walks=5, shard=2, seconds=2.0, places=("gauntlet:2", "doorway", "traffic"), steering=("straight", "key flips")
@@ -101,7 +105,7 @@ def test_rows_are_what_was_walked(made: Path) -> None:
         q, root = np.array(row["q"]), np.array(row["root"])
         roots = np.hstack([root, np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"]])
         frames = row["frames"]
-        assert len(q) == len(roots) == len(row["time"]) == len(row["near"]) == frames
+        assert len(q) == len(roots) == len(row["time"]) == len(row["near"]) == len(row["height"]) == frames
         assert np.diff(row["time"]) == pytest.approx(1.0 / row["fps"], abs=1e-5)
         skeleton = humanoid.skeleton
         there = [SMPL_BONES.index(bone) for bone in SMPL_BONES if skeleton.has(bone)]
@@ -137,6 +141,69 @@ def test_strangers_read_the_same(made: Path) -> None:
     assert (count, frames) == (table(made).num_rows, sum(table(made).column("frames").to_pylist()))
     assert first == table(made).column("q")[0].as_py()[0][3]
     assert pq.read_schema(next(made.glob("*.parquet"))).equals(SCHEMA)
+
+
+def test_hugging_face_reads_the_same(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its library, in a process of its own: it keeps what it read in a cache, and asks nobody outside."""
+    monkeypatch.setenv("HF_HOME", str(tmp_path))
+    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    monkeypatch.setenv("HF_DATASETS_OFFLINE", "1")
+    program = (
+        "import sys, json, datasets\n"
+        "datasets.disable_progress_bars()\n"
+        "walks = datasets.load_dataset(sys.argv[1], split='train')\n"
+        "print(json.dumps([walks['walk'][:], walks[0]['q'][1], sorted(walks.column_names)]))\n"
+    )
+    outcome = subprocess.run([sys.executable, "-c", program, str(made)], capture_output=True, text=True, check=True)
+    numbers, posture, names = json.loads(outcome.stdout.splitlines()[-1])
+    assert numbers == table(made).column("walk").to_pylist()
+    assert posture == table(made).column("q")[0].as_py()[1]
+    assert names == sorted(column.name for column in COLUMNS)
+
+
+def test_pytorch_trains_on_it(made: Path) -> None:
+    pytest.importorskip("torch", reason="needs PyTorch")
+    example = Path(__file__).parents[2] / "examples" / "train_on_walks.py"
+    outcome = subprocess.run([sys.executable, str(example), str(made)], capture_output=True, text=True, check=True)
+    errors = [float(line.split()[2]) for line in outcome.stdout.splitlines()]
+    assert len(errors) == 5
+    assert errors[-1] < 0.5 * errors[0]
+
+
+def test_tours_clips_and_models(tmp_path: Path) -> None:
+    """Who tours a model of a place, walking as in a clip: the rows name both and hold neither."""
+    (tmp_path / "clip.bvh").write_bytes(write_bvh(made_walk(), BvhRecipe(fps=FPS)))
+    boxes: Boxes = {"Floor": ((0, -0.1, 0), (8.0, 0.2, 8.0)), "Table": ((1.5, 0.45, 1.5), (0.6, 0.9, 0.6))}
+    write_place(tmp_path / "room.glb", boxes)
+    spec = {
+        "walks": 1, "seconds": 4, "places": ["room.glb"], "swings": ["clip.bvh"], "steering": ["tour"],
+    }  # fmt: skip
+    (tmp_path / "spec.json").write_text(json.dumps(spec))
+    make_dataset(DatasetSpec.load(tmp_path / "spec.json"), tmp_path / "out", Here())
+    (row,) = table(tmp_path / "out").to_pylist()
+    assert (row["place"], row["swing"], row["steering"]) == ("room.glb", "clip.bvh", "tour")
+    assert str(tmp_path) not in json.dumps(row)
+    model = json.loads(row["scene"])["place"]
+    assert model["file"] == "room.glb"
+    assert not {"parts", "data"} & set(model)
+    root = np.array(row["root"])
+    assert np.ptp(root[:, :2], axis=0).max() > 1.0
+    assert np.abs(row["height"]).max() < 0.05
+    assert "clip.bvh" in (tmp_path / "out" / "README.md").read_text()
+
+
+def test_the_report_counts_every_frame(made: Path, tmp_path: Path) -> None:
+    page = tmp_path / "walks.html"
+    outcome = CliRunner().invoke(app, ["dataset", "report", str(made), "-o", str(page), "-q"])
+    assert outcome.exit_code == 0, outcome.output
+    rows = table(made).to_pylist()
+    near = np.concatenate([row["clearance"] for row in rows])
+    assert f"{100.0 * np.mean(near < 0.045):.1f}" <= outcome.stdout.split("5 cm")[1].split("%")[0].strip()
+    text = page.read_text()
+    assert f"{len(rows)} walks" in text
+    assert text.count('class="scene"') == len(rows)
+    assert text.count('class="plot"') == len(Figures().all)
+    assert "http" not in text.replace("http://www.w3.org", "")
 
 
 def test_motion_is_small(tmp_path: Path) -> None:
@@ -194,6 +261,7 @@ def test_draws_depend_on_nothing_but_seed_and_number() -> None:
         ({"places": ["gauntlet:x"]}, "is not as gauntlet:3"),
         ({"places": ["gauntlet:9"]}, "level"),
         ({"steering": ["by foot"]}, "'by foot' is none of straight"),
+        ({"swings": []}, "swings: give 1 to"),
         ({"speed": 3}, "'speed' is none of walks"),
         ({"seconds": True}, "seconds: 'True' is not of the kind"),
         ([], "is no JSON object"),

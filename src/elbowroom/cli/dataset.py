@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = (
     "Examples:  elbowroom dataset examples/dataset.json -o walks --walks 100  |  elbowroom dataset check walks  |  "
-    "elbowroom dataset check walks --show 7"
+    "elbowroom dataset check walks --show 7  |  elbowroom dataset report walks"
 )
 FELL_SHORT = 1
 
@@ -118,6 +118,26 @@ def check(
         rows = {"files": f"{found.files}", "walks": f"{found.walks}, {found.walked} walked again"}
         print_row(f"{folder}: {'whole' if not found.faults else f'{len(found.faults)} faults'}", rows)
     raise typer.Exit(FELL_SHORT if found.faults else 0)
+
+
+@dataset.command(epilog=EXAMPLES)
+def report(
+    folder: Annotated[Path, typer.Argument(help="Of a dataset.")],
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Page that is written.")] = Path("walks.html"),
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Draw how near, how fast and in which postures is walked, and some walks from above, on one page."""
+    _check_installed()
+    from elbowroom.dataset.report import write_report
+
+    with time_left_bar("Files", quiet) as move:
+        figures = write_report(folder, out, move)
+    rows = {
+        "nearer than 5 cm": f"{figures.clearance.share(0.0, 5.0):.1%} of all frames",
+        "standing": f"{figures.speed.share(0.0, 0.05):.1%}",
+    }
+    print_row(str(out), rows)
 
 
 def _show(spec: "DatasetSpec", walk: int) -> None:

@@ -43,7 +43,7 @@ judged every walk 240 times a second; in those that are here the body touches no
 
 Made by elbowroom {manifest.made_with.get("version", "")}, planner `{spec.planner}`, from seed {spec.seed}.
 {spec.walks} walks were drawn from the places {_listed(spec.places)}; the avatars {_listed(spec.avatars)};
-the ways of steering {_listed(tuple(dict.fromkeys(spec.steering)))}.
+the walks {_listed(spec.swings)}; the ways of steering {_listed(tuple(dict.fromkeys(spec.steering)))}.
 
 Left out:
 

@@ -11,7 +11,7 @@ from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.errors import InputError
 from elbowroom.experiment.machine import program_digest
 
-FORMAT, VERSION = "elbowroom-dataset", 1
+FORMAT, VERSION = "elbowroom-dataset", 2
 FILE = "manifest.json"
 
 

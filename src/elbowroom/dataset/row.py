@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 Row = dict[str, Any]  # by the names of the columns: numbers, texts, arrays with a row for each frame, lists
 
 _NEAR = 3.0  # metres
+_GEOMETRY = ("parts", "data", "floor")  # of a place in a scene's document
 
 
 def row_of(
@@ -47,17 +48,19 @@ def row_of(
         "walk": number,
         "place": _named(drawn.place),
         "avatar": _named(drawn.avatar),
+        "swing": _named(drawn.swing),
         "steering": drawn.steering,
         "seed": drawn.seed,
         "fps": fps,
         "frames": len(frames),
         "reached": scene.finished(RootState.of(steps[-1][1].root)),
         "stuck_frames": sum(frame.stuck for _, frame in steps),
-        "scene": json.dumps(scene.to_dict(), separators=(",", ":"), sort_keys=True),
+        "scene": json.dumps(_document(scene), separators=(",", ":"), sort_keys=True),
         "obstacles": list(scene.obstacles.names),
         "time": times,
         "command": np.array([_wish(command) for command, _ in kept]),
         "root": roots[:, :HEIGHT],
+        "height": roots[:, HEIGHT],
         "feet": roots[:, ROOT_STATE:] if roots.shape[1] > ROOT_STATE else np.zeros((len(roots), 2 * FOOT)),
         "q": q,
         "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
@@ -67,6 +70,14 @@ def row_of(
         "nearest": _nearest(humanoid, scene, q, roots, times),
         "near": [_near(scene, root) for root in roots],
     }
+
+
+def _document(scene: Scene) -> dict[str, Any]:
+    """The scene's JSON; a model of a place is named by its file and sum, and not copied."""
+    document = scene.to_dict()
+    if "place" in document:
+        document["place"] = {name: told for name, told in document["place"].items() if name not in _GEOMETRY}
+    return document
 
 
 def _wish(command: Command) -> tuple[float, float, float, float]:

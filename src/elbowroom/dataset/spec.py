@@ -23,7 +23,7 @@ _LONGEST = 600.0  # seconds of a walk
 
 @dataclass(frozen=True)
 class DatasetSpec:
-    """Each walk draws one of the places, avatars and steerings by its number and the seed.
+    """Each walk draws one of the places, avatars, swings and steerings by its number and the seed.
 
     Raises `InputError` for what is out of range or unknown.
     """
@@ -33,6 +33,7 @@ class DatasetSpec:
     fps: int = 30  # frames a second: 60, 30 or 20
     places: tuple[str, ...] = ("gauntlet:3",)  # random courses of a level, stock scenes by name, files of scenes
     avatars: tuple[str, ...] = (STOCK,)  # or files
+    swings: tuple[str, ...] = (STOCK,)  # or motions that are walked as, FILE or FILE#CLIP
     steering: tuple[str, ...] = ("straight",)  # see `hands`
     seconds: float = 20.0  # at most, of each walk
     planner: str = DEFAULT_PLANNER
@@ -50,7 +51,7 @@ class DatasetSpec:
             raise InputError(f"fps: {self.fps} is none of {', '.join(map(str, RATES))}")
         if not 1.0 <= self.seconds <= _LONGEST:
             raise InputError(f"seconds: {self.seconds:g} is not between 1 and {_LONGEST:g}")
-        for name in ("places", "avatars", "steering"):
+        for name in ("places", "avatars", "swings", "steering"):
             if not 1 <= len(getattr(self, name)) <= _MOST_CHOICES:
                 raise InputError(f"{name}: give 1 to {_MOST_CHOICES}")
         for place in self.places:
@@ -91,9 +92,8 @@ class DatasetSpec:
         def found(name: str) -> str:
             return str(folder / name) if "." in name and not Path(name).is_absolute() else name
 
-        return type(self)(
-            **asdict(self) | {"places": tuple(map(found, self.places)), "avatars": tuple(map(found, self.avatars))}
-        )
+        lists = {name: tuple(map(found, getattr(self, name))) for name in ("places", "avatars", "swings")}
+        return type(self)(**asdict(self) | lists)
 
 
 def level(place: str) -> int | None:

@@ -9,9 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.clips.clip import Clip, motions_of
+from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.dataset.hands import HANDS, Way
+from elbowroom.dataset.hands import HANDS, TOUR, Way
 from elbowroom.dataset.row import Row, row_of
 from elbowroom.dataset.spec import STOCK, DatasetSpec, level
 from elbowroom.experiment.crossing import DT, start_for
@@ -33,6 +35,7 @@ class Draw(NamedTuple):
     avatar: str
     steering: str
     seed: int
+    swing: str = STOCK
 
 
 class Setting(NamedTuple):
@@ -48,7 +51,19 @@ def draw(spec: DatasetSpec, number: int) -> Draw:
     rng = np.random.default_rng([spec.seed, number])
     lists = (spec.places, spec.avatars, spec.steering)
     place, avatar, steering = (choices[int(rng.integers(len(choices)))] for choices in lists)
-    return Draw(place, avatar, steering, int(rng.integers(2**31)))
+    seed = int(rng.integers(2**31))
+    return Draw(place, avatar, steering, seed, spec.swings[int(rng.integers(len(spec.swings)))])
+
+
+@dataclass(frozen=True)
+class SwingFile:
+    """The motions of who walks as in a clip, FILE or FILE#CLIP; `stock` are the stock ones."""
+
+    name: str
+
+    def open(self) -> MotionSet:
+        """Read it."""
+        return motions_of(None if self.name == STOCK else Clip.load(self.name))
 
 
 @dataclass(frozen=True)
@@ -60,10 +75,10 @@ class WalkTask:
 
     @property
     def things(self) -> tuple[Thing[Any], ...]:
-        """Avatar, and the scene unless it is made by a seed."""
+        """Avatar and motions, and the scene unless it is made by a seed."""
         drawn = draw(self.spec, self.number)
         scene = () if level(drawn.place) is not None else (NamedScene(drawn.place),)
-        return (_avatar(drawn.avatar), *scene)
+        return (_avatar(drawn.avatar), SwingFile(drawn.swing), *scene)
 
     def run(self) -> Row | str:
         """Walk and judge."""
@@ -99,21 +114,24 @@ def setting_of(drawn: Draw) -> Setting:
 def controller_of(spec: DatasetSpec, drawn: Draw, setting: Setting) -> Controller:
     """The controller at the start of a walk."""
     start = setting.scene.start if setting.way.line is not None else start_for(setting.scene, drawn.seed)
-    return Controller(setting.humanoid, setting.scene, planner=spec.planner, seed=drawn.seed, start=start)
+    motions = opened(SwingFile(drawn.swing))
+    return Controller(
+        setting.humanoid, setting.scene, planner=spec.planner, seed=drawn.seed, start=start, motions=motions
+    )
 
 
 def steps_of(
     spec: DatasetSpec, drawn: Draw, setting: Setting, controller: Controller | None = None
 ) -> Iterator[tuple[Command, Frame]]:
-    """The walk, 60 frames a second: until the finish, or its time is over."""
+    """The walk, 60 frames a second: until the finish, or its time is over; a tour goes on past the finish."""
     controller = controller_of(spec, drawn, setting) if controller is None else controller
-    hand = HANDS[drawn.steering](setting.way, np.random.default_rng([drawn.seed, 1]), DT)
+    hand = HANDS[drawn.steering](setting.way, controller, np.random.default_rng([drawn.seed, 1]))
     frame = None
     for number in range(round(spec.seconds / DT)):
         command = hand(number * DT, controller.root, frame is not None and frame.stuck)
         frame = controller.step(command, DT)
         yield command, frame
-        if setting.scene.finished(controller.root):
+        if drawn.steering != TOUR and setting.scene.finished(controller.root):
             return
 
 

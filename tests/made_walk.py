@@ -1,0 +1,50 @@
+"""Our own gait along a straight line, as if it had been captured."""
+
+import numpy as np
+
+from bvh_builder import BONES
+from elbowroom.body.kinematics import body_model, hips_position, local_rotations
+from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.root import RootState
+from elbowroom.clips.body_motion import BodyMotion
+from elbowroom.geometry import quaternion
+
+HUMANOID = proportional_humanoid(1.7)
+SKELETON = HUMANOID.skeleton
+FPS, PACE, SPEED = 60.0, 0.9, 1.1  # frames a second, strides a second, m/s
+
+
+def upper_at(phases: np.ndarray) -> np.ndarray:
+    """A made-up upper body (n, 13) in time with the stride."""
+    angle = 2.0 * np.pi * phases
+    waves = [0.1 + 0.05 * np.cos(angle), 0.1 * np.sin(angle), 0.0 * angle]
+    for shift in (0.0, np.pi):
+        waves += [
+            0.4 * np.sin(angle + shift),
+            0.2 + 0.05 * np.cos(angle),
+            0.1 * np.cos(angle),
+            0.5 + 0.2 * np.sin(angle),
+        ]
+    waves += [0.1 + 0.1 * np.sin(angle), 0.2 * np.cos(angle)]
+    return np.stack(waves, axis=1)
+
+
+def made_walk(strides: float = 3.0, first_phase: float = 0.3, *, on_the_spot: bool = False) -> BodyMotion:
+    """Our own gait along a straight line, as if it had been captured."""
+    model = body_model(HUMANOID)
+    times = np.arange(round(strides / PACE * FPS) + 1) / FPS
+    phases = first_phase + PACE * times
+    states = [RootState(0.5, SPEED * t, 0.0, SPEED, 0.0, 0.0, p).as_array() for t, p in zip(times, phases, strict=True)]
+    uppers = upper_at(phases)
+    index = [SKELETON.index(bone) for bone in BONES]
+    turns, hips = [], []
+    for state, upper in zip(states, uppers, strict=True):
+        q = np.concatenate([state[:3], upper])
+        local = local_rotations(model, q, state)
+        for joint in range(1, len(local)):
+            local[joint] = quaternion.multiply(local[SKELETON.parents[joint]], local[joint])
+        turns.append(local[index])
+        at = hips_position(model, q, state)
+        hips.append(at + np.array([state[0], 0.0, 0.0 if on_the_spot else state[1]]))
+    soles = np.array([[[x, 0.0, -0.06], [x, 0.0, 0.15]] for x in (0.1, -0.1)])
+    return BodyMotion("made", BONES, SKELETON.positions[index], 1.0 / FPS, np.array(turns), np.array(hips), soles)
