@@ -53,7 +53,7 @@ def test_a_scene_is_built_by_keys_alone_checked_and_gone_through_by_its_tour(ope
     live.page.get_by_label("Title of the scene").fill("By keys")
     live.page.get_by_label("Title of the scene").press("Enter")
     live.page.locator("#build .board").focus()
-    for z, view in (("1", "side"), ("1.6", "front")):
+    for z, view in (("1", "side"), ("4", "front")):
         keyboard.press("s")
         live.page.get_by_label("Z (m)").fill(z)
         live.page.get_by_label("Seen from").select_option(view)
@@ -68,7 +68,7 @@ def test_a_scene_is_built_by_keys_alone_checked_and_gone_through_by_its_tour(ope
     live.wait("s.tour === 0 && s.view === 'side'")
     assert "at 1" in live.page.locator("#notices").inner_text()
     live.wait("s.tour === 1 && s.view === 'front' && s.root.z > 0.8")
-    live.wait("s.tour === null && s.root.z > 1.4")
+    live.wait("s.tour === null && s.root.z > 3.5")
 
 
 def test_a_scene_is_built_with_the_mouse(open_page: Open) -> None:
@@ -160,3 +160,36 @@ def test_all_of_it_can_be_reached_on_a_phone(open_page: Open, size: tuple[int, i
     live.page.touchscreen.tap(board["x"] + board["width"] / 2, board["y"] + 12)
     live.page.locator("#build .close").click()
     live.wait("s.build === null && !s.settings.paused")
+
+
+def test_two_fingers_zoom_and_move_the_board_and_place_nothing(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(390, 844), has_touch=True)
+    live.page.locator("#menu-button").tap()
+    live.page.locator("#build-open").tap()
+    live.wait("s.build && !s.build.things.length")
+    live.settle()
+    live.page.get_by_role("button", name=re.compile("^Cylinder")).tap()
+    board = live.page.locator("#build .board")
+    box = board.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    wire = live.page.context.new_cdp_session(live.page)
+
+    def fingers(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": at[0], "y": at[1], "id": n} for n, at in enumerate(places)]
+        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def shown() -> list[float]:
+        return [float(number) for number in board.get_attribute("viewBox").split()]
+
+    before = shown()
+    fingers("touchStart", (x - 40, y))
+    fingers("touchStart", (x - 40, y), (x + 40, y))
+    for k in range(1, 5):
+        fingers("touchMove", (x - 40 - 10 * k, y), (x + 40 + 10 * k, y))
+    fingers("touchEnd")
+    after = shown()
+    assert after[2] == pytest.approx(0.5 * before[2], rel=0.02)
+    assert after[0] + after[2] / 2 == pytest.approx(before[0] + before[2] / 2, abs=0.05)
+    assert live.state()["build"]["things"] == []
+    live.page.touchscreen.tap(x, y)
+    live.wait("s.build.things.length === 1")

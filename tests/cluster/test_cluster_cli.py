@@ -16,7 +16,7 @@ pytestmark = pytest.mark.xdist_group("cluster")
     ("arguments", "words"),
     [
         (["gauntlet", "--cluster", "no such"], "neither `local` nor an address"),
-        (["table1", "--cluster", "127.0.0.1:1"], "--cluster 127.0.0.1:1: "),
+        (["table1", "--cluster", "127.0.0.1:1"], "--cluster 127.0.0.1:1: no cluster answers: "),
         (["bench", "cluster", "--workers", "0"], "workers (0,): each is 1 to 256"),
         (["bench", "cluster", "--workers", "x"], "workers 'x': whole numbers"),
     ],
@@ -32,6 +32,7 @@ def test_wrong_clusters_are_one_line(arguments: list[str], words: str) -> None:
     ("arguments", "words"),
     [
         (["--cluster", "no such"], "neither `local` nor an address"),
+        (["--cluster", "127.0.0.1:1"], "or give `local`"),
         (["--avatar", "missing.vrm"], "--avatar missing.vrm: No such file"),
         (["--scene", "nowhere"], "nowhere"),
         (["--port", "99999"], "--port 99999"),

@@ -2,10 +2,11 @@ import { describe, expect, it } from "vitest";
 import { documentOf, nameOf, planOf } from "../src/builder/document";
 import { Drafts } from "../src/builder/drafts";
 import { Editor } from "../src/builder/editor";
-import { atPace, copied, extended, moved, paceOf, placed, removed, scaledBy, turnedBy, yawOf } from "../src/builder/edits";
+import { atPace, copied, extended, moved, paceOf, placed, removed, scaledBy, stopped, turnedBy, yawOf } from "../src/builder/edits";
 import { History } from "../src/builder/history";
 import { linkOf, sceneIn } from "../src/builder/link";
 import { convexHull, inWorld, onBoard, outline } from "../src/builder/outline";
+import { Pinch } from "../src/builder/pinch";
 import { emptyPlan, UPRIGHT, type Plan } from "../src/builder/plan";
 import { previewOf } from "../src/builder/preview";
 import { fresh, halfSize, KINDS } from "../src/builder/shapes";
@@ -29,6 +30,13 @@ describe("a plan and its document", () => {
     expect(byName(back)).toEqual(byName(plan));
     expect({ ...back, things: [] }).toEqual({ ...plan, things: [] });
     expect(documentOf(plan).moving).toHaveLength(1);
+  });
+
+  it("keeps the floors of stops, and which of them are left open", () => {
+    const open = stopped(stopped(emptyPlan("Floors"), 1, 2) ?? emptyPlan(""), 3, 4) ?? emptyPlan("");
+    const plan = moved(open, { what: "stop", index: 1 }, [0, 2.5, 0]);
+    expect(documentOf(plan).tour?.map(({ position }) => position)).toEqual([[1, 2], [3, 2.5, 4]]);
+    expect(planOf(documentOf(plan)).tour).toEqual(plan.tour);
   });
 
   it("has a name that a file can have", () => {
@@ -222,5 +230,19 @@ describe("drafts", () => {
       store.setItem("elbowroom.drafts", broken);
       expect(new Drafts(store).all()).toEqual([]);
     }
+  });
+});
+
+describe("two fingers", () => {
+  it("pull what is between them, and one does not", () => {
+    const pinch = new Pinch();
+    pinch.down(1, [100, 100]);
+    expect(pinch.move(1, [110, 100])).toBeNull();
+    pinch.down(2, [210, 100]);
+    expect(pinch.move(2, [310, 140])).toEqual({ from: [160, 100], to: [210, 120], apart: Math.hypot(200, 40) / 100 });
+    pinch.up(1);
+    expect(pinch.on).toBe(false);
+    expect(pinch.move(2, [0, 0])).toBeNull();
+    expect(pinch.move(3, [0, 0])).toBeNull();
   });
 });

@@ -45,6 +45,16 @@ beforeEach(() => {
 
 afterEach(() => vi.unstubAllGlobals());
 
+describe("a session that lost its server", () => {
+  it("goes on as it was: paused, or slow", () => {
+    opened();
+    expect(FakeSocket.last.sent.filter(({ type }) => type === "clock")).toEqual([]);
+    FakeSocket.last.say({ ...settings("a"), paused: true, speed: 0.25 });
+    FakeSocket.last.say(hello);
+    expect(FakeSocket.last.sent.find(({ type }) => type === "clock")).toEqual({ type: "clock", paused: true, speed: 0.25 });
+  });
+});
+
 describe("a session that asks for a scene", () => {
   it("knows that it is on its way until the server shows it", () => {
     const session = opened();

@@ -10,18 +10,18 @@ const walking = { epoch: 1, forward: 1.1, lateral: 0, turn: 0 };
 describe("steps", () => {
   it("are heard where a foot comes down, and only there", () => {
     const watch = new StepWatch();
-    const heard = [left | right, left, left, left | right, right, left | right, left | right].map((flags) => watch.update({ ...walking, flags }) > 0);
-    expect(heard).toEqual([false, false, false, true, false, true, false]);
+    const heard = [left | right, left, left, left | right, right, left | right, left | right].map((flags) => watch.update({ ...walking, flags })?.feet ?? []);
+    expect(heard).toEqual([[], [], [], ["right"], [], ["left"], []]);
   });
 
   it("are light on the spot, and none across a jump", () => {
     const watch = new StepWatch();
     watch.update({ ...walking, flags: left });
-    expect(watch.update({ ...walking, epoch: 2, flags: left | right })).toBe(0);
+    expect(watch.update({ ...walking, epoch: 2, flags: left | right })).toBeNull();
     watch.update({ ...walking, epoch: 2, flags: right });
-    expect(watch.update({ ...walking, epoch: 2, forward: 0, flags: left | right })).toBeGreaterThan(0);
+    expect(watch.update({ ...walking, epoch: 2, forward: 0, flags: left | right })?.speed).toBeGreaterThan(0);
     watch.update({ ...walking, epoch: 2, flags: right });
-    expect(watch.update({ ...walking, epoch: 2, forward: 2, flags: left | right })).toBeGreaterThan(1.9);
+    expect(watch.update({ ...walking, epoch: 2, forward: 2, flags: left | right })?.speed).toBeGreaterThan(1.9);
   });
 
   it("are louder when faster, and duller and quieter on the field", () => {

@@ -6,6 +6,7 @@ import { chosenLanguage, languageOf, LANGUAGES } from "../src/texts/language";
 import { PHRASES } from "../src/texts/phrases";
 import { TABLE } from "../src/texts/table";
 import { helpSections } from "../src/ui/help_sections";
+import { sceneTitle } from "../src/texts/scene_titles";
 import { filled } from "../src/texts/texts";
 
 const places = (pattern: string) => [...pattern.matchAll(/\{\d\}/g)].map(String).sort();
@@ -55,6 +56,18 @@ describe("the phrases", () => {
     const said = Object.values(sources).flatMap((source) => [...source.matchAll(/worded\("([^"]+)"\)/g)].map((found) => found[1] ?? ""));
     expect(said.length).toBeGreaterThan(20);
     expect(said.filter((english) => !(english in PHRASES))).toEqual([]);
+  });
+
+  it("word the titles of the scenes that come along, and of courses", () => {
+    const scenes = import.meta.glob<{ title: string }>("../../src/elbowroom/world/data/scenes/*.json", { import: "default", eager: true });
+    const titles = Object.values(scenes).map(({ title }) => title);
+    expect(titles.length).toBeGreaterThan(5);
+    const course = import.meta.glob<string>("../../src/elbowroom/experiment/gauntlet/course.py", { query: "?raw", import: "default", eager: true });
+    const kinds = [...(/_TITLES = (.*)/.exec(Object.values(course)[0] ?? "")?.[1] ?? "").matchAll(/"([^"]+)"/g)].map((found) => found[1] ?? "");
+    expect(kinds.length).toBe(5);
+    expect([...titles, ...kinds].filter((english) => !(english in PHRASES))).toEqual([]);
+    expect(sceneTitle("Gauntlet, level 5 (hardly any room), seed 9")).toBe("Gauntlet, level 5 (hardly any room), seed 9");
+    expect(sceneTitle("My own")).toBe("My own");
   });
 
   it("are no longer English", () => {

@@ -3,8 +3,8 @@ import type { Going, Stop } from "../src/generated/messages";
 import { GuidedTour } from "../src/going/tour";
 
 const STOPS: readonly Stop[] = [
-  { position: [0, 1], view: "side", say: "Here it begins.", seconds: 2 },
-  { position: [1, 4], view: "", say: "", seconds: 0 },
+  { position: [0, 1], height: null, view: "side", say: "Here it begins.", seconds: 2 },
+  { position: [1, 4], height: 2.5, view: "", say: "", seconds: 0 },
 ];
 
 function toured() {
@@ -27,13 +27,13 @@ test("a tour goes from stop to stop, looks, waits, and ends", () => {
   const { tour, done, due, hear } = toured();
   tour.toggle(STOPS);
   hear("walking", [0, 1]);
-  expect(done).toEqual(["side", "Here it begins.", "goto 0 0 1"]);
+  expect(done).toEqual(["side", "Here it begins.", "goto 0  1"]);
   hear("arrived", [5, 5]);
   expect(tour.at).toBe(0);
   hear("arrived", [0, 1]);
   hear("arrived", [0, 1]);
   due.pop()?.();
-  expect(done.slice(3)).toEqual(["wait 2", "goto 1 0 4"]);
+  expect(done.slice(3)).toEqual(["wait 2", "goto 1 2.5 4"]);
   hear("given up", [1, 4]);
   due.pop()?.();
   expect(tour.at).toBeNull();

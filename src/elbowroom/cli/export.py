@@ -8,6 +8,7 @@ import typer
 
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
+from elbowroom.cli.spoken import said
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def export(
         raise InputError(f"{out}: --place is possible in .glb only")
     recorded = Recording(recording)
     compile_first(quiet=quiet)
-    with progress_bar(f"Writing {out.name}", None, quiet):
+    with progress_bar(said("Writing {0}", out.name), None, quiet):
         humanoid = recorded.header.avatar.load(avatar)
         animation = Animation.of(recorded, humanoid, fps)
         written = chosen.write(animation, humanoid, layout)
@@ -77,7 +78,7 @@ def _export_page(recording: Path, out: Path, avatar: Path | None, *, json: bool,
 
     recorded = Recording(recording)
     compile_first(quiet=quiet)
-    with progress_bar(f"Writing {out.name}", None, quiet):
+    with progress_bar(said("Writing {0}", out.name), None, quiet):
         page, notes = page_of_recording(recorded, recorded.header.avatar.load(avatar), recording.name)
         _keep(out, data := page.encode())
     notes = (*notes, *([f"not whole: {recorded.note}"] if recorded.note else []))
@@ -140,9 +141,9 @@ def _report(out: Path, title: str, size: int, animation: "Animation", notes: lis
     row = {
         "format": title,
         "size": f"{size / 1e3:.1f} kB",
-        "frames": f"{len(animation)} at {animation.fps:g} a second, {seconds:.1f} s",
+        "frames": said("{0} at {1} a second, {2} s", len(animation), f"{animation.fps:g}", f"{seconds:.1f}"),
         "joints": str(facts["joints"]),
     }
     print_row(str(out), row)
     for note in notes:
-        print(f"note: {note}")
+        print(said("note: {0}", note))

@@ -11,6 +11,7 @@ from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 from elbowroom.cli.replay import library_of
+from elbowroom.cli.spoken import said
 from elbowroom.errors import InputError
 
 EXAMPLES = (
@@ -53,7 +54,7 @@ def film(
     recorded, look = Recording(recording), Look(pixels, camera, overlays, dark, quality)
     compile_first(quiet=quiet)
     with (
-        progress_bar("Filming", 1.0, quiet) as bar,
+        progress_bar(said("Filming"), 1.0, quiet) as bar,
         closing(library_of(recorded, avatar)) as library,
         served(library) as url,
         filmed_page(url, look) as page,
@@ -63,7 +64,7 @@ def film(
     if json:
         print_json({"film": str(output), "pictures": count, "fps": rate, "seconds": seconds, "size": list(pixels)})
     else:
-        print(f"{output}: {count} pictures of {seconds:.1f} s")
+        print(said("{0}: {1} pictures of {2} s", output, count, f"{seconds:.1f}"))
 
 
 def _size(text: str) -> tuple[int, int]:

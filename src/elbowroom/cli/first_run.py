@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from elbowroom.cli.spoken import said
 from elbowroom.cli.time_left import time_left_bar
 
 EXAMPLES = "Examples:  elbowroom compile  |  elbowroom compile --quiet"
@@ -27,6 +28,6 @@ def compile_first(*, quiet: bool = False) -> None:
     from elbowroom.server.kernel_cache import session_kernels
 
     total = len(session_kernels())
-    with time_left_bar("Compiling kernels, once", quiet) as move:
+    with time_left_bar(said("Compiling kernels, once"), quiet) as move:
         move(0, total)
         compile_apart(lambda kernel, number: move(min(number + 1, total), total))  # noqa: ARG005

@@ -5,13 +5,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from elbowroom.cli.output import print_json, print_row
+from elbowroom.cli.spoken import said
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.navigation.way import Place, Spot
 
-TO_HELP = "Go to this place, metres: X,Z at the height of the start, or X,Y,Z with Y the height of the floor there."
+TO_HELP = "Go to this place, metres: X,Z, or X,Y,Z with Y the height of the floor there."
 
 
 def place_of(text: str, option: str) -> "Place | Spot":
@@ -33,17 +34,17 @@ def report_leg(leg: "Leg", scene: str, record: Path | None, json: bool) -> None:
         print_json({"scene": scene} | asdict(leg) | {"recording": None if record is None else str(record)})
         return
     rows = {
-        "arrived": "yes" if leg.arrived else f"no: {leg.outcome}",
+        "arrived": said("yes") if leg.arrived else said("no: {0}", leg.outcome),
         "reason": leg.reason,
         "at": told_place(leg.place),
         "time": f"{leg.seconds:.1f} s",
-        "way": f"{leg.way_m:.1f} m, more where it is narrow",
-        "stuck": f"{leg.stuck_times} times, {leg.stuck_s:.1f} s",
+        "way": said("{0} m, more where it is narrow", f"{leg.way_m:.1f}"),
+        "stuck": said("{0} times, {1} s", leg.stuck_times, f"{leg.stuck_s:.1f}"),
         "least clearance": f"{1e3 * leg.least_clearance:.1f} mm",
         "recording": "" if record is None else str(record),
     }
     told = {name: value for name, value in rows.items() if value}
-    print_row(f"Scene {scene}, to {told_place(leg.target)}", told)
+    print_row(said("Scene {0}, to {1}", scene, told_place(leg.target)), told)
 
 
 def told_place(place: "Place | Spot") -> str:

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from elbowroom.cli.spoken import said
 from elbowroom.planning.names import BUILT_IN
 
 PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
@@ -42,11 +43,11 @@ def _plain(value: Any) -> Any:
 
 def print_row(title: str, row: Mapping[str, str]) -> None:
     """A small table of names and values on stdout."""
-    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table = Table(title=said(title), title_justify="left", show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim")
     table.add_column(justify="right")
     for name, value in row.items():
-        table.add_row(name, value)
+        table.add_row(said(name), said(value))
     Console().print(table)
 
 

@@ -16,6 +16,7 @@ from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
+from elbowroom.cli.spoken import said
 from elbowroom.cli.vmc_options import stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
 
     from elbowroom.server.library import Library
 
+_OPEN = (
+    "Warning: listening on {0}. Everyone who can reach this machine over the network can open the page, load avatars "
+    "into this server and use its processor; there is no password."
+)
 EXAMPLES = "Examples:  elbowroom play --scene d  |  elbowroom play --avatar alice.vrm --port 9000 --no-open"
 
 
@@ -108,13 +113,13 @@ def serve_until_interrupted(
         serve(
             library, opened, host, lambda: _ready(library, url_of(opened) + (f"/?{query}" if query else ""), open_page)
         )
-    console.print("Stopped.")
+    console.print(said("Stopped."))
 
 
 def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None:
     found = opened.getsockname()[1]
     if wanted not in (0, found):
-        console.print(f"[yellow]Port {wanted} is busy; using {found} instead.[/yellow]")
+        console.print(f"[yellow]{said('Port {0} is busy; using {1} instead.', wanted, found)}[/yellow]")
 
 
 def tell_openness(console: "Console", opened: "socket.socket") -> None:
@@ -123,10 +128,7 @@ def tell_openness(console: "Console", opened: "socket.socket") -> None:
 
     address = opened.getsockname()[0]
     if not is_loopback(address):
-        console.print(
-            f"[yellow]Warning: listening on {address}. Everyone who can reach this machine over the network can open "
-            "the page, load avatars into this server and use its processor; there is no password.[/yellow]"
-        )
+        console.print(f"[yellow]{said(_OPEN, address)}[/yellow]")
 
 
 def _ready(library: "Library", url: str, open_page: bool) -> None:
@@ -138,7 +140,7 @@ def _ready(library: "Library", url: str, open_page: bool) -> None:
         settle()
 
     threading.Thread(target=load_the_rest, daemon=True).start()
-    print(f"Elbowroom is at {url}  (Ctrl-C ends it)", flush=True)
+    print(said("Elbowroom is at {0}  (Ctrl-C ends it)", url), flush=True)
     if open_page and _has_display():
         threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 

@@ -10,6 +10,7 @@ import typer
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 from elbowroom.cli.play import serve_until_interrupted
+from elbowroom.cli.spoken import said
 
 if TYPE_CHECKING:
     from elbowroom.control.recording import Recording
@@ -47,7 +48,7 @@ def replay(
         serve_until_interrupted(library, "127.0.0.1", port, open_page=open_page, query="replay")
         return
     compile_first(quiet=quiet)
-    with progress_bar("Replaying", None, quiet) as bar:
+    with progress_bar(said("Replaying"), None, quiet) as bar:
         humanoid = recorded.header.avatar.load(avatar)
         result = run_again(recorded, humanoid, lambda done: bar.move(done, f"{done} frames"))
     _report(recorded, result, json)
@@ -85,13 +86,13 @@ def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:
         print_json(report)
         return
     if result.difference is not None:
-        print(f"different from {result.difference}")
+        print(said("different from {0}", result.difference))
         print(_LIVE if recorded.header.live else _why(elsewhere))
     else:
-        so_far = "identical" if recorded.note is None else "identical as far as it goes"
-        print(f"{so_far}: {result.frames} frames, {result.seconds:.1f} s")
+        so_far = said("identical") if recorded.note is None else said("identical as far as it goes")
+        print(said("{0}: {1} frames, {2} s", so_far, result.frames, f"{result.seconds:.1f}"))
     if recorded.note is not None:
-        print(f"not whole: {recorded.note}")
+        print(said("not whole: {0}", recorded.note))
 
 
 def _elsewhere(recorded: "Recording") -> dict[str, tuple[str, str]]:

@@ -11,6 +11,7 @@ import typer
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.play import tell_openness
+from elbowroom.cli.spoken import said
 from elbowroom.cli.workers import check_cluster
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -79,7 +80,7 @@ def _serve(cluster: str, opened: "socket.socket", offer: "Offer", settings: "Fle
             loop.add_signal_handler(sig, _end, sig, serving)
         await asyncio.wait([serving, ready], return_when=asyncio.FIRST_COMPLETED)
         if ready.done():
-            typer.echo(f"Elbowroom is at {url_of(opened)}  (Ctrl-C ends it)", err=True)
+            typer.echo(said("Elbowroom is at {0}  (Ctrl-C ends it)", url_of(opened)), err=True)
         ready.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await serving

@@ -15,6 +15,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from elbowroom.cli.spoken import said
+
 Move = Callable[[int, int], None]  # pieces done, pieces in all
 
 _SECONDS_BETWEEN_LINES = 15.0
@@ -44,7 +46,7 @@ def _nothing(done: int, total: int) -> None:
 def _bar(console: Console) -> Progress:
     left = TimeRemainingColumn(compact=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    rest = (TextColumn("[dim]left"), left)
+    rest = (TextColumn(f"[dim]{said('left')}"), left)
     return Progress(*columns, *rest, console=console, transient=True, speed_estimate_period=_WINDOW)
 
 
@@ -81,14 +83,16 @@ class _Lines:
         if done < total and now - self._told < _SECONDS_BETWEEN_LINES:
             return
         self._told = now
-        text = f"{self._title}: {done} of {total}"
+        text = said("{0}: {1} of {2}", self._title, done, total)
         if before < done < total:
-            text += f", about {as_time((now - began) / (done - before) * (total - done))} left"
+            text += said(", about {0} left", as_time((now - began) / (done - before) * (total - done)))
         self._console.print(text, highlight=False)
 
 
 def as_time(seconds: float) -> str:
     """A rough duration in words."""
     if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+        return said("{0} s", f"{seconds:.0f}")
+    if seconds < 5400.0:
+        return said("{0} min", f"{seconds / 60.0:.0f}")
+    return said("{0} h", f"{seconds / 3600.0:.1f}")

@@ -12,6 +12,7 @@ from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.going import told_place
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
 from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
+from elbowroom.cli.spoken import said
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -62,7 +63,7 @@ def tour(
 
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None))
     place = open_scene(scene, place_options(scale, up, ground, drop, passable), quiet)
-    with progress_bar("Opening the avatar", None, quiet):
+    with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, CrossingSettings(planner, queue, seed), motions)
         warm_up(controller)
@@ -86,7 +87,7 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
     start = controller.root.x, controller.root.height, controller.root.z
     places = random_targets(controller.navigator, start, count, controller.settings.seed)
     with (
-        progress_bar(f"Touring {controller.scene.title}", float(count), quiet) as bar,
+        progress_bar(said("Touring {0}", controller.scene.title), float(count), quiet) as bar,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
     ):
         shown = Shown(controller.step(Command(), 0.0), None if recorder is None else recorder.append)
@@ -98,7 +99,7 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
 def _judged(shown: "Shown", controller: "Controller", seconds: float, *, mesh: bool, quiet: bool) -> "Verdict":
     from elbowroom.experiment.tour.tour import judged
 
-    with progress_bar("Judging", max(seconds, 1.0), quiet) as bar:
+    with progress_bar(said("Judging"), max(seconds, 1.0), quiet) as bar:
         return judged(shown, controller, mesh=mesh, progress=lambda time: bar.move(time, f"{time:.0f} s"))
 
 
@@ -125,14 +126,14 @@ def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None
         print_json(told | {"frames_judged": None if verdict is None else verdict.poses})
         return
     rows = {
-        "arrived": f"{result.arrived} of {result.targets}",
-        "stuck": f"{result.stuck} times, {result.stuck_s:.1f} s of {result.seconds:.0f} s",
-        "touching": "not judged" if verdict is None else f"{touching} of {verdict.poses} poses",
+        "arrived": said("{0} of {1}", result.arrived, result.targets),
+        "stuck": said("{0} times, {1} s of {2} s", result.stuck, f"{result.stuck_s:.1f}", f"{result.seconds:.0f}"),
+        "touching": "not judged" if verdict is None else said("{0} of {1} poses", touching, verdict.poses),
         "planning": _costs(result.plan_ms),
         "a frame": _costs(result.frame_ms),
         "finding the way": _costs(result.find_ms),
     }
-    print_row(f"Tour of {result.scene}, seed {result.seed}", rows)
+    print_row(said("Tour of {0}, seed {1}", result.scene, result.seed), rows)
     if result.given_up:
         lost = {told_place(leg.target): f"{leg.outcome}: {leg.reason}" for leg in result.given_up}
         print_row("Not reached", lost)

@@ -7,6 +7,7 @@ import typer
 
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
+from elbowroom.cli.spoken import said
 
 if TYPE_CHECKING:
     from elbowroom.control.recording import Recording
@@ -42,7 +43,7 @@ def verify(
     compile_first(quiet=quiet)
     motion = ShownMotion.of(recorded)
     scene = recorded.scene()
-    with progress_bar("Judging", float(motion.times[-1]), quiet) as bar:
+    with progress_bar(said("Judging"), float(motion.times[-1]), quiet) as bar:
         humanoid = recorded.header.avatar.load(avatar)
         verdict = judge(motion, humanoid, scene, settings, lambda time: bar.move(time, f"{time:.1f} s"))
     if json:

@@ -14,6 +14,7 @@ from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.going import TO_HELP, place_of, report_leg
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
+from elbowroom.cli.spoken import said
 from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
 FELL_SHORT = 1
 _FRAMES_PER_UPDATE = 30
+_TITLE = "Scene {0}, {1}, |Q| {2}, seed {3}"
+_LATE = "{0}: {1} of {2} frames over 1/60 s late"
 _PAPERS = {True: "more than one frame in every second", False: "a second with one frame or none"}
 
 
@@ -77,12 +80,12 @@ def walk(
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
     told = place_options(scale, up if of_place else None, ground, drop, passable)
     place = open_scene(scene, told, quiet)
-    with progress_bar("Opening the avatar", None, quiet):
+    with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, bones, height, include_hair)
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     with (
-        progress_bar(f"Walking through {place.title}", limit, quiet) as bar,
+        progress_bar(said("Walking through {0}", place.title), limit, quiet) as bar,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
@@ -137,9 +140,9 @@ def _report(result: "CrossingResult", record: Path | None, json: bool) -> None:
     if json:
         print_json(asdict(result) | {"recording": None if record is None else str(record)})
         return
-    yes, punctual = {True: "yes", False: "no"}, result.late_frames == 0
+    yes, punctual = {True: said("yes"), False: said("no")}, result.late_frames == 0
     took = "-" if result.passed_time_s is None else f"{result.passed_time_s:.1f} s"
-    rates = f"{result.plan_success_rate:.1%} found, {result.plan_failed_rate:.1%} failed"
+    rates = said("{0} found, {1} failed", f"{result.plan_success_rate:.1%}", f"{result.plan_failed_rate:.1%}")
     row = {
         "passed": yes[result.passed],
         "straight": yes[result.straight],
@@ -148,12 +151,13 @@ def _report(result: "CrossingResult", record: Path | None, json: bool) -> None:
         "local planning calls": str(result.plans_total),
         "of these": rates,
         "collision checks": str(result.collision_checks),
-        "real time, the paper's": f"{yes[result.realtime]}: {_PAPERS[result.realtime]}",
-        "real time, ours": f"{yes[punctual]}: {result.late_frames} of {result.frames} frames over 1/60 s late",
+        "real time, the paper's": f"{yes[result.realtime]}: {said(_PAPERS[result.realtime])}",
+        "real time, ours": said(_LATE, yes[punctual], result.late_frames, result.frames),
         "frame ms, 99 %, worst": f"{result.frame_ms_p99:.2f}, {result.frame_ms_worst:.2f}",
         "least clearance": f"{1e3 * result.least_clearance:.1f} mm",
         "change from plan to plan, 99 %": f"{result.replan_change_p99:.3f} rad",
     }
     if record is not None:
         row["recording"] = str(record)
-    print_row(f"Scene {result.scene}, {result.planner}, |Q| {result.queue_size}, seed {result.seed}", row)
+    title = said(_TITLE, result.scene, result.planner, result.queue_size, result.seed)
+    print_row(title, row)

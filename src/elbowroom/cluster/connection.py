@@ -54,6 +54,8 @@ def joined(address: str, tell: "Tell", at_once: int | None = None) -> "Iterator[
     check_address(address)
     if at_once is not None:
         check_jobs(at_once)
+    if address != LOCAL:
+        _knock(address)
     for name, value in _RAY.items():
         os.environ.setdefault(name, value)
     import ray
@@ -66,7 +68,6 @@ def joined(address: str, tell: "Tell", at_once: int | None = None) -> "Iterator[
         if address == LOCAL:
             ray.init("local", num_cpus=at_once or usable_cores(), **own, **quiet)
         else:
-            _knock(address)
             ray.init(address, **quiet)
     except (OSError, RuntimeError, ValueError) as error:
         raise InputError(f"--cluster {address}: {str(error).strip().splitlines()[0][:200]}") from None
@@ -81,7 +82,12 @@ def joined(address: str, tell: "Tell", at_once: int | None = None) -> "Iterator[
 
 
 def _knock(address: str) -> None:
-    """Raises `OSError` where nobody answers: Ray itself would try for minutes."""
+    """Raises `InputError` where nobody answers: Ray itself would try for minutes."""
     host, _, port = address.rpartition(":")
-    with socket.create_connection((host.strip("[]"), int(port)), _ANSWER):
-        pass
+    try:
+        with socket.create_connection((host.strip("[]"), int(port)), _ANSWER):
+            pass
+    except (OSError, OverflowError) as error:  # a port beyond 65535 is an overflow
+        why = str(error).strip().splitlines()[0][:200]
+        mend = "start a cluster there (`ray start --head --port PORT`), or give `local` for one of this machine"
+        raise InputError(f"--cluster {address}: no cluster answers: {why}; {mend}") from None

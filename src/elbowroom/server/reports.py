@@ -71,7 +71,7 @@ def scene_message(scene: Scene) -> SceneMessage:
         moving=[_moving(scene, track) for track in scene.obstacles.moving.tracks],
         start=Place(scene.start.x, scene.start.z, scene.start.heading),
         finish=Gate(*scene.finish.position, scene.finish.heading, scene.finish.width),
-        tour=[Stop(stop.position, stop.view, stop.say, stop.seconds) for stop in scene.tour],
+        tour=[Stop(stop.position, stop.height, stop.view, stop.say, stop.seconds) for stop in scene.tour],
     )
 
 

@@ -4,7 +4,7 @@ import asyncio
 
 from elbowroom.control.journey import Journey
 from elbowroom.errors import InputError
-from elbowroom.planning.navigation.way import NoWayError
+from elbowroom.planning.navigation.way import NoWayError, Place, Spot
 from elbowroom.server.outbox import Outbox
 from elbowroom.server.schema.commands import Goto
 from elbowroom.server.schema.progress import Going
@@ -44,7 +44,7 @@ class Ways:
             return
         here = walk.place.x, walk.place.height, walk.place.z
         try:
-            way = await asyncio.to_thread(walk.navigator.find, here, wish.place)
+            way = await asyncio.to_thread(walk.navigator.find, here, _goal(wish))
         except InputError as error:
             self._refuse(wish, error)
             return
@@ -54,7 +54,8 @@ class Ways:
 
     def _refuse(self, wish: Goto, error: InputError) -> None:
         nearest = error.nearest if isinstance(error, NoWayError) else None
-        self._outbox.put(Going("refused", wish.place, str(error), nearest))
+        x, height, z = wish.place
+        self._outbox.put(Going("refused", (x, height or 0.0, z), str(error), nearest))
 
     def report(self) -> None:
         """Tell the client what has changed about its walk to a place."""
@@ -66,3 +67,8 @@ class Ways:
         if self._told is None or self._told[0] is not journey or self._told[1] != going:
             self._told = journey, going
             self._outbox.put(going)
+
+
+def _goal(wish: Goto) -> Place | Spot:
+    x, height, z = wish.place
+    return (x, z) if height is None else (x, height, z)

@@ -10,6 +10,7 @@ import type { Notices } from "../ui/notices";
 import type { Veil } from "../ui/veil";
 import type { Modes } from "./modes";
 import { words } from "./words";
+import { sceneTitle } from "../texts/scene_titles";
 
 export interface ArrivalsParts {
   readonly modes: Modes;
@@ -59,7 +60,7 @@ export class Arrivals {
     const { menu, notices } = this.parts;
     if (scene) {
       this.lastFile = null;
-      menu.addScene(scene.name, scene.title);
+      menu.addScene(scene.name, sceneTitle(scene.title));
       this.parts.configure({ scene: scene.name });
     }
     menu.clips.add(clips);

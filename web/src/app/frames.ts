@@ -54,9 +54,9 @@ export class Frames {
     const replayed = modes.replay.advance(dt);
     this.pose = replayed ?? session.poseAt(now) ?? this.pose;
     const { sound, overlays } = taste.preferences;
-    if (this.pose) steps.update(this.pose, { heard: sound, shown: overlays.has("footprints") });
     if (replayed) this.drawReplayed(replayed, dt);
     else this.drawLive(now, dt);
+    if (this.pose) steps.update(this.pose, { heard: sound, shown: overlays.has("footprints") });
     this.drawn++;
   }
 

@@ -26,6 +26,7 @@ import type { Arrivals } from "./arrivals";
 import type { LiveWalk } from "./live_walk";
 import type { Modes } from "./modes";
 import type { Taste } from "./taste";
+import { sceneTitle } from "../texts/scene_titles";
 
 export interface HearingParts {
   readonly session: Session;
@@ -82,9 +83,10 @@ export class Hearing implements SessionListener {
     if (modes.live) live.furnish();
     statusLine.restart();
     finishCard.hide();
-    menu.addScene(scene.name, scene.title);
-    byId("place", HTMLElement).textContent = scene.title;
-    document.title = `${scene.title} · Elbowroom`;
+    const title = sceneTitle(scene.title);
+    menu.addScene(scene.name, title);
+    byId("place", HTMLElement).textContent = title;
+    document.title = `${title} · Elbowroom`;
   }
 
   avatar(message: AvatarMessage): void {

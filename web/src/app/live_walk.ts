@@ -7,6 +7,7 @@ import { text } from "../texts/texts";
 import type { Notices } from "../ui/notices";
 import type { Veil } from "../ui/veil";
 import { words } from "./words";
+import { sceneTitle } from "../texts/scene_titles";
 
 export interface LiveWalkParts {
   readonly picture: Picture;
@@ -38,7 +39,7 @@ export class LiveWalk {
     if (scene.model) veil.download(true);
     picture
       .showModel()
-      .catch((error: unknown) => notices.show("error", `${scene.title} cannot be shown: ${words(error)}`))
+      .catch((error: unknown) => notices.show("error", text("app.notShown", sceneTitle(scene.title), words(error))))
       .finally(() => scene.model && veil.download(false));
   }
 
@@ -51,7 +52,7 @@ export class LiveWalk {
     picture
       .showAvatar(avatar)
       .then(() => (this.avatarTitle = avatar.title))
-      .catch((error: unknown) => notices.show("error", text("app.noAvatar", avatar.title, words(error))))
+      .catch((error: unknown) => notices.show("error", text("app.notShown", avatar.title, words(error))))
       .finally(() => veil.download(false));
   }
 

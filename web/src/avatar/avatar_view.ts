@@ -3,6 +3,7 @@
 import { Group, Vector3, type Object3D } from "three";
 import type { AvatarMessage } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
+import type { Foot } from "../steps/step_watch";
 import type { AvatarFile } from "./avatar_file";
 import { Blinking } from "./blinking";
 import { Surfaces } from "./surfaces";
@@ -13,7 +14,7 @@ export class AvatarView {
   private file: AvatarFile | null = null;
   private joints: (Object3D | undefined)[] = [];
   private hips: Object3D | undefined;
-  private feet: Object3D[] = [];
+  private readonly feet = new Map<Foot, Object3D>();
   private surfaces: Surfaces | null = null;
   private rich = true;
   private epoch = -1;
@@ -26,12 +27,16 @@ export class AvatarView {
   show(message: AvatarMessage, file: AvatarFile | null, dispose: ((file: AvatarFile) => void) | null): void {
     if (this.file) this.dispose?.(this.file);
     this.group.clear();
+    this.feet.clear();
     this.file = file;
     this.dispose = dispose;
     this.revision = message.revision;
     this.joints = message.bones.map((bone) => file?.nodes.get(bone.node));
     this.hips = this.joints[message.bones.findIndex((bone) => bone.name === "hips")];
-    this.feet = this.joints.filter((_, i) => ["leftFoot", "rightFoot"].includes(message.bones[i]?.name ?? "")).filter((foot) => foot !== undefined);
+    for (const foot of ["left", "right"] as const) {
+      const joint = this.joints[message.bones.findIndex((bone) => bone.name === `${foot}Foot`)];
+      if (joint) this.feet.set(foot, joint);
+    }
     this.surfaces = file ? new Surfaces(file.scene, this.rich) : null;
     this.blinking = file?.vrm?.expressionManager ? new Blinking(file.vrm.expressionManager) : null;
     if (!file) return;
@@ -48,7 +53,8 @@ export class AvatarView {
     if (this.file) this.dispose?.(this.file);
     this.file = null;
     this.group.clear();
-    this.joints = this.feet = [];
+    this.joints = [];
+    this.feet.clear();
     this.surfaces = null;
     this.blinking = null;
     this.revision = -1;
@@ -72,11 +78,9 @@ export class AvatarView {
     }
   }
 
-  /** Where the ankle is that is furthest ahead, metres in the world; null without feet. */
-  foremostFoot({ heading }: Pick<ShownPose, "heading">): readonly [number, number, number] | null {
-    const ahead = (at: Vector3) => at.x * Math.sin(heading) + at.z * Math.cos(heading);
-    const places = this.feet.map((foot) => foot.getWorldPosition(new Vector3())).sort((a, b) => ahead(b) - ahead(a));
-    return places[0]?.toArray() ?? null;
+  /** Where an ankle is, metres in the world; null without that foot. */
+  ankle(foot: Foot): readonly [number, number, number] | null {
+    return this.feet.get(foot)?.getWorldPosition(new Vector3()).toArray() ?? null;
   }
 
   /** Moves hair and cloth, eyelids and materials by `dt` seconds. */

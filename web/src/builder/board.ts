@@ -8,6 +8,7 @@ import { turnedBy, moved, changed, yawOf, type Selected } from "./edits";
 import type { Editor } from "./editor";
 import { shapesOf, type BoardShape } from "./board_shapes";
 import { inWorld, onBoard } from "./outline";
+import { Pinch } from "./pinch";
 import type { Vec2 } from "./plan";
 import { wrapped } from "./turns";
 
@@ -34,6 +35,9 @@ export class Board {
   private middle: Vec2 = [0, -3];
   private width = 12;
   private drag: Drag | null = null;
+  private readonly pinch = new Pinch();
+  /** Where the tool in hand is used once the only finger is lifted. */
+  private tap: Vec2 | null = null;
   private mark: readonly [number, number] | null = null;
   private fitted = false;
 
@@ -47,7 +51,7 @@ export class Board {
     element.append(this.grid, this.shapes);
     element.addEventListener("pointerdown", (event) => this.down(event));
     element.addEventListener("pointermove", (event) => this.move(event));
-    for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, () => (this.drag = null));
+    for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, (event) => this.up(event));
     element.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     element.addEventListener("keydown", (event) => this.key(event));
     element.addEventListener("focusin", ({ target }) => this.focused(target));
@@ -125,6 +129,7 @@ export class Board {
     const point = this.pointOf(event);
     const [x, , z] = inWorld(editor.side, point);
     const hit = event.target instanceof SVGElement ? event.target.dataset["id"] ?? "" : "";
+    if (event.pointerType === "touch" && this.touch(event, [x, z])) return;
     if (editor.side === "top" && editor.use(x, z)) return;
     const selected = selectedOf(hit) ?? editor.selected;
     const kind = hit === "turn" || hit === "size" ? hit : selectedOf(hit) ? "move" : "pan";
@@ -134,7 +139,30 @@ export class Board {
     else if (kind === "pan" && event.target === this.element) editor.select(null);
   }
 
+  /** A finger more: whether it is the second of a pinch, or one that may use the tool in hand. */
+  private touch({ pointerId, clientX, clientY }: PointerEvent, at: Vec2): boolean {
+    const { editor, pinch } = this;
+    pinch.down(pointerId, [clientX, clientY]);
+    this.element.setPointerCapture(pointerId);
+    this.tap = !pinch.on && editor.side === "top" && editor.tool !== "select" ? at : null;
+    if (pinch.on) this.drag = null;
+    return pinch.on || this.tap !== null;
+  }
+
+  private up({ type, pointerId }: PointerEvent): void {
+    const { tap } = this;
+    this.pinch.up(pointerId);
+    this.drag = this.tap = null;
+    if (tap && type === "pointerup") this.editor.use(...tap);
+  }
+
   private move(event: PointerEvent): void {
+    const pinched = this.pinch.move(event.pointerId, [event.clientX, event.clientY]);
+    if (pinched) this.pull([pinched.from, pinched.to], 1 / pinched.apart);
+    else this.dragged(event);
+  }
+
+  private dragged(event: PointerEvent): void {
     const { drag, editor } = this;
     if (!drag) return;
     const point = this.pointOf(event);
@@ -146,11 +174,11 @@ export class Board {
       if (by[0] === 0 && by[1] === 0) return;
       drag.from = [drag.from[0] + by[0], drag.from[1] + by[1]];
       editor.put(moved(editor.plan, drag.selected, inWorld(editor.side, by)), drag.tag);
-    } else this.pull(drag, point);
+    } else this.handled(drag, point);
   }
 
   /** Turns or resizes by a handle. */
-  private pull({ kind, tag }: Drag, point: Vec2): void {
+  private handled({ kind, tag }: Drag, point: Vec2): void {
     const { editor } = this;
     const { selected, plan, thing, index } = editor;
     if (!selected || selected.what === "stop") return;
@@ -171,9 +199,15 @@ export class Board {
 
   private wheel(event: WheelEvent): void {
     event.preventDefault();
-    const before = this.pointOf(event);
-    this.width = Math.min(FURTHEST, Math.max(NEAREST, this.width * Math.exp(Math.max(-400, Math.min(400, event.deltaY)) * WHEEL)));
-    const after = this.pointOf(event);
+    const at: Vec2 = [event.clientX, event.clientY];
+    this.pull([at, at], Math.exp(Math.max(-400, Math.min(400, event.deltaY)) * WHEEL));
+  }
+
+  /** Shows `factor` times as much, and what was at one place of the window, CSS pixels, at another. */
+  private pull([from, to]: readonly [Vec2, Vec2], factor: number): void {
+    const before = this.pointOf({ clientX: from[0], clientY: from[1] });
+    this.width = Math.min(FURTHEST, Math.max(NEAREST, this.width * factor));
+    const after = this.pointOf({ clientX: to[0], clientY: to[1] });
     this.middle = [this.middle[0] + before[0] - after[0], this.middle[1] + before[1] - after[1]];
     this.draw();
   }

@@ -50,7 +50,7 @@ function spots({ plan: { start, finish }, side, selected }: Editor): BoardShape[
 
 /** The stops of the tour, numbered, and the way from one to the next. */
 function stops({ plan: { tour }, side, selected }: Editor, pixel: number): BoardShape[] {
-  const at = tour.map(({ x, z }) => onBoard(side, [x, 0, z]));
+  const at = tour.map(({ x, z, height }) => onBoard(side, [x, height ?? 0, z]));
   const way: BoardShape[] = at.length > 1
     ? [{ id: "tour", tag: "path", attributes: { class: "tour", d: `M${at.map((place) => place.join(" ")).join("L")}`, "aria-hidden": "true" } }]
     : [];

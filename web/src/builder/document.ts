@@ -1,10 +1,10 @@
 /** Between a plan and the JSON document of a scene (docs/scenes.md), as the server writes it: with a quaternion for every turn. */
 
-import { UPRIGHT, type Key, type Plan, type Repeat, type Shape, type Thing, type Turn, type Vec2, type Vec3 } from "./plan";
+import { UPRIGHT, type Key, type Plan, type Repeat, type Shape, type Thing, type TourStop, type Turn, type Vec2, type Vec3 } from "./plan";
 
 type Written = Shape & { readonly name: string; readonly color?: string };
 type Standing = Written & { readonly center: Vec3; readonly rotation?: Turn };
-type WrittenStop = { readonly position: Vec2; readonly view: string; readonly say: string; readonly seconds: number };
+type WrittenStop = { readonly position: Vec2 | Vec3; readonly view: string; readonly say: string; readonly seconds: number };
 type Moving = Written & { readonly repeat: Repeat; readonly track: readonly Key[] };
 
 export interface SceneDocument {
@@ -32,7 +32,7 @@ export function documentOf({ title, description, ground, start, finish, things, 
     finish: { position: [finish.x, finish.z], heading: finish.heading, width: finish.width },
     obstacles: things.filter(({ track }) => track.length === 0).map(standingOf),
     ...(moving.length > 0 ? { moving } : {}),
-    ...(tour.length > 0 ? { tour: tour.map(({ x, z, view, say, seconds }) => ({ position: [x, z] as const, view, say, seconds })) } : {}),
+    ...(tour.length > 0 ? { tour: tour.map(writtenStop) } : {}),
   };
 }
 
@@ -47,13 +47,22 @@ export function planOf(document: SceneDocument): Plan {
   return {
     title, description, ground, start: { x, z, heading: start.heading },
     finish: { x: toX, z: toZ, heading: finish.heading, width: finish.width }, things: [...standing, ...tracked],
-    tour: tour.map(({ position: [atX, atZ], view, say, seconds }) => ({ x: atX, z: atZ, view, say, seconds })),
+    tour: tour.map(stopOf),
   };
 }
 
 /** A short name for files and for `--scene`. */
 export function nameOf(title: string): string {
   return title.normalize("NFC").trim().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "").slice(0, NAME) || "scene";
+}
+
+function writtenStop({ x, z, height, view, say, seconds }: TourStop): WrittenStop {
+  return { position: height === null ? [x, z] : [x, height, z], view, say, seconds };
+}
+
+function stopOf({ position, view, say, seconds }: WrittenStop): TourStop {
+  const [x, z, height] = position.length === 3 ? [position[0], position[2], position[1]] : [...position, null];
+  return { x, z, height, view, say, seconds };
 }
 
 function standingOf({ name, color, shape, center, rotation }: Thing): Standing {

@@ -12,7 +12,7 @@ export class Drafts {
   all(): readonly Plan[] {
     try {
       const kept: unknown = JSON.parse(this.store?.getItem(STORE) ?? "[]");
-      return Array.isArray(kept) ? kept.filter(isPlan).map((plan) => ({ ...plan, tour: plan.tour ?? [] })) : [];
+      return Array.isArray(kept) ? kept.filter(isPlan).map(completed) : [];
     } catch {
       return [];
     }
@@ -43,4 +43,9 @@ function isPlan(value: unknown): value is Omit<Plan, "tour"> & Partial<Plan> {
   const plan = value as Partial<Plan> | null;
   return typeof plan?.title === "string" && Array.isArray(plan.things) && typeof plan.start?.x === "number"
     && typeof plan.finish?.width === "number" && Array.isArray(plan.ground?.size);
+}
+
+/** A draft of an older page with what plans have today. */
+function completed(plan: Omit<Plan, "tour"> & Partial<Plan>): Plan {
+  return { ...plan, tour: (plan.tour ?? []).map((stop) => ({ ...stop, height: stop.height ?? null })) };
 }

@@ -48,7 +48,8 @@ export function moved(plan: Plan, selected: Selected, by: Vec3): Plan {
     case "finish":
       return { ...plan, finish: spot(plan.finish) };
     case "stop":
-      return restopped(plan, selected.index, ({ x, z }) => ({ x: tidy(x + by[0]), z: tidy(z + by[2]) }));
+      return restopped(plan, selected.index, ({ x, z, height }) =>
+        ({ x: tidy(x + by[0]), z: tidy(z + by[2]), height: by[1] === 0 ? height : tidy((height ?? 0) + by[1]) }));
     case "key":
       return rekeyed(plan, selected.index, (key, i) => (i === selected.key ? { ...key, center: shift(key.center) } : key));
     case "thing": {
@@ -111,7 +112,7 @@ export function copied(plan: Plan, index: number, aside: number): Plan | null {
 /** The plan with another stop of its tour; null where there are too many. */
 export function stopped(plan: Plan, x: number, z: number): Plan | null {
   if (plan.tour.length >= MOST_STOPS) return null;
-  return { ...plan, tour: [...plan.tour, { x: tidy(x), z: tidy(z), view: "", say: "", seconds: 3 }] };
+  return { ...plan, tour: [...plan.tour, { x: tidy(x), z: tidy(z), height: null, view: "", say: "", seconds: 3 }] };
 }
 
 /** A stop of the tour changed. */

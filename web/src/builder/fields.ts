@@ -12,9 +12,12 @@ import { anglesOf, turnOf, wrapped } from "./turns";
 export interface NumberField {
   readonly kind: "number";
   readonly name: TextName;
-  readonly value: number;
+  /** Null where nothing is said. */
+  readonly value: number | null;
   readonly step: number;
   set(value: number): Plan;
+  /** Where it may be left empty. */
+  unset?(): Plan;
 }
 
 export interface TextField {
@@ -73,6 +76,7 @@ function stopFields(plan: Plan, selected: Selected & { readonly what: "stop" }):
   const change = (to: Partial<TourStop>) => restopped(plan, selected.index, () => to);
   return [
     metres("build.x", stop.x, (to) => moved(plan, selected, [to - stop.x, 0, 0])), metres("build.z", stop.z, (to) => moved(plan, selected, [0, 0, to - stop.z])),
+    { kind: "number", name: "build.floor", value: stop.height, step: 0.05, set: (to) => change({ height: tidy(to) }), unset: () => change({ height: null }) },
     {
       kind: "choice", name: "build.view", value: stop.view, set: (view) => change({ view }),
       choices: [["", text("build.sameView")], ...VIEW_NAMES.map((name) => [name, worded(VIEWS[name].title)] as const)],

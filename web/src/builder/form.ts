@@ -44,8 +44,9 @@ export class Form {
   private take(i: number, value: string): void {
     const field = fieldsOf(this.editor)[i];
     if (field?.kind === "number") {
-      const number = Number(value);
-      if (value.trim() !== "" && Number.isFinite(number)) this.editor.put(field.set(number));
+      const number = Number(value), empty = value.trim() === "";
+      if (!empty && Number.isFinite(number)) this.editor.put(field.set(number));
+      else if (empty && field.unset) this.editor.put(field.unset());
     } else if (field) this.editor.put(field.set(value));
     const now = fieldsOf(this.editor)[i], input = this.inputs[i];
     if (now && input) input.value = shownValue(now);
@@ -53,6 +54,6 @@ export class Form {
 }
 
 function shownValue(field: Field): string {
-  if (field.kind === "number") return String(Math.round(field.value * 1000) / 1000);
+  if (field.kind === "number") return field.value === null ? "" : String(Math.round(field.value * 1000) / 1000);
   return field.kind === "color" ? field.value || NO_COLOR : field.value;
 }

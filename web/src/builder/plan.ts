@@ -47,6 +47,8 @@ export interface Spot {
 export interface TourStop {
   readonly x: number;
   readonly z: number;
+  /** Of the floor there; null: the one that a way leads to. */
+  readonly height: number | null;
   /** A camera's name; "" leaves it as it is. */
   readonly view: string;
   readonly say: string;

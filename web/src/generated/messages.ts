@@ -67,8 +67,8 @@ export interface Reset {
 /** Go to a place on some floor; an input that asks for anything takes over. */
 export interface Goto {
   type: "goto";
-  /** x, height, z; from -1000000 to 1000000, from -1000000 to 1000000, from -1000000 to 1000000 */
-  place: [number, number, number];
+  /** x, height, z; no height: the floor that a way leads to; from -1000000 to 1000000, from -1000000 to 1000000, from -1000000 to 1000000 */
+  place: [number, number | null, number];
 }
 
 /** Push an obstacle over the ground, or let go of it; it stops before the body and stays where it is left. */
@@ -235,6 +235,8 @@ export interface Place {
 export interface Stop {
   /** x, z */
   position: [number, number];
+  /** of the floor there; null: the one that a way leads to */
+  height: number | null;
   /** the camera that shows it; "": as it is */
   view: string;
   /** for people to read */

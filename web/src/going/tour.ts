@@ -59,6 +59,6 @@ export class GuidedTour {
     this.next += 1;
     if (stop.view !== "") this.host.look(stop.view as ViewName);
     if (stop.say) this.host.say("info", stop.say);
-    this.host.send({ type: "goto", place: [stop.position[0], 0, stop.position[1]] });
+    this.host.send({ type: "goto", place: [stop.position[0], stop.height, stop.position[1]] });
   }
 }

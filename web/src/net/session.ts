@@ -9,6 +9,7 @@ import { LeastClearance } from "../results";
 import { Connection, type ConnectionState } from "./connection";
 import { PoseTimeline, type ShownPose } from "./pose_timeline";
 import { ServerClock } from "./server_clock";
+import { worded } from "../texts/worded";
 
 /** Who is told what the server says. */
 export interface SessionListener {
@@ -131,10 +132,11 @@ export class Session {
     const { clip } = this.choices;
     if (clip && !catalog.clips.some((known) => known.id === clip)) this.choices = { ...this.choices, clip: "" };
     if (protocol !== PROTOCOL) {
-      this.listener.notice("error", "This page and its server are of different versions: reload the page.");
+      this.listener.notice("error", worded("This page and its server are of different versions: reload the page."));
     }
     if (Object.values(this.choices).some((choice) => choice !== null)) this.send({ type: "configure", ...this.choices });
     this.send({ type: "overlays", ...this.subscriptions });
+    if (this.settings) this.send({ type: "clock", paused: this.settings.paused, speed: this.settings.speed });
   }
 
   private receive(message: ServerMessage): void {

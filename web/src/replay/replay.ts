@@ -12,6 +12,7 @@ import { ReplayPanel, type Choice, type Manner, type PanelListener } from "./pan
 import { Player } from "./player";
 import { save, type SavedAs } from "./save";
 import { durationOf, hasAssist, poseAt, samePlace, setsOff, type Take } from "./take";
+import { sceneTitle } from "../texts/scene_titles";
 
 /** The most moments at which curves are drawn. */
 const MOMENTS = 1000;
@@ -218,7 +219,7 @@ export class Replay implements PanelListener {
   }
 
   private titleOf(take: Take): string {
-    const name = take.file || take.scene.title;
+    const name = take.file || sceneTitle(take.scene.title);
     const how = hasAssist(take) ? take.planner : text("replay.noAssist");
     return `${this.takes.indexOf(take) + 1} · ${how} · ${durationOf(take).toFixed(1)} s · ${name}`;
   }

@@ -12,6 +12,7 @@ import { Replay } from "../replay/replay";
 import { speak, text } from "../texts/texts";
 import { make } from "../ui/dom";
 import { readPackedRun } from "./packed_run";
+import { sceneTitle } from "../texts/scene_titles";
 
 declare global {
   interface Window {
@@ -39,9 +40,9 @@ class StandalonePlayer {
     const { take } = readPackedRun(run, (file) => URL.createObjectURL(new Blob([file], { type: "model/gltf-binary" })));
     document.body.classList.add("alone");
     this.label.hidden = this.inset.hidden = true;
-    this.view.setAttribute("aria-label", take.scene.title);
+    this.view.setAttribute("aria-label", sceneTitle(take.scene.title));
     this.view.append(this.label);
-    document.body.append(this.view, this.inset, this.heading(take.scene.title), this.notices);
+    document.body.append(this.view, this.inset, this.heading(sceneTitle(take.scene.title)), this.notices);
     const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
     this.picture = new Picture(this.view, this.label, QUALITY, () => calm.matches);
     this.replay = new Replay({

@@ -31,12 +31,14 @@ export class Steps {
     this.scene = message;
     this.prints.mesh.visible = shown;
     this.prints.paint(this.picture.stage.palette.path);
-    const speed = this.watch.update(pose);
-    if (speed === 0) return;
+    const step = this.watch.update(pose);
+    if (!step) return;
     this.count++;
-    if (heard) this.sound.play(speed, groundAt(this.scene, pose.x, pose.z));
-    const foot = shown ? this.picture.avatar.foremostFoot(pose) : null;
-    if (foot) this.prints.add([foot[0], pose.y, foot[2]], pose.heading);
+    if (heard) this.sound.play(step.speed, groundAt(this.scene, pose.x, pose.z));
+    for (const foot of shown ? step.feet : []) {
+      const ankle = this.picture.avatar.ankle(foot);
+      if (ankle) this.prints.add([ankle[0], pose.y, ankle[2]], pose.heading);
+    }
   }
 }
 

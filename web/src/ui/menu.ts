@@ -9,6 +9,7 @@ import { worded } from "../texts/worded";
 import { ClipPanel } from "./clip_panel";
 import { CoursePanel } from "./course_panel";
 import { byId, make, setOptions } from "./dom";
+import { sceneTitle } from "../texts/scene_titles";
 
 /** What the user does with the menu. */
 export interface MenuListener {
@@ -78,7 +79,7 @@ export class Menu {
   showCatalog(catalog: Catalog): void {
     this.offered = catalog.scenes.map(({ name }) => name);
     this.courses.showCatalog(catalog);
-    setOptions(this.scene, catalog.scenes.map((s) => [s.name, s.title]));
+    setOptions(this.scene, catalog.scenes.map((s) => [s.name, sceneTitle(s.title)]));
     setOptions(this.avatar, catalog.avatars.map((a) => [a.id, a.title]));
     this.clips.add(catalog.clips);
     setOptions(this.planner, catalog.planners.map((name) => [name, name]));

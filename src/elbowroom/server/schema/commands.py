@@ -50,7 +50,7 @@ class Reset:
 class Goto:
     """Go to a place on some floor; an input that asks for anything takes over."""
 
-    place: tuple[Coordinate, Coordinate, Coordinate]  # x, height, z
+    place: tuple[Coordinate, Coordinate | None, Coordinate]  # x, height, z; no height: the floor that a way leads to
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,7 @@ class Stop:
     """A place of a guided tour."""
 
     position: tuple[float, float]  # x, z
+    height: float | None  # of the floor there; None: the one that a way leads to
     view: str  # the camera that shows it; "": as it is
     say: str  # for people to read
     seconds: float  # how long one stays
