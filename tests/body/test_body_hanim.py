@@ -109,6 +109,16 @@ def test_joints_that_are_listed_once_more_are_one_joint(encoding: str, listed: s
     assert set(skin) <= set(twice.rig.nodes.tolist())
 
 
+@pytest.mark.parametrize("scale", ["0 0 0", "1 0 1", "0 1 0"])
+def test_a_figure_without_height_is_refused_in_a_line(scale: str) -> None:
+    file = build_hanim(HanimRecipe()).decode()
+    flat = file.replace('scale="1 1 1"', f'scale="{scale}"', 1)
+    assert flat != file
+    with pytest.raises(InputError, match="scale") as caught:
+        load_humanoid_bytes(flat.encode(), "flat.x3d")
+    assert "\n" not in str(caught.value)
+
+
 def test_level_of_articulation_zero_is_refused_for_what_it_is() -> None:
     text = '#X3D V3.3 utf8\nHAnimHumanoid { skeleton HAnimJoint { name "humanoid_root" center 0 0.8 0 } }'
     with pytest.raises(InputError, match=r"one joint \(level of articulation 0\)"):

@@ -66,7 +66,7 @@ def _upright(figure: HanimFigure, tree: NodeTree, bones: dict[str, int], notes: 
     places = tree.world_matrices(tree.rotations)[:, :3, 3]
     up = 0.5 * (places[bones["leftUpperArm"]] + places[bones["rightUpperArm"]]) - places[bones["hips"]]
     axis = int(np.argmax(np.abs(up)))
-    if not np.isfinite(up).all() or abs(up[axis]) < _STRAIGHT * np.linalg.norm(up) or (axis == 1 and up[1] > 0.0):
+    if not np.isfinite(up).all() or abs(up[axis]) <= _STRAIGHT * np.linalg.norm(up) or (axis == 1 and up[1] > 0.0):
         return False
     direction = np.zeros(3)
     direction[axis] = np.sign(up[axis])

@@ -3,12 +3,13 @@
 import json
 import math
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.formats.json_numbers import NUMBERS
 
 _MAX_JSON_BYTES = 64 * 1024 * 1024
 _LARGEST = 1e6  # of any number that places something; far beyond every avatar, and its products stay finite
@@ -124,8 +125,7 @@ def parse_json(text: bytes, name: str, nulls: bool = False) -> dict[str, Any]:
         value = json.loads(
             text.decode("utf-8-sig").rstrip("\x00 \t\r\n"),
             object_pairs_hook=None if nulls else _present,
-            parse_float=_finite,
-            parse_constant=_not_a_number,
+            **NUMBERS,
         )
     except RecursionError:
         raise InputError(f"{name}: the JSON part is nested too deeply") from None
@@ -152,23 +152,8 @@ def _fault(text: bytes, error: ValueError) -> str:
         return f"line {error.lineno}, column {error.colno} is not as JSON goes on"
     if isinstance(error, UnicodeDecodeError):
         return f"its byte {error.start} is not UTF-8 text"
-    return str(error) if isinstance(error, _NoNumberError) else "a number in it has too many digits"
-
-
-class _NoNumberError(ValueError):
-    """A word that stands for no number in JSON."""
+    return str(error)
 
 
 def _present(members: list[tuple[str, Any]]) -> dict[str, Any]:
     return {name: value for name, value in members if value is not None}
-
-
-def _finite(digits: str) -> float:
-    number = float(digits)
-    if not math.isfinite(number):
-        raise _NoNumberError(f"{digits[:20]} is too large a number")
-    return number
-
-
-def _not_a_number(word: str) -> NoReturn:
-    raise _NoNumberError(f"{word} is not a JSON number")
