@@ -27,7 +27,7 @@ ROOMS = [
 ]
 # Of `planning/exact`, bottom to top.
 CHAPTERS = ["memory", "lattice", "sweep", "group", "joint", "refine", "certificate", "plan"]
-FOR_ALL = {"errors", "jit", "kernel_cache", "kept_kernels"}
+FOR_ALL = {"errors", "jit", "kernel_cache", "kept_kernels", "kept_arrays"}
 
 
 def imported_modules(path: Path) -> Iterator[str]:

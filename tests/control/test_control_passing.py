@@ -75,9 +75,8 @@ def test_wherever_two_meet_they_share_the_way(width: float) -> None:
         assert met.back < STEP
 
 
-@pytest.mark.parametrize("width", [1.1, 1.2, 1.6])
+@pytest.mark.parametrize("width", [0.95, 1.0, 1.1, 1.2, 1.6])
 def test_who_stands_is_passed_and_not_driven_back(width: float) -> None:
-    """In corridors narrower than 1.1 m, who stands in the middle is passed in some and not in others."""
     met = meeting(width, (0.0, 0.0), NOTHING)
     assert met.passed
     assert not met.touched
@@ -91,7 +90,7 @@ def seen(x: float, z: float, wanted: tuple[float, float]) -> Neighbour:
 
 
 def test_both_find_the_same_halves() -> None:
-    """What one takes for the other's half begins where the other takes its own to begin, less what both keep."""
+    """The line between them is the same, less what both keep; it begins ahead of who has to step aside first."""
     rng = np.random.default_rng(2)
     for _ in range(40):
         width = float(rng.uniform(0.95, 3.0))
@@ -103,9 +102,18 @@ def test_both_find_the_same_halves() -> None:
         yours = expected(Walker(np.array([there, gap]), np.array(back)), BODY, (seen(x, 0.0, ahead),), free_map)
         (centers, _), (others, _) = mine.poses(0.0), yours.poses(0.0)
         theirs, own = centers[0, 0], others[0, 0]
-        breadths = mine.half_sizes[0, 0] + yours.half_sizes[0, 0]
-        assert abs(theirs[0] - own[0]) - breadths == pytest.approx(0.02, abs=0.02)
-        assert abs(theirs[2] + own[2] - gap) < 0.02
+        half, other = mine.half_sizes[0], yours.half_sizes[0]
+        assert abs(theirs[0] - own[0]) - half[0] - other[0] == pytest.approx(-0.02, abs=1e-6)
+        if not any(stands_over(place, box, size) for place, box, size in ((x, theirs, half), (there, own, other))):
+            assert abs(theirs[2] + own[2] - gap) < 0.02
+        for ahead_of_one, length in ((theirs[2], half[2]), (gap - own[2], other[2])):
+            assert 0.0 < ahead_of_one - length <= 0.5 * gap
+            assert ahead_of_one + length > 0.5 * gap
+
+
+def stands_over(place: float, center: Floats, half: Floats) -> bool:
+    """Whether shoulders at a place, metres along X, are beside a half: who has to step aside begins to see it later."""
+    return bool(abs(place - center[0]) < half[0] + 0.25)
 
 
 def test_who_does_not_come_is_left_as_told() -> None:
@@ -122,6 +130,12 @@ def test_who_stands_makes_way_only_where_there_is_no_room() -> None:
     aside = way_made(own, 0.0, BODY, comes, corridor(1.2).obstacles.free_map)
     assert aside.strafe < -0.5
     assert abs(aside.forward) < 1e-9
+    narrow = corridor(1.0).obstacles.free_map
+    assert way_made(own, 0.0, BODY, comes, narrow).turn == pytest.approx(0.8)
+    assert way_made(own, math.pi / 2, BODY, comes, narrow).forward < -0.5
+    hard_by = way_made(own._replace(place=np.array([-0.27, 0.0])), 0.0, BODY, comes, narrow)
+    assert hard_by.strafe > 0.5
+    assert abs(hard_by.turn) < 1e-9
     turned = way_made(own, math.pi / 2, BODY, comes, corridor(1.2).obstacles.free_map)
     assert turned.forward < -0.5
     nearer = way_made(own._replace(place=np.array([0.2, 0.0])), 0.0, BODY, comes, corridor(1.2).obstacles.free_map)

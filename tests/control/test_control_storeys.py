@@ -56,6 +56,19 @@ def test_a_way_leads_up_the_stair_and_ends_at_its_height(two: Scene) -> None:
     assert below.left((0.0, 0.0, -2.0)) + 2.0 < way.left((0.0, 0.0, -2.0))
 
 
+def test_a_place_without_a_height_is_on_the_floor_that_a_way_leads_to(two: Scene) -> None:
+    navigator, spot = Navigator(AVATAR, two), (-1.0, 6.5)
+    assert navigator.find((0.0, 0.0, -2.0), spot).goal[1] == pytest.approx(0.0)
+    assert navigator.find((0.0, 2.55, 6.0), spot).goal[1] == pytest.approx(2.55)
+    block = {"type": "box", "center": [0, 2.5 * RISE, 8], "size": [4, 5 * RISE, 4]}
+    steps = [
+        {"type": "box", "center": [0, 0.5 * n * RISE, 4.65 + TREAD * n], "size": [2, n * RISE, TREAD]}
+        for n in range(1, 5)
+    ]
+    raised = Navigator(AVATAR, Scene.of("raised", [block, *steps], finish=(0.0, 12.0)))
+    assert raised.find((0.0, 0.0, 0.0), (0.0, 8.0)).goal[1] == pytest.approx(5 * RISE)
+
+
 def test_targets_lie_on_both_floors(two: Scene) -> None:
     heights = [height for _, height, _ in random_targets(Navigator(AVATAR, two), (0.0, -2.0), 40, 3)]
     assert min(heights) == pytest.approx(0.0)

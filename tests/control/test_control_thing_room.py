@@ -115,3 +115,32 @@ def test_what_lies_on_a_thing_or_in_one_can_be_pushed_off_it() -> None:
     peg = {"type": "cylinder", "center": [0.0, 0.9, 2.0], "radius": 0.05, "height": 0.9}
     assert pushed_to(loose_in([table, vase]), 1, (2.0, 2.0)).place == pytest.approx((2.0, 2.0), abs=0.02)
     assert pushed_to(loose_in([table, peg]), 1, (2.0, 2.0)).place == pytest.approx((2.0, 2.0), abs=0.02)
+
+
+@pytest.mark.parametrize("repeat", ["pingpong", "loop", "once"])
+@pytest.mark.parametrize("thing", THINGS, ids=["box", "cylinder", "sphere"])
+def test_what_moves_by_itself_never_enters_what_was_pushed(thing: dict[str, Any], repeat: str) -> None:
+    rng = np.random.default_rng(len(repeat) + len(thing))
+    for _ in range(4):
+        yaws = rng.uniform(-1.5, 1.5, 3)
+        track = [
+            {"center": [*rng.uniform((-2.0, 0.6), (2.0, 1.2)), z], "yaw": yaw, "seconds": rng.uniform(0.5, 3.0)}
+            for z, yaw in zip(rng.uniform(3.0, 5.0, 3), yaws, strict=True)
+        ]
+        trolley = {"type": "box", "size": [0.6, 1.0, 0.4], "repeat": repeat, "track": track}
+        scene = Scene.of(
+            "tracks", [{**thing, "center": [0.0, thing["center"][1], 1.0]}], finish=(0.0, 7.0), moving=[trolley]
+        )
+        loose = Loose(scene)
+        pushed_to(loose, 0, (float(rng.uniform(-2.0, 2.0)), 6.0))
+        for time in np.arange(4.0, 20.0, 0.1):
+            assert clear_of(loose.things[0], scene, float(time)), f"at {time}"
+
+
+def clear_of(thing: Thing, scene: Scene, time: float) -> bool:
+    """Whether the only box that moves is no farther in a thing than its skin."""
+    moving = scene.obstacles.moving
+    (center,), (yaw,) = (poses[0] for poses in moving.poses(time))
+    points = thing.center + surface_points(thing, np.random.default_rng(5), 2000)
+    own = quaternion.rotate(quaternion.about_axis(1, np.array([-yaw]))[0], points - center)
+    return bool((depth_in(moving.tracks[0].shape, own) < 0.012).all())

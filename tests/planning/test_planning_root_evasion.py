@@ -44,8 +44,9 @@ def gap(width: float) -> Scene:
 
 
 def evasion(scene: Scene, start: RootState = WALKING) -> Any:
-    finder = EvasionFinder(AVATAR, scene.obstacles)
+    finder = EvasionFinder(AVATAR, scene)
     grid = finder.ahead_of(new_line(start, FORWARD, RootMotionSettings()), start, 3.2, (1.1, 0.45), Moving(), 0.0)
+    assert grid is not None
     return grid.cheapest(finder.settings.bodies[0], None)
 
 

@@ -10,7 +10,7 @@ from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.root.room import Grid, Room, free_distance
+from elbowroom.planning.root.room import Floor, Grid, Room, free_distance
 from elbowroom.planning.root.turned_body import TurnedBody
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.free_map import CELL, FARTHEST, LEVELS
@@ -26,6 +26,7 @@ AVATAR = Humanoid.default()
 ANGLES = np.array([-0.8, 0.0, 1.2])
 BODY = TurnedBody(AVATAR, ANGLES)
 GRID = Grid(0.3, 0.1, 0.08, 8, 7, 0.06, 0.012, 0.047)
+FLAT = Floor(np.zeros((8, 7)), -np.inf)
 LINE = TravelLine((0.0, 0.0), 3.0, -2.0, 0.7, 0.7, True)
 LOW, HIGH = np.array([1.0, -4.0]), np.array([6.0, 1.0])
 SPEEDS = (1.1, 0.45)
@@ -42,7 +43,7 @@ def boxes_near(line: TravelLine, seed: int, count: int) -> Obstacles:
 
 def room_among(boxes: Obstacles, passing: Spans) -> Room:
     turned = BODY.going(LINE.heading - LINE.facing, SPEEDS)
-    return Room(BODY, turned, LINE, GRID, boxes.free_map.window(LOW, HIGH), boxes.standing, passing)
+    return Room(BODY, turned, LINE, GRID, (boxes.free_map.window(LOW, HIGH), FLAT), boxes.standing, passing)
 
 
 NOTHING = stacked([Obstacles().standing] * GRID.rows)

@@ -23,6 +23,7 @@ from elbowroom.body.legs import leg_rest, leg_rotations
 from elbowroom.body.rises import raise_feet
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.body.whole_body import PosedBy, WholeBody, posed_capsules, whole_body
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -52,6 +53,7 @@ class BodyModel(NamedTuple):
     leg_rest: Floats  # (2, 9) see `legs.leg_rest`
     gait: GaitShape
     body: CapsuleSet  # every capsule, in the humanoid's order
+    whole: WholeBody  # all of that, for kernels
     groups: dict[DofGroup, CapsuleSet]
     chains: dict[DofGroup, posing.Chain]  # of the local groups
     trunk: tuple[posing.Chain, CapsuleSet]  # the waist with all that follows it
@@ -91,26 +93,32 @@ def body_model(humanoid: Humanoid) -> BodyModel:
         base=relaxed_rotations(skeleton),
         parents=parents,
         offsets=rest - np.where(parents[:, None] >= 0, rest[parents], 0.0),
-        columns=tuple(_column(skeleton, group) for group in LOCAL_GROUPS if group.value.turning is Turning.COLUMN),
-        arms=tuple(_arm(skeleton, group) for group in ARMS),
+        columns=posing.columns_together([_column(skeleton, group) for group in LOCAL_GROUPS if _is_column(group)]),
+        arms=posing.arms_together([_arm(skeleton, group) for group in ARMS]),
         legs=np.array([_joints(skeleton, [side + bone for bone in _LEG_BONES]) for side in _SIDES]),
         chest=_end(skeleton, DofGroup.WAIST),
     )
     chains = {group: _chain(skeleton, capsules, figure, group, gait.half_leg) for group in LOCAL_GROUPS}
-    legs = capsules.of(DofGroup.ROOT)
+    legs, rest_of_legs = capsules.of(DofGroup.ROOT), leg_rest(skeleton)
+    body = _capsule_set(capsules, every := np.arange(len(capsules.names)), _posed(skeleton, capsules, every, 0))
     sets = {group: _set_of_chain(capsules, capsules.of(group), chain) for group, chain in chains.items()}
     trunk = np.sort(np.concatenate([capsules.of(g) for g in (DofGroup.WAIST, *followers_of(DofGroup.WAIST))]))
     column = _following_column(skeleton, DofGroup.WAIST)
     whole = _chain_of(skeleton, capsules, figure, DofGroup.WAIST, gait.half_leg, trunk, column)
     return BodyModel(
         figure=figure,
-        leg_rest=leg_rest(skeleton),
+        leg_rest=rest_of_legs,
         gait=gait,
-        body=_capsule_set(capsules, every := np.arange(len(capsules.names)), _posed(skeleton, capsules, every, 0)),
+        body=body,
+        whole=whole_body(PosedBy(figure, body.posed, rest_of_legs, gait.legs, gait.scale, gait.half_leg)),
         groups={DofGroup.ROOT: _capsule_set(capsules, legs, _posed(skeleton, capsules, legs, 0))} | sets,
         chains=chains,
         trunk=(whole, _set_of_chain(capsules, trunk, whole)),
     )
+
+
+def _is_column(group: DofGroup) -> bool:
+    return group.value.turning is Turning.COLUMN
 
 
 def _joints(skeleton: Skeleton, bones: Sequence[str]) -> Indices:
@@ -258,8 +266,7 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
     The first three components of `q` are ignored: the root states say where the body stands.
     """
     states, postures = _states(roots), _rows(q, DOF)
-    legs, sinks = _lower_body(model, states, postures[:, LOWERING])
-    return posing.pose_body(model.figure, model.body.posed, postures, states, legs, sinks)[0]
+    return posed_capsules(model.whole, postures, states)
 
 
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:

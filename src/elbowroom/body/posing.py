@@ -3,6 +3,7 @@
 Quaternions are rows `xyzw` of (J, 4) arrays; every kernel poses one posture after the other, in float64.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -86,16 +87,46 @@ class Chain(NamedTuple):
     half_leg: float  # metres, the unit of a lowering
 
 
+class Columns(NamedTuple):
+    """K columns one after the other."""
+
+    joints: Indices  # (S,) as in `Column`
+    shares: Floats  # (S,)
+    begins: Indices  # (K + 1,) where the joints of each begin
+    first: Indices  # (K,)
+
+
+class Arms(NamedTuple):
+    """A arms."""
+
+    joints: Indices  # (A, 3) as in `Arm`
+    mirrors: Floats  # (A,)
+    first: Indices  # (A,)
+
+
 class Figure(NamedTuple):
     """All joints of a body, and what turns them."""
 
     base: Floats  # as in `Chain`
     parents: Indices
     offsets: Floats
-    columns: tuple[Column, ...]
-    arms: tuple[Arm, ...]
+    columns: Columns
+    arms: Arms
     legs: Indices  # (2, 4) thigh, shin, foot, toes; -1 where absent
     chest: int  # the joint that head and arms hang on
+
+
+def columns_together(columns: Sequence[Column]) -> Columns:
+    """These columns as arrays."""
+    begins = np.cumsum([0, *(len(column.joints) for column in columns)])
+    joints, shares, first = zip(*columns, strict=True)
+    return Columns(np.concatenate(joints), np.concatenate(shares), begins.astype(np.int64), np.array(first, np.int64))
+
+
+def arms_together(arms: Sequence[Arm]) -> Arms:
+    """These arms as arrays."""
+    joints, mirrors, first = zip(*arms, strict=True)
+    return Arms(np.array(joints, np.int64), np.array(mirrors, np.float64), np.array(first, np.int64))
 
 
 class CapsuleChain(NamedTuple):
@@ -190,10 +221,12 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
 @helper
 def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, scratch: Floats) -> None:
     """Every joint that moves, for a posture `q` (DOF,) and legs (2, 4, 4)."""
-    for column in figure.columns:
-        _set_column(column, q[column.first], q[column.first + 1], local)
-    for arm in figure.arms:
-        _set_arm(arm.joints, arm.mirror, q[arm.first :], local, scratch)
+    columns, arms = figure.columns, figure.arms
+    for k in range(len(columns.first)):
+        first, last, at = columns.begins[k], columns.begins[k + 1], columns.first[k]
+        _set_column(Column(columns.joints[first:last], columns.shares[first:last], at), q[at], q[at + 1], local)
+    for k in range(len(arms.first)):
+        _set_arm(arms.joints[k], arms.mirrors[k], q[arms.first[k] :], local, scratch)
     _set_legs(figure.legs, leg_rotations, local)
 
 

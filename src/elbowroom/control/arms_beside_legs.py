@@ -16,6 +16,7 @@ from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.self_pairs import self_pairs
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
 _ROUNDS, _LEAST = 3, 0.3  # of the way to the hand: what spreading an arm opens at least
@@ -40,14 +41,13 @@ class ArmsBesideLegs:
         self._most = [float(limits(arm)[_ABDUCTION, 1]) for arm in ARMS]
         self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about
 
-    def apart(self, root: Floats, upper: Floats) -> Floats:
+    def apart(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Floats:
         """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET,).
 
-        What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near.
+        What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near. `axes` (C, 6, 1)
+        are those of the body's capsules, where they are known, as seen from anywhere.
         """
-        here = root[None].copy()
-        here[0, :3] = 0.0
-        gaps = self._gaps(here, upper)
+        gaps = self._gaps(self._axes(root, upper) if axes is None else axes)
         if gaps.min() >= _NEAR:
             return upper
         wanted, angles, slopes = _widened(gaps), np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
@@ -58,19 +58,20 @@ class ArmsBesideLegs:
             spread[self._columns] = np.maximum(
                 upper[self._columns], np.minimum(upper[self._columns] + angles, self._most)
             )
-            found = self._gaps(here, spread)
+            found = self._gaps(self._axes(root, spread))
             opened = np.divide(found - gaps, angles, out=np.full(len(ARMS), self._reach), where=angles > 0.0)
             slopes = np.clip(opened, _LEAST * self._reach, self._reach)
         return spread
 
-    def _gaps(self, root: Floats, upper: Floats) -> Floats:
+    def _axes(self, root: Floats, upper: Floats) -> Floats32:
+        here, q = root[None].copy(), np.zeros((1, DOF))
+        here[0, :3], q[0, DOF - LOCAL :] = 0.0, upper
+        return posture_capsules(self._model, q, here)
+
+    def _gaps(self, axes: Floats32) -> Floats:
         """How much nearer the left and the right arm may come to the legs, metres (2,)."""
-        q = np.zeros((1, DOF))
-        q[0, DOF - LOCAL :] = upper
-        capsules = posture_capsules(self._model, q, root)
-        return pair_clearances(capsules, self._first, self._second, self._kinds, self._limits, len(ARMS))[:, 0].astype(
-            np.float64
-        )
+        gaps = pair_clearances(axes, self._first, self._second, self._kinds, self._limits, len(ARMS))
+        return gaps[:, 0].astype(np.float64)
 
 
 def _widened(gaps: Floats) -> Floats:

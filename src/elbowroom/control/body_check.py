@@ -1,5 +1,6 @@
 """The last word before a pose is shown: how far the whole body is from every obstacle, and from every other avatar."""
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -10,9 +11,9 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOWERING
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.control.above_soles import AboveSoles
 from elbowroom.control.neighbour import Neighbour
 from elbowroom.planning.halving import begun, due, settle
-from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -20,11 +21,12 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
 
 _HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
-_BOTH = np.array([0.0, 1.0])  # the frames themselves
+_REMEMBERED = 4  # poses
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
@@ -40,20 +42,34 @@ class Frames(NamedTuple):
     times: tuple[float, float]  # seconds
 
 
+class _Pose(NamedTuple):
+    """A pose that was asked about, and where it puts the body."""
+
+    root: Floats  # (ROOT_STATE,) or (WITH_FEET,)
+    upper: Floats  # (LOCAL,)
+    axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
+    floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
+    standing: list[Floats32]  # how far each capsule is from what stands (C,), once that is known
+
+
 class BodyCheck:
-    """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then."""
+    """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then.
+
+    The same pose is asked about several times in a frame and in the next: the last few are remembered, and known by
+    their arrays, which nobody may change.
+    """
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
-        self._footing = Footing(self.model, scene.ground)
+        self._soles = AboveSoles(self.model, scene.ground)
         self._levers = body_levers(humanoid)
-        self._obstacles, moving = scene.obstacles, scene.obstacles.moving
+        moving = scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
-        self._moving = Obstacles(moving=moving)
-        self._empty = not len(scene.obstacles.shapes) and not len(scene.obstacles.moving)
+        self._moving, self._loose = Obstacles(moving=moving), Obstacles()
+        self._empty = not len(scene.obstacles)
+        self._poses: deque[_Pose] = deque(maxlen=_REMEMBERED)
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
-        self._loose = Obstacles()
 
     @property
     def alone(self) -> bool:
@@ -72,36 +88,37 @@ class BodyCheck:
     @property
     def restless(self) -> bool:
         """Whether anything moves that is not the avatar's own."""
-        return bool(len(self._obstacles.moving) or self.others) or self.loose.fastest > 0.0
+        return bool(len(self._moving) or self.others) or self.loose.fastest > 0.0
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
 
-        The root may be followed by its feet, here and below.
+        The root may be followed by its feet, here and below. What feet stand on is left out as `above_soles.py` tells.
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
-        return np.inf if self.alone else self._least(self._posed(root, upper), root, time)
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, time)
 
     def body(self, root: Floats, upper: Floats) -> Floats:
         """The ends of the capsules as seen from the root's place, and their radii, (C, 7) metres."""
-        return np.column_stack([self._posed(root, upper)[:, :, 0], self._radii]).astype(np.float64)
+        return np.column_stack([self.axes(root, upper)[:, :, 0], self._radii]).astype(np.float64)
+
+    def axes(self, root: Floats, upper: Floats) -> Floats32:
+        """The capsules' axes (C, 6, 1) as seen from the root's place."""
+        return self._pose(root, upper).axes
 
     def room_of_legs(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body."""
-        if self.alone:
-            return np.inf
         legs = self.model.roots.indices
-        return self._least(self._posed(root, upper)[legs], root, time, others_at=-np.inf, radii=self._radii[legs])
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf, legs)
 
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
-        return np.inf if self.alone else self._least(self._posed(root, upper), root, time, others_at=-np.inf)
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf)
 
     def clearance_from(self, moving: Moving, root: Floats, upper: Floats, time: float) -> float:
         """The same from some moving obstacles alone."""
-        segments = self._posed(root, upper)
-        return Obstacles(moving=moving).clearance(segments, self._radii, root[:2], time)
+        return Obstacles(moving=moving).clearance(self.axes(root, upper), self._radii, root[:2], time)
 
     def leaves_alone(self, thing: Moving, body: tuple[Floats, Floats], span: tuple[float, float], way: float) -> bool:
         """Whether a thing that moves `way` metres in a span of time keeps its margin from a body: root and upper body.
@@ -112,21 +129,31 @@ class BodyCheck:
         before, after = (self.clearance_from(thing, *body, time) for time in span)
         return after >= min(before, THING_MARGIN) and before + after > way
 
-    def free_between(self, frames: Frames, clearances: tuple[float, float]) -> bool:
+    def free_between(self, frames: Frames) -> bool:
         """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
 
-        Where others move as they mean to, until the second frame. `clearances` are those of the frames.
+        Each capsule by itself of what stands, the whole body of what moves. Where others move as they mean to, until
+        the second frame.
         """
-        way, first, last = self._levers.travel(frames.roots, frames.uppers), *frames.times
-        ways, gaps = [way], np.array([[clearances[0]], [clearances[1]]], np.float32)
+        if self.alone:
+            return True
+        ways, (first, last) = self._levers.travel(frames.roots, frames.uppers), frames.times
         if self._accompanied:
-            ways += [way + around.moving.fastest * (last - first) for around in self._around]
-            ways += [way + other.travel(first, last) for other in self.others]
-            gaps = self._gaps(frames, _BOTH)
-        proof = begun(gaps, np.array([ways]), 1, 0.0, _HALVINGS)
+            farthest = float(ways.max())
+            movers = [around.moving.fastest * (last - first) for around in self._around]
+            movers += [other.travel(first, last) for other in self.others]
+            ways = np.append(ways, [farthest + way for way in movers])
+        floors, ends = self._soles.floors(*frames.roots), zip(*frames, strict=True)
+        poses = [(self._pose(root, upper), time) for root, upper, time in ends]
+        if self._soles.change(*frames.roots):
+            poses = [(pose._replace(floors=floors, standing=[]), time) for pose, time in poses]
+        gaps = np.array([self._gaps(pose, time) for pose, time in poses])
+        if (gaps[0] + gaps[1] - ways).min() >= 0.0:
+            return True
+        proof = begun(gaps, ways[None], 1, 0.0, _HALVINGS)
         parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
         while (count := due(proof, parts, shares)) > 0:
-            settle(proof, self._gaps(frames, shares[:count]), count)
+            settle(proof, np.array([self._gaps_at(frames, share, floors) for share in shares[:count]]), count)
         return bool(proof.least.min() >= 0.0)
 
     @property
@@ -139,55 +166,63 @@ class BodyCheck:
         """The obstacles that can move: the scene's own, and what is loose."""
         return [each for each in (self._moving, self._loose) if len(each)]
 
-    def _gaps(self, frames: Frames, shares: Floats) -> Floats32:
-        """The clearances at shares (N,) of the time between two frames: from what stands (N, 1).
+    def _gaps_at(self, frames: Frames, share: float, floors: Floats) -> Floats32:
+        """The gaps at a share of the time between two frames, above the `floors` (2,) of both."""
+        (first, last), (begin, end), (before, after) = frames
+        root, upper = first + share * (last - first), begin + share * (end - begin)
+        pose = _Pose(root, upper, self._posed(root, upper, root), floors, [])
+        return self._gaps(pose, before + share * (after - before))
 
-        Where anything can move, from that too, from what is loose, and from each of the others: a column for each.
+    def _gaps(self, pose: _Pose, time: float) -> Floats32:
+        """The clearances of a pose at a time: of each capsule from what stands.
+
+        Where anything can move, from that too, from what is loose, and from each of the others: one more for each.
         """
-        (first, last), (begin, end), origin = frames.roots, frames.uppers, frames.roots[0][:2]
-        root, upper = first + shares[:, None] * (last - first), begin + shares[:, None] * (end - begin)
-        segments = self._capsules(np.hstack([root[:, :3], upper]), self._near(root, first))
-        gaps = []
-        for i, time in enumerate((frames.times[0] + shares * (frames.times[1] - frames.times[0])).tolist()):
-            axes = np.ascontiguousarray(segments[:, :, i : i + 1])
-            row = [self._standing.clearance(axes, self._radii, origin, time)]
-            if self._accompanied:
-                row += [around.clearance(axes, self._radii, origin, time) for around in self._around]
-            gaps.append(row + [other.clearance(axes, self._radii, origin, time) for other in self.others])
-        return np.array(gaps, np.float32)
+        gaps = self._from_standing(pose)
+        if not self._accompanied:
+            return gaps
+        moving = [around.clearance(pose.axes, self._radii, pose.root[:2], time) for around in self._around]
+        moving += [other.clearance(pose.axes, self._radii, pose.root, time) for other in self.others]
+        return np.append(gaps, np.array(moving, np.float32))
 
-    def _posed(self, root: Floats, upper: Floats) -> Floats32:
-        """The capsules' axes (C, 6, 1) as seen from the root."""
+    def _pose(self, root: Floats, upper: Floats) -> _Pose:
+        """A pose, remembered."""
+        for pose in self._poses:
+            if pose.root is root and pose.upper is upper:
+                return pose
         stood = self.standing(root)
-        return self._capsules(configuration(root, upper)[None], self._near(stood, stood)[None])
+        pose = _Pose(root, upper, self._posed(root, upper, stood), self._soles.floors(stood), [])
+        self._poses.appendleft(pose)
+        return pose
+
+    def _posed(self, root: Floats, upper: Floats, stood: Floats) -> Floats32:
+        """The axes (C, 6, 1) of a pose on what its feet stand on, as seen from the root's place."""
+        near = stood.copy()
+        near[:2] = 0.0
+        return self._capsules(configuration(root, upper)[None], near[None])
+
+    def _from_standing(self, pose: _Pose) -> Floats32:
+        """How far each capsule is from what stands, (C,); of the nearest that, of others at least so much."""
+        if not pose.standing:
+            pose.standing.append(self._soles.clearances(self._standing, pose.axes, pose.root[:2], pose.floors))
+        return pose.standing[0]
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with what the feet stand on."""
-        stood: Floats = self._footing.stood(root[None])[0][0]
+        stood: Floats = root if self._soles.footing.plain else self._soles.footing.stood(root[None])[0][0]
         return stood
 
     def _capsules(self, postures: Floats, roots: Floats) -> Floats32:
         """The capsules' axes (C, 6, N), those of the feet as high as they are held against what they stand on."""
         segments = posture_capsules(self.model, postures, roots)
-        return self._footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
+        return self._soles.footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
 
-    def _least(
-        self,
-        segments: Floats32,
-        origin: Floats,
-        time: float,
-        others_at: float | None = None,
-        radii: Floats32 | None = None,
-    ) -> float:
-        """The least clearance of one posture (C, 6, 1) as seen from `origin`, at a time; `radii` (C,) of some."""
-        axes, when = np.ascontiguousarray(segments), time if others_at is None else others_at
-        sizes = self._radii if radii is None else radii
-        found = self._obstacles.clearance(axes, sizes, origin[:2], time)
-        if len(self._loose):
-            found = min(found, self._loose.clearance(axes, sizes, origin[:2], time))
-        return min([found, *(other.clearance(axes, sizes, origin, when) for other in self.others)])
-
-    def _near(self, roots: Floats, origin: Floats) -> Floats:
-        near = roots.copy()
-        near[..., :2] -= origin[:2]
-        return near
+    def _least(self, pose: _Pose, time: float, others_at: float, parts: Indices | None = None) -> float:
+        """The least clearance of a pose, or of some `parts` of it; from others as they are at a time of theirs."""
+        some = slice(None) if parts is None else parts
+        found, axes, radii = [float(self._from_standing(pose)[some].min())], pose.axes, self._radii
+        if self._accompanied:
+            axes, radii = np.ascontiguousarray(axes[some]), radii[some]
+            found += [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]
+            found += [other.clearance(axes, radii, pose.root, others_at) for other in self.others]
+        return min(found)

@@ -28,7 +28,7 @@ from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.pushing import Pushing
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
-from elbowroom.control.stepping import Stepping
+from elbowroom.control.stepping import Around, Stepping
 from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -125,8 +125,8 @@ class Controller:
     def goto(self, place: Place | Spot, pace: Command = FORWARD) -> Journey:
         """Go to a place (x, z) or (x, height, z), with the following steps; a command that is not idle takes over.
 
-        Without a height it is one at about that at which the avatar stands. `pace` says how fast, by its `forward` and
-        `run`. Raises `NoWayError` where no way leads there.
+        Without a height it is on the floor there that a way leads to, the avatar's own if it can be. `pace` says how
+        fast, by its `forward` and `run`. Raises `NoWayError` where no way leads there.
         """
         here = float(self.root.x), float(self.root.height), float(self.root.z)
         return self.set_out(self.navigator.find(here, place), pace)
@@ -275,7 +275,7 @@ class Controller:
         self._stands_by = command.idle
         if not command.idle or not self.others or not self._assist:
             return command
-        shown, free_map = self._shown, self._around.scene.obstacles.free_map
+        shown, free_map = self._shown, self._around.scene.free_map
         body = self._check.body(shown.root, shown.upper)
         return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
 
@@ -340,7 +340,7 @@ class Controller:
         if not self.others:
             return things
         body = self._check.body(start.root, start.upper)
-        others = expected(self._walker(command), body, self.others, self._around.scene.obstacles.free_map)
+        others = expected(self._walker(command), body, self.others, self._around.scene.free_map)
         clearance = self._check.clearance_from(others, start.root, start.upper, time)
         return things + (slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others)
 
@@ -383,7 +383,8 @@ class Controller:
     def _stands_still(self, states: Floats, uppers: Floats) -> bool:
         """Whether a motion changes nothing of what is shown: that stands, and so does the motion, in the same pose."""
         shown, stance = self._shown, self._holding.stance
-        if self.scene.ground.plain and not (self._feet_stay or self._stepping.rests(shown.root)):
+        feet = self._stepping
+        if self.scene.ground.plain and not (feet.stay(self._before.root, shown.root) or feet.rests(shown.root)):
             return False
         if not all(map(is_still, (states[:, 3:6], shown.root[3:6], stance, shown.upper_velocity))):
             return False
@@ -419,13 +420,13 @@ class Controller:
     def _under(self, played: list[tuple[Playback, Floats]], dt: float) -> Iterator[tuple[Playback, Floats]]:
         """How a motion can be shown, with what it stands on: on plain ground with feet that step."""
         if self.scene.ground.plain:
-            return self._stepping.under(played, self._shown, self._queue.ahead(), dt, self._room)
+            return self._stepping.under(played, self._shown, self._queue.ahead(), dt, self._look)
         return ((posed._replace(root=self._check.standing(posed.root)), stance) for posed, stance in played)
 
     def _next_pose(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
         """How a pose will be shown `dt` seconds after what is `shown`, if that is free."""
         if self.scene.ground.plain:
-            return self._stepping.next(shown, planned, dt, ahead, self._room)
+            return self._stepping.next(shown, planned, dt, ahead, self._look)
         return planned._replace(root=self._check.standing(planned.root))
 
     def _settling(self, dt: float) -> Iterator[Playback]:
@@ -433,13 +434,13 @@ class Controller:
         for part in _SETTLING if self._assist else _SETTLING[:1]:
             held = self._holding.settle(self._shown, part * dt)
             if self.scene.ground.plain:
-                yield from self._stepping.settling(self._shown, held, dt, self._room)
+                yield from self._stepping.settling(self._shown, held, dt, self._look)
             else:
                 yield held._replace(root=self._check.standing(held.root))
 
-    def _room(self, root: Floats, upper: Floats) -> float:
-        """How far the legs are from all that stands and moves, metres."""
-        return self._check.room_of_legs(root, upper, self._queue.time)
+    def _look(self, root: Floats, upper: Floats) -> Around:
+        """What stands and moves about a body."""
+        return Around(self._check.room_of_legs(root, upper, self._queue.time), self._check.axes(root, upper))
 
     def _rate(self, dt: float) -> float:
         """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
@@ -454,7 +455,7 @@ class Controller:
             return False
         roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
         frames = Frames(roots, uppers, (self._shown_at, self._queue.time))
-        return self._check.free_between(frames, (self._clearance, clearance))
+        return self._check.free_between(frames)
 
     def _clearance_of(self, posed: Playback) -> float:
         """Of a pose, now."""
@@ -489,12 +490,13 @@ class Controller:
     # --- what is shown -----------------------------------------------------------------------------------------------
 
     def _show(self, playback: Playback, clearance: float) -> None:
-        self._feet_stay = self._stepping.stay(self._shown.root, playback.root)
+        self._before = self._shown
         self._shown, self._clearance, self._shown_at = playback, clearance, self._queue.time
         if clearance >= 0.0:
             self._free = playback
 
     def _frame(self, command: Command) -> Frame:
+        key_frames = self._queue.unplayed()
         return Frame(
             time=self._queue.time,
             q=configuration(self._shown.root, self._shown.upper),
@@ -503,8 +505,8 @@ class Controller:
             clearance=self._clearance,
             stuck=not command.idle and (self._blocked or self._walled_in()),
             touching=self._clearance < 0.0,
-            fill=self._queue.fill,
-            key_frames=self._queue.unplayed(),
+            fill=min(len(key_frames.times), self.settings.queue_size),
+            key_frames=key_frames,
             goal=self._goal(),
             plan=self._plan_report,
             command=command,

@@ -42,8 +42,9 @@ class Holding:
 
     def over(self, played: Playback, dt: float) -> list[tuple[Playback, Floats]]:
         """How a motion can be shown, best first, and the stance that is left: less; all of it, where that touches."""
-        stances = [_faded(self.stance, dt), self.stance] if not is_still(self.stance) else [self.stance]
-        return [(_in_stance(played, stance), stance) for stance in stances]
+        if is_still(self.stance):
+            return [(played, self.stance)]
+        return [(_in_stance(played, stance), stance) for stance in (_faded(self.stance, dt), self.stance)]
 
     def end(self, stance: Floats) -> None:
         """The motion goes on, with what is left of the stance."""

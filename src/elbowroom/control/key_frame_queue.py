@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.root.path import RootPath, interpolate_root
 from elbowroom.planning.stillness import is_still
@@ -58,6 +59,7 @@ class KeyFrameQueue:
         self._roots = np.empty((0, ROOT_STATE))
         self._uppers = np.empty((0, LOCAL))
         self._velocities = np.empty((0, LOCAL))
+        self._ends_moving = False
         self.start_count()
 
     def start_count(self) -> None:
@@ -82,26 +84,29 @@ class KeyFrameQueue:
     @property
     def ends_moving(self) -> bool:
         """Whether the root still moves at the last key frame."""
-        return bool(len(self._roots)) and not is_still(self._roots[-1, 3:6])
+        return self._ends_moving
 
     @property
     def fill(self) -> int:
         """Unplayed key frames, up to |Q|: after a refill |Q| lie beyond the one that is played towards."""
-        return min(int(np.count_nonzero(self._coming(self._times))), self.capacity)
+        return min(len(self._times) - self._next(), self.capacity)
 
     def unplayed(self) -> KeyFrames:
         """The key frames that are still to come."""
-        keys = self._coming(self._times)
-        return KeyFrames(self._times[keys], self._roots[keys], self._uppers[keys])
+        following = self._next()
+        return KeyFrames(self._times[following:], self._roots[following:], self._uppers[following:])
 
     def ahead(self) -> Floats:
         """Seconds from now and root states (m, 8) of the key frames that are still to come."""
-        keys = self._coming(self._times)
-        return np.column_stack([self._times[keys] - self.time, self._roots[keys]])
+        following = self._next()
+        ahead = np.empty((len(self._times) - following, 1 + ROOT_STATE))
+        ahead[:, 0] = self._times[following:] - self.time
+        ahead[:, 1:] = self._roots[following:]
+        return ahead
 
-    def _coming(self, times: Floats) -> NDArray[np.bool_]:
-        coming: NDArray[np.bool_] = times > self.time + _SAME_TIME
-        return coming
+    def _next(self) -> int:
+        """The number of the first key frame that is still to come."""
+        return int(self._times.searchsorted(self.time + _SAME_TIME, side="right"))
 
     def splice(self, path: RootPath, uppers: Floats, velocity: Floats, velocities: Floats | None = None) -> None:
         """From the start of `path` on, play it with the upper body `uppers` (n+1, LOCAL) at its key times.
@@ -117,14 +122,14 @@ class KeyFrameQueue:
         self._roots = np.concatenate([self._roots[kept], path.states])
         self._uppers = np.concatenate([self._uppers[kept], uppers])
         self._velocities = np.concatenate([self._velocities[kept], curve])
+        self._ends_moving = not is_still(path.states[-1, 3:6])
         self.start_count()
 
     def _kept_until(self, time: float) -> slice:
         """The key frames from the last one played until, and without, the one at `time`; none where it is now."""
         if time <= self.time + _SAME_TIME:
             return slice(0, 0)
-        played = int(np.count_nonzero(~self._coming(self._times)))
-        return slice(max(played - 1, 0), int(np.count_nonzero(self._times < time - _SAME_TIME)))
+        return slice(max(self._next() - 1, 0), int(np.count_nonzero(self._times < time - _SAME_TIME)))
 
     def advance(self, dt: float, rate: float = 1.0) -> None:
         """Move the play head by `dt` seconds, in which `rate` times as many seconds of the motion are played."""
@@ -146,10 +151,20 @@ class KeyFrameQueue:
 
     def at(self, time: float) -> Playback:
         """What the motion has at `time`, played as it was planned; at its end the root still has its velocity."""
-        upper, velocity = hermite(self._times, self._uppers, self._velocities, time)
-        k = max(int(np.searchsorted(self._times, time + _SAME_TIME, side="right")) - 1, 0)
-        if abs(self._times[k] - time) <= _SAME_TIME or k == len(self._times) - 1:
-            return Playback(self._roots[k].copy(), self._uppers[k].copy(), self._velocities[k].copy())
-        interval = float(self._times[k + 1] - self._times[k])
-        share = max((time - self._times[k]) / interval, 0.0)
-        return Playback(interpolate_root(self._roots[k], self._roots[k + 1], share, interval), upper, velocity)
+        return Playback(*_motion_at(self._times, self._roots, self._uppers, self._velocities, time))
+
+
+@exact_kernel
+def _motion_at(
+    times: Floats, roots: Floats, uppers: Floats, velocities: Floats, time: float
+) -> tuple[Floats, Floats, Floats]:
+    """Root, upper body and its velocity at a time, between key frames or on the last."""
+    k, last = 0, times.shape[0] - 1
+    while k < last and times[k + 1] <= time + _SAME_TIME:
+        k += 1
+    if abs(times[k] - time) <= _SAME_TIME or k == last:
+        return roots[k].copy(), uppers[k].copy(), velocities[k].copy()
+    interval = times[k + 1] - times[k]
+    share = max((time - times[k]) / interval, 0.0)
+    upper, velocity = hermite(times, uppers, velocities, time)
+    return interpolate_root(roots[k], roots[k + 1], share, interval), upper, velocity

@@ -26,12 +26,13 @@ _SIGHT, _PAST = 8.0, -0.6  # metres ahead from which another is reckoned with, a
 _BESIDE = 2.0  # metres to the side beyond which nobody is in the way
 _CROSSED = 0.1  # metres to the right from which on another is passed on that side: it takes less
 _NARROWEST, _WIDEST = 0.44, 0.7  # metres that a half must have, and needs
-_ZONE = 0.6  # metres before and behind the middle between both, in which halves are kept to
+_ZONE = 0.9  # metres before and behind the middle between both, in which halves are kept to
 _BODY = 0.45  # metres from the middle of a body to the end of its stride
-_APART = 0.01  # metres by which a half ends before the line that both keep from
-_CHEST = 0.25  # metres from the middle of a body to its front
+_APART = 0.01  # metres by which a half reaches beyond the line that both keep from
 _TOUCH = 0.01  # metres ahead of who stands in the other's half, at which it begins at the earliest, and
-_ROUND = 0.15  # at which it should, besides the way aside to its own: so that there is a way round the corner
+_ROUND = 0.15  # at which it should, besides the way aside to its own: so that there is a way round the corner.
+# But no farther than half way to the other: where it receded for as long as somebody walks, nobody would go aside.
+_SLANT = 0.4  # metres to the side for each metre ahead, of who steps aside as it walks
 _COMING, _IN_THE_WAY = 4.0, 0.6  # metres ahead and to the side within which who stands minds who comes
 _PASSAGE = 0.65  # metres beside who stands that are enough to pass
 _TIGHT = 0.48  # metres beside who stands that are not enough: it turns its shoulder
@@ -89,13 +90,19 @@ def _halves(own: Walker, other: Walker, free_map: FreeMap) -> _Halves | None:
 
 
 def way_made(own: Walker, heading: float, body: Floats, others: Sequence[Neighbour], free_map: FreeMap) -> Command:
-    """What who stands does for those who come and find no room beside it: a step aside, then a turn of its shoulder.
+    """What who stands does for those who come and find no room beside it: a turn of its shoulder, a step aside.
 
-    A step to the nearer wall, or to its own right as it faces who comes; its front to who passes. `heading` and `body`
-    are one's own, as for `expected`.
+    It turns first where a step alone is not enough, its front to who passes; then it steps to the nearer wall, or to
+    its own right as it faces who comes. `heading` and `body` are one's own, as for `expected`.
     """
     ends, radii = body[:, :6].reshape(-1, 2, 3)[:, :, ::2], body[:, 6:]
     front, left = np.array([math.sin(heading), math.cos(heading)]), np.array([math.cos(heading), -math.sin(heading)])
+    breadth = float((ends @ left + radii).max() - (ends @ left - radii).min())
+    reach = float((np.hypot(ends[:, :, 0], ends[:, :, 1]) + radii).max())
+
+    def step(way: Floats) -> Command:
+        return Command(forward=float(_EASE * way @ front), strafe=float(_EASE * way @ left))
+
     for other in others:
         axis, apart = -other.walker.wanted, other.walker.place - own.place
         right = np.array([-axis[1], axis[0]])
@@ -103,11 +110,15 @@ def way_made(own: Walker, heading: float, body: Floats, others: Sequence[Neighbo
             continue
         low, high = _walls(own.place, right, 0.0, axis, free_map)
         rooms = float((ends @ right - radii).min()) - low, high - float((ends @ right + radii).max())
-        outward = -right if rooms[0] < rooms[1] - _CROSSED else right
-        if max(rooms) < _PASSAGE and min(rooms) > _CLOSE_BY:
-            return Command(forward=float(_EASE * outward @ front), strafe=float(_EASE * outward @ left))
-        if max(rooms) < _TIGHT and abs(front @ axis) > _TURNED:
+        outward = -right if -low < high - _CROSSED else right  # whichever way it has turned
+        if max(rooms) >= _PASSAGE:
+            continue
+        if high - low - breadth - _CLOSE_BY < _TIGHT and abs(front @ axis) > _TURNED:
+            if min(-low, high) < reach + _TOUCH:
+                return step(right if -low < high else -right)
             return Command(turn=math.copysign(_EASE, -float(outward @ left)))
+        if min(rooms) > _CLOSE_BY:
+            return step(outward)
     return Command()
 
 
@@ -130,11 +141,11 @@ def _kept_by(own: Walker, halves: _Halves, body: Floats) -> Track:
     """The other's half about where both meet, as something that stands there; it begins ahead of one's own body."""
     axis, outward, gap, line, breadth = halves
     ends, radii = body[:, :6].reshape(-1, 2, 3)[:, :, ::2], body[:, 6:]
-    edge = line - _APART
+    edge = line + _APART
     near = min(0.5 * gap - _ZONE, gap - _BODY)
     over, front = edge - float((ends @ outward - radii).min()), float((ends @ axis + radii).max())
     if over > 0.0:
-        near = max(near, front + _TOUCH, min(front + _ROUND + over, gap - _CHEST))
+        near = max(near, front + _TOUCH, min(front + _ROUND + over / _SLANT, 0.5 * gap))
     far = max(near + _TOUCH, min(gap + _BODY, 0.5 * gap + 2.0 * _ZONE))
     middle = own.place + 0.5 * (near + far) * axis + (edge - 0.5 * breadth) * outward
     center = np.array([[middle[0], 0.5 * _HEIGHT, middle[1]]])

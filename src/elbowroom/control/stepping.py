@@ -1,6 +1,7 @@
 """The avatar's feet under what is played: they step as the root goes, and wait or glide where no step can be shown."""
 
 from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,20 @@ from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.shared import Shared
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
-Room = Callable[[Floats, Floats], float]  # how far legs are from all, for a root with feet and an upper body; metres
+
+class Around(NamedTuple):
+    """What is about a body."""
+
+    room: float  # metres from the legs to the nearest obstacle
+    axes: Floats32  # (C, 6, 1) of its capsules
+
+
+Look = Callable[[Floats, Floats], Around]  # for a root with feet and an upper body
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
-
 
 _ARMS: Shared[ArmsBesideLegs] = Shared()
 
@@ -47,21 +56,23 @@ class Stepping:
         """Whether both feet stand, and are where they were: no step can be shown, or none is needed."""
         return bool(standing(root).all() and np.array_equal(before[ROOT_STATE:], root[ROOT_STATE:]))
 
-    def settling(self, shown: Playback, posed: Playback, dt: float, room: Room) -> list[Playback]:
+    def settling(self, shown: Playback, posed: Playback, dt: float, look: Look) -> list[Playback]:
         """A pose that is held, on the feet that follow on what is shown within `dt` seconds: best first."""
         steps, glides = (follow(self._gait, shown.root, posed.root, dt) for follow in (onward, gliding))
-        roots = [steps, glides] if room(steps, posed.upper) >= _ROOM else [glides, steps]
+        roots = [steps, glides] if look(steps, posed.upper).room >= _ROOM else [glides, steps]
         return [posed._replace(root=root) for root in roots]
 
-    def next(self, shown: Playback, posed: Playback, dt: float, ahead: Floats, room: Room) -> Playback:
+    def next(self, shown: Playback, posed: Playback, dt: float, ahead: Floats, look: Look) -> Playback:
         """How a pose is shown `dt` seconds after what is `shown`, if that is free: see `under`."""
         root = onward(self._gait, shown.root, posed.root, dt, ahead)
-        if room(root, posed.upper) < _ROOM:
+        around = look(root, posed.upper)
+        if around.room < _ROOM:
             root = gliding(self._gait, shown.root, posed.root, dt)
-        return posed._replace(root=root, upper=self._arms.apart(root, posed.upper))
+            around = look(root, posed.upper)
+        return posed._replace(root=root, upper=self._arms.apart(root, posed.upper, around.axes))
 
     def under(
-        self, played: list[tuple[Playback, Floats]], shown: Playback, ahead: Floats, dt: float, room: Room
+        self, played: list[tuple[Playback, Floats]], shown: Playback, ahead: Floats, dt: float, look: Look
     ) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown after `dt` seconds, each with its stance, on feet that follow on what is `shown`.
 
@@ -70,7 +81,7 @@ class Stepping:
         wait.
         """
         for posed, stance in played:
-            yield self.next(shown, posed, dt, ahead, room), stance
+            yield self.next(shown, posed, dt, ahead, look), stance
         for posed, stance in played:
             yield posed._replace(root=gliding(self._gait, shown.root, posed.root, dt)), stance
         for posed, stance in played:

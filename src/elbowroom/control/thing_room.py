@@ -1,5 +1,6 @@
-"""Whether a pushed thing has room: it stops before what stands, what moves by itself, and other things.
+"""Whether a pushed thing has room: it stops before what stands, other things, and the ways of what moves by itself.
 
+That goes its way whatever lies there, so nothing is pushed to where it will ever be.
 The outline of an upright thing is told as capsules just inside its surface, so that what lies flush, or on top of it,
 is no contact. What overlaps already may be left but not entered farther.
 """
@@ -19,6 +20,7 @@ from elbowroom.world.obstacles.moving import Moving, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about
 from elbowroom.world.obstacles.shapes import Capsule, Cylinder, Shape, Sphere, extents_of
+from elbowroom.world.obstacles.ways import ways_near
 
 Floats = NDArray[np.float64]
 
@@ -100,9 +102,10 @@ class ThingRoom:
         reach = np.linalg.norm(extents_of(track.shape)) + 2.0 * _ROUND
         least, most = track.centers.min(axis=0) - reach, track.centers.max(axis=0) + reach
         yield self.standing.near(least[[0, 2]], most[[0, 2]])
-        for moving in (self.standing.moving, self.others):
-            if len(moving):
-                yield moving.at(self.time)
+        if len(self.standing.moving):
+            yield ways_near(self.standing.moving, self.time, least, most)
+        if len(self.others):
+            yield self.others.at(self.time)
 
     @staticmethod
     def _gaps(segments: Floats, radii: Floats, near: list[Nearby], place: Floats) -> Floats:

@@ -11,4 +11,4 @@ SAME_TIME = 1e-9  # seconds: as near as moments can be reckoned in different way
 
 def is_still(velocities: NDArray[np.float64]) -> bool:
     """Whether all of these velocities, of any shape, m/s and rad/s, are those of somebody who stands."""
-    return bool(np.abs(velocities).max(initial=0.0) < STILL)
+    return max(map(abs, velocities.ravel().tolist()), default=0.0) < STILL

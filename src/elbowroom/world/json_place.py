@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from elbowroom.errors import InputError
+from elbowroom.formats.json_numbers import NUMBERS
 
 _SHOWN = 60  # characters of a wrong value that are quoted
 
@@ -111,11 +112,8 @@ def parse_json(text: str, source: str) -> Any:
             found[name] = value
         return found
 
-    def constant(name: str) -> NoReturn:
-        raise InputError(f"{source}: {name} is not a JSON number; write a finite number")
-
     try:
-        return json.loads(text, object_pairs_hook=members, parse_constant=constant)
+        return json.loads(text, object_pairs_hook=members, **NUMBERS)
     except json.JSONDecodeError as error:
         raise InputError(f"{source}: line {error.lineno}, column {error.colno}: not JSON: {error.msg}") from error
     except RecursionError:
@@ -123,4 +121,4 @@ def parse_json(text: str, source: str) -> Any:
     except InputError:
         raise
     except ValueError as error:
-        raise InputError(f"{source}: a number cannot be read: {str(error).splitlines()[0]}") from error
+        raise InputError(f"{source}: {error}") from error

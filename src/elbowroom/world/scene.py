@@ -14,6 +14,7 @@ from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.ground.ground import Ground, eased_height
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json
+from elbowroom.world.obstacles.free_map import FreeMap
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.scene_place import ScenePlace
@@ -124,6 +125,12 @@ class Scene:
         In the model of a place there is no plane beyond its floor.
         """
         return ground_of(self.obstacles, self.place.floor if self.place else None)
+
+    @cached_property
+    def free_map(self) -> FreeMap:
+        """How far away what stands is, over the ground: one map for all who walk here."""
+        obstacles, ground = self.obstacles, self.ground
+        return obstacles.free_map if ground.plain else FreeMap(obstacles.near, ground)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""

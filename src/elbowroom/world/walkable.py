@@ -13,6 +13,7 @@ from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import how_many, row_of
 from elbowroom.world.scene import Scene
 
+Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 MAX_CELLS = 250_000
@@ -64,14 +65,17 @@ def walkable_window(
     shape: tuple[int, int],
     cell: float,
     farthest: float = FARTHEST,
+    heights: Floats | None = None,
 ) -> WalkableMap:
-    """Clearance over a grid that starts at `origin` and runs along `heading`.
+    """Clearance over a grid that starts at `origin` and runs along `heading`, of the stance at `heights` (ahead, left).
 
-    Clearance above `farthest` metres is given as `farthest`: the less, the sooner it is done.
+    At height 0 where none are given. Clearance above `farthest` metres is given as `farthest`: the less, the sooner it
+    is done.
     """
     out = np.full(shape, farthest, np.float32)
     place = np.array([*origin, np.sin(heading), np.cos(heading), cell, farthest])
-    _fill_window(near, np.array(stance, np.float32), place, out)
+    stands = np.zeros(shape, np.float32) if heights is None else heights.astype(np.float32)
+    _fill_window(near, np.array(stance, np.float32), place, stands, out)
     return WalkableMap(origin, heading, cell, out)
 
 
@@ -83,7 +87,7 @@ def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
 
 
 @kernel
-def _fill_window(near: Nearby, stance: Floats32, place: NDArray[np.float64], out: Floats32) -> None:
+def _fill_window(near: Nearby, stance: Floats32, place: Floats, heights: Floats32, out: Floats32) -> None:
     """Lower every point within reach of an obstacle; the points around one are one batch of the clearance kernel."""
     sine, cosine, cell, farthest = place[2], place[3], place[4], place[5]
     ahead, left = out.shape
@@ -104,8 +108,9 @@ def _fill_window(near: Nearby, stance: Floats32, place: NDArray[np.float64], out
                 k, along, aside = i * columns + j, (first_a + i) * cell, (first_l + j) * cell
                 x = place[0] + along * sine + aside * cosine
                 z = place[1] + along * cosine - aside * sine
-                segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, stance[1], z
-                segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, stance[2], z
+                height = heights[first_a + i, first_l + j]
+                segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, height + stance[1], z
+                segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, height + stance[2], z
         clearance_into(segments, stance[:1], row_of(near, b), least)
         for i in range(rows):
             for j in range(columns):

@@ -33,6 +33,8 @@ _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS, _QUICK = 25, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
 _LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
 _BELOW, _ABOVE = 0.4, 1.4  # of a standing body's height: so far below and above its place it reaches at most
+_UPRIGHT, _EVEN = 1e-4, 5e-4  # radians: a level sole; metres by which level ground may be uneven
+NOWHERE = np.full(2, -math.inf)
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
 
 
@@ -84,6 +86,23 @@ class Footing:
             return EVERY_HEIGHT
         return least - _BELOW * self._tall, most + _ABOVE * self._tall
 
+    def floors(self, states: Floats) -> Floats:
+        """For both feet heights (2,) that their soles keep above in root states (N, ROOT_STATE) that are `stood`.
+
+        What rises no higher is not in the way of a foot that is held higher. Minus infinity where a sole is tilted.
+        """
+        if self.ground.plain:
+            return NOWHERE
+        own = states[:, RISES : RISES + 4]
+        level = np.abs(own[:, 1::2]).max(axis=0) < _UPRIGHT
+        floors: Floats = np.where(level, (states[:, HEIGHT, None] + own[:, ::2]).min(axis=0) + _EVEN, -np.inf)
+        return floors
+
+    def over_soles(self, states: Floats) -> Span:
+        """From where to where what is in the way reaches in root states (N, ROOT_STATE) that are `stood`."""
+        low, high = self.heights(states)
+        return max(low, float(self.floors(states).min())), high
+
     @cached_property
     def _tall(self) -> float:
         """How high the standing body is, metres."""
@@ -92,12 +111,19 @@ class Footing:
 
     def _feet(self, capsules: CapsuleSet) -> Bools:
         """Which of the capsules (C,) are round feet and toes; of the legs' or of the whole body's."""
+        left, right = self.each_foot(capsules)
+        both: Bools = left | right
+        return both
+
+    def each_foot(self, capsules: CapsuleSet) -> Bools:
+        """Which of the capsules (2, C) are round the left foot, and the right one."""
         return self._feet_of[0 if capsules is self._model.roots else 1]
 
     @cached_property
     def _feet_of(self) -> tuple[Bools, Bools]:
-        feet = self._model.figure.legs[:, 2:]
-        return np.isin(self._model.roots.joints, feet), np.isin(self._model.body.joints, feet)
+        feet, sets = self._model.figure.legs[:, 2:], (self._model.roots, self._model.body)
+        legs, body = (np.array([np.isin(each.joints, own) for own in feet]) for each in sets)
+        return legs, body
 
     def lifted(
         self,

@@ -33,9 +33,9 @@ _LOWEST = 0.7  # half leg lengths
 _KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by one, or slopes by a radian more
 # Where feet are measured: x from the hip, z, yaw, pitch, lift, share of the swing. Metres of a standard leg, radians.
 _FEET_AT = np.array([[-0.15, 0.15], [-0.5, 0.5], [-0.7, 0.7], [-0.4, 1.2], [0.0, 0.07], [0.0, 1.0]])
-_ON_FEET = MOVES + 2 * (
-    len(_FEET_AT) - 1
-)  # moves of who is on feet: of the root those that lower the hips, of each foot
+_FOOT_MOVES = len(_FEET_AT) - 1  # of each foot: its way over the ground is one
+# Where the components of each local group begin in an upper body, and how many there are.
+_COMPONENTS = np.array([[columns_of(group).start, group.size] for group in LOCAL_GROUPS])
 
 
 def lift_of(model: BodyModel) -> float:
@@ -106,8 +106,7 @@ class BodyLevers:
     from_pelvis: Floats  # (C, M) in the pelvis frame
     from_chest: Floats  # (C, M) in the chest frame; of the trunk and what hangs on it
     bob: Floats  # (M,) of the pelvis frame above the ground
-    steps: Floats  # (C, K) of the legs' capsules, in the root's frame, for the K moves of feet; 0 of all others
-    dips: Floats  # (K,) of the hips for those
+    steps: Floats  # (C, K) in the root's frame for the K moves of feet; of what is above the legs those of the hips
     spans: Floats  # (C,) metres: no point of a capsule's axis gets farther from the root's axis
 
     def between(self, first: Indices, second: Indices, legs: Indices) -> Floats:
@@ -120,25 +119,72 @@ class BodyLevers:
         levers: Floats = np.where(beside_legs[:, None], pelvis, chest)
         return levers
 
-    def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> float:
-        """No point moves farther, metres, while root states and upper bodies (LOCAL,) change evenly.
+    def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> Floats:
+        """No point of a capsule's axis moves farther, (C,) metres, while a posture changes evenly to another.
 
-        The root states have feet (WITH_FEET,) or go with the walking cycle (7,).
+        They are told by root states and upper bodies (LOCAL,). The root states have feet (WITH_FEET,) or go with the
+        walking cycle (7,).
         """
-        root, upper = roots[1] - roots[0], uppers[1] - uppers[0]
-        moves = np.zeros(len(self.bob))
-        for group in LOCAL_GROUPS:
-            part, at = upper[columns_of(group)], _columns(group)
-            moves[at] = np.hypot(part[0], part[1]), *np.abs(part[2:]), *np.zeros(2 + MOVES - 1 - len(part))
-        if len(root) > ROOT_STATE:
-            steps = _moves_of_feet(root)
-            lower = np.where(self.steps.any(axis=1), self.steps @ steps, self.dips @ steps)
-        else:
-            moves[-MOVES:] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
-            lower = np.full(len(self.steps), self.bob @ moves)
-        farthest = (self.from_pelvis @ moves + lower + abs(root[2]) * self.spans).max()
-        way = float(np.hypot(root[0], root[1]) + farthest)
-        return way + abs(root[HEIGHT]) + raised_between(*roots) if len(root) > HEIGHT else way
+        return _travel(self.from_pelvis, self.bob, self.steps, self.spans, *roots, *uppers)
+
+
+@exact_kernel
+def _travel(
+    from_pelvis: Floats,
+    bob: Floats,
+    steps: Floats,
+    spans: Floats,
+    before: Floats,
+    after: Floats,
+    first: Floats,
+    last: Floats,
+) -> Floats:
+    """What `BodyLevers.travel` says."""
+    root, moves = after - before, np.zeros(bob.shape[0])
+    _set_moves_of_groups(last - first, moves)
+    way = np.hypot(root[0], root[1])
+    if root.shape[0] > HEIGHT:
+        way += abs(root[HEIGHT]) + raised_between(before, after)
+    on_feet, farthest = np.zeros(steps.shape[1]), 0.0
+    if root.shape[0] > ROOT_STATE:
+        _set_moves_of_feet(root, on_feet)
+    else:
+        last_of = bob.shape[0] - MOVES
+        moves[last_of], moves[last_of + 1], moves[last_of + 2] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
+        for i in range(bob.shape[0]):
+            farthest += bob[i] * moves[i]
+    ways = np.empty(spans.shape[0])
+    for c in range(spans.shape[0]):
+        ways[c] = way + farthest + abs(root[2]) * spans[c]
+        for i in range(moves.shape[0]):
+            ways[c] += from_pelvis[c, i] * moves[i]
+        for i in range(on_feet.shape[0]):
+            ways[c] += steps[c, i] * on_feet[i]
+    return ways
+
+
+@exact_kernel
+def _set_moves_of_groups(upper: Floats, moves: Floats) -> None:
+    """The moves of all local groups, for a change of an upper body (LOCAL,)."""
+    for k in range(_COMPONENTS.shape[0]):
+        begin, size, at = _COMPONENTS[k, 0], _COMPONENTS[k, 1], MOVES * k
+        moves[at] = np.hypot(upper[begin], upper[begin + 1])
+        for i in range(2, size):
+            moves[at + i - 1] = abs(upper[begin + i])
+
+
+@exact_kernel
+def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
+    """What feet do, and what of the root lowers the hips, (K,), for a change of a root state with feet.
+
+    Velocity over the ground, turning rate, phase; of each foot its way, yaw, pitch, lift, and share of the swing.
+    """
+    moves[0], moves[1], moves[2] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
+    for side in range(2):
+        foot, at = root[ROOT_STATE + FOOT * side :], MOVES + (_FOOT_MOVES * side)
+        moves[at] = np.hypot(foot[0], foot[1])
+        for i in range(1, _FOOT_MOVES):
+            moves[at + i] = abs(foot[i + 1])
 
 
 @exact_kernel
@@ -172,9 +218,10 @@ def _measured(model: BodyModel) -> BodyLevers:
     legs, bob = model.roots.indices, np.zeros(from_pelvis.shape[1])
     from_pelvis[legs, -MOVES:], lowered, bob[-MOVES:] = _stride_levers(model)
     from_pelvis[legs, _columns(DofGroup.WAIST).start + _LOWERING] = lowered
-    aside, steps = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift, np.zeros((len(from_pelvis), _ON_FEET))
-    steps[legs], dips = _foot_levers(model)
-    return BodyLevers(from_pelvis, from_chest, bob, steps, dips, aside + _lengths(model))
+    aside, (of_legs, of_hips) = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift, _foot_levers(model)
+    steps = np.tile(of_hips, (len(from_pelvis), 1))
+    steps[legs] = of_legs
+    return BodyLevers(from_pelvis, from_chest, bob, steps, aside + _lengths(model))
 
 
 def _lengths(model: BodyModel) -> Floats:
@@ -208,18 +255,6 @@ def _stride_levers(model: BodyModel) -> tuple[Floats, Floats, Floats]:
     ahead_bob, aside_bob, turn_bob, phase_bob, _ = _SPARE / _STEP * np.array(bobs)
     levers = np.stack([np.hypot(ahead, aside), turn, phase], axis=1)
     return levers, lowering, np.array([np.hypot(ahead_bob, aside_bob), turn_bob, phase_bob])
-
-
-def _moves_of_feet(change: Floats) -> Floats:
-    """What feet do, and what of the root lowers the hips, (K,), for a change of a root state with feet.
-
-    Velocity over the ground, turning rate, phase; of each foot its way, yaw, pitch, lift, and share of the swing.
-    """
-    moves = np.empty(_ON_FEET)
-    moves[:MOVES] = np.hypot(change[3], change[4]), abs(change[5]), abs(change[6])
-    feet = change[ROOT_STATE:].reshape(2, FOOT)
-    moves[MOVES:].reshape(2, -1)[:] = np.column_stack([np.hypot(feet[:, 0], feet[:, 1]), np.abs(feet[:, 2:6])])
-    return moves
 
 
 def _foot_levers(model: BodyModel) -> tuple[Floats, Floats]:

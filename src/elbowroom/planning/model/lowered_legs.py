@@ -73,6 +73,7 @@ class LoweredLegs:
 
     def _crouching(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
         """`clearances` (N,) where all are lowered, N at least 1."""
+        roots = self.footing.stood(roots)[0]
         out = self._clear(self._near(roots), roots, lowerings)
         if self._sweeps is not None:
             spans = np.clip((after / self._interval).astype(np.int64), 0, span_count(self._sweeps) - 1)
@@ -82,20 +83,23 @@ class LoweredLegs:
         return out
 
     def _near(self, roots: Floats) -> Nearby:
-        """The obstacles that legs at root states (N, 7) may touch."""
+        """The obstacles that legs may touch at root states (N, 7) whose feet stand."""
         low_x, high_x, low_z, high_z = ground_covered(roots)
         reach = self._reach
-        heights = self.footing.heights(roots)
+        heights = self.footing.over_soles(roots)
         numbers = self._obstacles.numbers_near(
             (low_x - reach, low_z - reach), (high_x + reach, high_z + reach), heights
         )
         return self._obstacles.picked(numbers[self._low[numbers]])
 
     def _clear(self, near: Nearby, roots: Floats, lowerings: Floats) -> Floats32:
-        """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds."""
+        """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds.
+
+        Feet stand in the root states (N, 7).
+        """
         if is_empty(near):
             return np.full(len(roots), np.inf, np.float32)
-        states = self.footing.stood(roots)[0].copy()
+        states = roots.copy()
         states[:, :2] -= roots[0, :2]
         segments = self.footing.lifted(
             leg_capsules(self._model, states, lowerings), self._model.roots, states, lowerings

@@ -12,7 +12,17 @@ from elbowroom.errors import InputError
 from elbowroom.planning.navigation.field import Prices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
-from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, placed, reachable_over, said, way_over
+from elbowroom.planning.navigation.way import (
+    NoWayError,
+    Place,
+    Spot,
+    Way,
+    meant,
+    placed,
+    reachable_over,
+    said,
+    way_over,
+)
 from elbowroom.world.scene import Scene
 
 _MARGINS = (4.0, 16.0, math.inf)  # metres around start and goal that are looked at, one after the other
@@ -30,8 +40,9 @@ class Navigator:
     def find(self, start: Place | Spot, goal: Place | Spot, closed: Sequence[tuple[Spot, float]] = ()) -> Way:
         """The way from one place to another, around discs (middle, radius) that are taken to be closed.
 
-        A goal without a height is meant at that of the start, and a start without one at 0. Raises `InputError` where
-        the goal is no place on the ground, `NoWayError` where there is no way.
+        A goal without a height is on the floor there that a way leads to, at that of the start if it can be; a start
+        without one is at 0. Raises `InputError` where the goal is no place on the ground, `NoWayError` where there is
+        no way.
         """
         begin = placed(start, 0.0)
         end = placed(goal, begin[1])
@@ -45,11 +56,21 @@ class Navigator:
         for margin in _MARGINS if self._scene.ground.plain else _MARGINS[-1:]:
             area = both.around(margin, ground)
             try:
-                return way_over(self._map_of(area), self._prices, begin, end, closed)
+                return self._over(self._map_of(area), begin, goal, closed)
             except NoWayError:
                 if area.holds(ground):
                     raise
         raise NoWayError(f"no way leads from {said(begin)} to {said(end)}")
+
+    def _over(self, room: RoomMap, begin: Place, goal: Place | Spot, closed: Sequence[tuple[Spot, float]]) -> Way:
+        """The way over a map to the first floor that one leads to; raises `NoWayError` about the first of them."""
+        errors = []
+        for end in meant(room, goal, begin[1]):
+            try:
+                return way_over(room, self._prices, begin, end, closed)
+            except NoWayError as error:
+                errors.append(error)
+        raise errors[0]
 
     def room(self) -> RoomMap:
         """The room over the whole ground."""

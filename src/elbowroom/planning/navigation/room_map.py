@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import kernel
+from elbowroom.kept_arrays import Arrays, kept
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.planning.navigation.surfaces import Surfaces, one_plane, over_ground, to_edges
 from elbowroom.world.obstacles.clearance import clearance_into
@@ -23,6 +24,7 @@ FARTHEST = 0.6  # metres: more room is not told apart
 _LOW = 0.03  # metres above a plane: what is lower is stood on
 _LESS = 0.02  # metres less than a slim body above what can be stepped onto: from there on things are in the way
 _OVER = np.float32(0.06)  # metres by which a body may be over an edge: ankles stay on the ground
+_MANY = 100  # obstacles: among fewer a map is made at once
 _MOST_POINTS = 2_000_000  # of a map: where it needs more its points lie farther apart
 
 
@@ -82,11 +84,22 @@ class RoomMap:
 
     def next_to(self, x: float, z: float, height: float) -> int | None:
         """The place to stand over the point next to a place that is nearest to a height; None where there is none."""
-        row, column = (round(each) for each in self.in_grid(x, z))
-        first, last = self.surfaces.starts[row * self.surfaces.columns + column :][:2].tolist()
+        first, last = self._over(x, z)
         if first == last:
             return None
-        return int(first) + int(np.argmin(np.abs(self.surfaces.heights[first:last] - height)))
+        return first + int(np.argmin(np.abs(self.surfaces.heights[first:last] - height)))
+
+    def heights_at(self, x: float, z: float) -> list[float]:
+        """The heights of the floors over the point next to a place, from the lowest up, metres."""
+        first, last = self._over(x, z)
+        heights: list[float] = self.surfaces.heights[first:last].tolist()
+        return heights
+
+    def _over(self, x: float, z: float) -> tuple[int, int]:
+        """The first place over the point next to a place, and the one after the last."""
+        row, column = (round(each) for each in self.in_grid(x, z))
+        first, last = self.surfaces.starts[row * self.surfaces.columns + column :][:2].tolist()
+        return int(first), int(last)
 
     @property
     def places(self) -> Floats:
@@ -103,7 +116,27 @@ class RoomMap:
 
 
 def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
-    """The room over a part of a scene's ground for somebody."""
+    """The room over a part of a scene's ground for somebody; kept on disk where much stands there."""
+    standing, ground = scene.obstacles.standing, scene.ground
+    if how_many(standing) < _MANY:
+        return _made(scene, girth, area)
+    floor = () if scene.place is None or scene.place.floor is None else (scene.place.floor.there,)
+    about = np.array([*girth, *area, *scene.ground_center, *scene.ground_size, ground.cell, *ground.corner])
+    whole = (about, *standing, ground.starts, ground.members, ground.triangles, ground.level, *floor)
+    found = kept(__file__, whole, lambda: _written(_made(scene, girth, area)))
+    columns, cell, step = found["grid"].tolist()
+    surfaces = Surfaces(int(columns), cell, step, found["starts"], found["points"], found["heights"])
+    return RoomMap(area, surfaces, found["room"], found["above"])
+
+
+def _written(room: RoomMap) -> Arrays:
+    on = room.surfaces
+    grid = np.array([on.columns, on.cell, on.step])
+    arrays = {"grid": grid, "starts": on.starts, "points": on.points, "heights": on.heights}
+    return arrays | {"room": room.room, "above": room.above}
+
+
+def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     wide, deep = area.high_x - area.low_x, area.high_z - area.low_z
     cell = max(CELL, float(np.sqrt(wide * deep / _MOST_POINTS)))
     shape, corner = (int(deep / cell) + 1, int(wide / cell) + 1), (area.low_x, area.low_z)

@@ -43,6 +43,15 @@ def placed(place: Place | Spot, height: float = 0.0) -> Place:
     return float(place[0]), float(place[1]) if len(place) == 3 else height, float(place[-1])
 
 
+def meant(room: RoomMap, place: Place | Spot, height: float) -> list[Place]:
+    """What a place may mean: itself; without a height there at this one, or on another floor, the nearest first."""
+    first = placed(place, height)
+    if len(place) == 3:
+        return [first]
+    others = [other for other in room.heights_at(first[0], first[2]) if abs(other - height) > _FLOOR]
+    return [first, *(placed(place, other) for other in sorted(others, key=lambda other: abs(other - height)))]
+
+
 def apart(one: Place, other: Place) -> float:
     """Metres from one place to another over the floor: heights count where they are on different floors."""
     above = max(abs(one[1] - other[1]) - _FLOOR, 0.0)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.planning.root.hull import route_is_open
 from elbowroom.planning.root.line import TravelLine, straight_route
-from elbowroom.planning.root.lower_body import LowerBody, Neighbours
+from elbowroom.planning.root.lower_body import Grid, LowerBody, Neighbours
 from elbowroom.planning.root.plan import RootPlannerSettings
 from elbowroom.planning.root.route import find_route, route_points, shortened_route
-from elbowroom.world.walkable import WalkableMap, walkable_window
+from elbowroom.world.walkable import WalkableMap
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -50,12 +50,12 @@ class RouteFinder:
     def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Route:
         """The route from a start along a line of travel among `obstacles`, `sight` metres of it."""
         straight = straight_route(float(start.x), float(start.z), line, sight)
-        if self.above is None and self._body.footing.plain and route_is_open(straight, self.half, obstacles.ground):
+        if self.above is None and route_is_open(straight, start.height, self.half, obstacles.ground):
             return Route(straight, detour=False, ends=False, checks=0)
         free, checks = self._free_length(straight, line, obstacles, start.height)
         if free >= sight:
             return Route(straight, detour=False, ends=False, checks=checks)
-        return self._round(straight, free, line, obstacles, sight, checks)
+        return self._round(straight, free, line, obstacles, (sight, start.height), checks)
 
     def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours, height: float) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw.
@@ -76,15 +76,15 @@ class RouteFinder:
         free: float,
         line: TravelLine,
         obstacles: Neighbours,
-        sight: float,
+        seen: tuple[float, float],
         checks: int,
     ) -> Route:
-        """The detour what stands `free` metres on in the straight route."""
-        s, (ahead, left) = self._settings, line.coordinates(*straight[0].tolist())
+        """The detour what stands `free` metres on in the straight route, of which so much is `seen` from a height."""
+        s, (ahead, left), sight = self._settings, line.coordinates(*straight[0].tolist()), seen[0]
         windows: dict[float, WalkableMap] = {}
         for margin, cell in s.searches:
             if cell not in windows:
-                windows[cell] = self._window(line, ahead, cell, obstacles, sight)
+                windows[cell] = self._window(line, ahead, cell, obstacles, seen)
                 checks += windows[cell].clearance.size
             behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
             route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
@@ -93,14 +93,17 @@ class RouteFinder:
                 return Route(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
         return Route(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
 
-    def _window(self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, sight: float) -> WalkableMap:
+    def _window(
+        self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, seen: tuple[float, float]
+    ) -> WalkableMap:
         """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
-        s = self._settings
+        s, (sight, height) = self._settings, seen
         behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
         shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
         roomy = max(margin for margin, _ in s.searches) + s.route.roomy
-        window = walkable_window(obstacles.obstacles, self._body.stance, origin, line.heading, shape, cell, roomy)
+        first = round(behind / cell)
+        window = self._body.window(obstacles, Grid(origin, line.heading, shape, cell, roomy, height, first))
         if self.above is None:
             return window
         cells: Floats = np.indices(shape, np.float64).reshape(2, -1) * cell

@@ -21,18 +21,21 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.root.grid_search import Prices, cheapest, pulled_taut
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.profile import Profile
-from elbowroom.planning.root.room import Grid, Room
+from elbowroom.planning.root.room import Floor, Grid, Room, places_on
 from elbowroom.planning.root.turned_body import TurnedBody
+from elbowroom.planning.stillness import STILL
+from elbowroom.world.ground.ground import heights_beside
 from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.moving import Moving
-from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import grown_aside
+from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _SLOW = 0.1  # m/s along the line
 _GAIN = 2.0  # m/s^2, of speeding up
+_LEVEL = 0.02  # metres by which level ground may rise
 _ROUNDS = 8  # paths through narrow cells that may turn out to be closed
 
 
@@ -44,7 +47,7 @@ class EvasionSettings:
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
     punctual: float = 0.2  # seconds before and after that a row may be reached in
-    polite: float = 0.05  # metres by which what moves is taken to be larger
+    polite: float = 0.05  # metres by which all that could move is taken to be larger, where any of it does
     cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn
     shares: tuple[float, ...] = (1.0, 0.75, 0.5)  # of both speeds, tried in turn
     widest: float = 0.48  # from the line of travel, to either side
@@ -95,9 +98,9 @@ class Evasion(NamedTuple):
 class EvasionFinder:
     """Finds evasions for one humanoid among what stands. What it remembers is what it would find again."""
 
-    def __init__(self, humanoid: Humanoid, obstacles: Obstacles, settings: EvasionSettings | None = None) -> None:
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: EvasionSettings | None = None) -> None:
         self.settings = s = settings or EvasionSettings()
-        self._obstacles, self._body = obstacles, TurnedBody(humanoid, s.angles)
+        self._scene, self._body = scene, TurnedBody(humanoid, s.angles)
 
     def ahead_of(
         self,
@@ -107,27 +110,41 @@ class EvasionFinder:
         speeds: tuple[float, float],
         moving: Moving,
         time: float,
-    ) -> "EvasionGrid":
+    ) -> "EvasionGrid | None":
         """The grid from a start on at a time, for `speeds` forward and sideways, m/s.
 
         The first row is that next to the start, of rows at whole steps from the line's first point: so cells stay where
         they are from plan to plan. Where something moves it is at the start itself. What moves is where it will be
-        about when a row is reached, by who speeds up at once.
+        about when a row is reached, by who speeds up at once. None where the ground is not level.
         """
         s, ahead = self.settings, line.coordinates(start.x, start.z)[0]
         first, rows = ahead if len(moving) else s.step * round(ahead / s.step), math.ceil(sight / s.step) + 1
         passing = self._passing(moving, time, s.step * np.arange(float(rows)), start, speeds[0])
         turned = self._body.going(line.heading - line.facing, speeds)
         grid = Grid(first, s.step, s.aside, rows, s.columns, s.comfort, s.margin, s.margin + s.swerving + max(s.cares))
+        floor = self._floor(line, grid, start.height)
+        if floor is None:
+            return None
         low, high = _corners(line, grid, turned.discs.reach)
-        window, near = self._obstacles.free_map.window(low, high), self._obstacles.near(low, high)
-        room = Room(self._body, turned, line, grid, window, near, passing)
+        scene, here = self._scene, (start.x, start.height, start.z)
+        window, near = scene.free_map.window(low, high, here), scene.obstacles.near(low, high)
+        room = Room(self._body, turned, line, grid, (window, floor), near, passing)
         return EvasionGrid(s, line, start, turned.slowness, grid, room, len(moving) > 0)
 
+    def _floor(self, line: TravelLine, grid: Grid, height: float) -> Floor | None:
+        """What one walks on over a grid, who comes from a height; None where that is not level."""
+        ground = self._scene.ground
+        heights = heights_beside(ground, height, 0, places_on(line, grid))
+        there = np.where(np.isfinite(heights), heights, height)
+        if np.ptp(there) > _LEVEL:
+            return None
+        return Floor(there, -np.inf if ground.plain else ground.step)
+
     def _passing(self, moving: Moving, time: float, ahead: Floats, start: RootState, speed: float) -> Spans:
-        """What moves about when places `ahead` (n,) metres are reached, a little larger."""
+        """What moves about when places `ahead` (n,) metres are reached, a little larger, unless all of it stands."""
         s, then = self.settings, time + _arrival(ahead, math.hypot(start.forward, start.lateral), speed)
-        return grown_aside(moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual), s.polite)
+        swept = moving.swept_between(np.maximum(then - s.punctual, time), then + s.punctual)
+        return grown_aside(swept, s.polite if moving.fastest > STILL else 0.0)
 
 
 def _corners(line: TravelLine, grid: Grid, reach: float) -> tuple[Floats, Floats]:

@@ -1,7 +1,8 @@
 """Rectangles on the ground that hold legs and pelvis during a key interval: what is far from them is not checked.
 
 Posing legs costs a thousand times more than telling that a rectangle is beside a box. So the exact check of a path is
-left for the key intervals whose rectangle meets a box.
+left for the key intervals whose rectangle meets a box. Where feet stand on level ground all over the rectangle, what
+does not rise from it is not in the way, nor what hangs above the legs.
 """
 
 from typing import NamedTuple
@@ -10,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.kinematics import BodyModel, leg_capsules
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
+from elbowroom.world.ground.ground import PLAIN, level_about
+from elbowroom.world.ground.ground import Ground as Underfoot
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 
 Floats = NDArray[np.float64]
@@ -24,6 +27,8 @@ _PHASES = 16
 _SPARE = 0.01  # metres: strides between those that were measured, and nearly straight ones
 _FLAT = 1e-12  # metres
 _MORE = 0.003  # metres
+_EVEN = 5e-4  # metres by which level ground may rise
+_PIECE = 0.5  # metres of a route
 
 
 class StrideHull(NamedTuple):
@@ -39,12 +44,15 @@ class Ground(NamedTuple):
     corners: Floats  # (B, P, 2) x and z of the corners of what is low enough of each box
     least: Floats  # (B, 2)
     most: Floats  # (B, 2)
+    heights: Floats  # (B, 2) from where to where each box reaches
+    underfoot: Underfoot  # what feet stand on; on the plane heights do not count
+    tall: float  # metres that legs reach above that
 
 
 _ENDS = np.array([(i, i + step) for step in (1, 2, 4) for i in range(8) if not i & step])  # a box's edges
 
 
-def ground_below(corners: Floats, height: float) -> Ground:
+def ground_below(corners: Floats, height: float, underfoot: Underfoot = PLAIN, tall: float = np.inf) -> Ground:
     """What the parts of boxes below a height cover; `corners` (B, 8, 3) each partly below."""
     one, other = corners[:, _ENDS[:, 0]], corners[:, _ENDS[:, 1]]
     rise = other[..., 1] - one[..., 1]
@@ -56,7 +64,20 @@ def ground_below(corners: Floats, height: float) -> Ground:
     below = low[..., 1] <= height + 1e-9
     low = np.where(below[..., None], low, np.take_along_axis(low, below.argmax(axis=1)[:, None, None], axis=1))
     points = np.ascontiguousarray(low[..., [0, 2]])
-    return Ground(points, points.min(axis=1), points.max(axis=1))
+    heights = np.stack([corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1)], axis=1)
+    return Ground(points, points.min(axis=1), points.max(axis=1), heights, underfoot, tall)
+
+
+def some_ground(ground: Ground, chosen: Bools | NDArray[np.int64]) -> Ground:
+    """That of some of the boxes."""
+    corners, least, most, heights, underfoot, tall = ground
+    return Ground(corners[chosen], least[chosen], most[chosen], heights[chosen], underfoot, tall)
+
+
+def joined_ground(one: Ground, other: Ground) -> Ground:
+    """That of the boxes of both, on the ground of the first."""
+    corners, least, most, heights = (np.concatenate([a, b]) for a, b in zip(one[:4], other[:4], strict=True))
+    return Ground(corners, least, most, heights, one.underfoot, one.tall)
 
 
 def stride_hull(model: BodyModel) -> StrideHull:
@@ -78,15 +99,24 @@ def stride_hull(model: BodyModel) -> StrideHull:
 
 
 @helper
-def _meets(x: float, z: float, heading: float, low: Floats, high: Floats, ground: Ground) -> bool:
-    """Whether the rectangle from `low` to `high` (2,), to the left and ahead of a place, may meet a box."""
+def _meets(x: float, z: float, heading: float, near: float, low: Floats, high: Floats, ground: Ground) -> bool:
+    """Whether the rectangle from `low` to `high` (2,), to the left and ahead of a place, may meet a box.
+
+    Of floors above one another that which is about as high as `near`.
+    """
     sine, cosine = np.sin(heading), np.cos(heading)
     wide, deep = 0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1])
     left, ahead = 0.5 * (high[0] + low[0]), 0.5 * (high[1] + low[1])
     middle_x, middle_z = x + left * cosine + ahead * sine, z - left * sine + ahead * cosine
     span_x, span_z = wide * abs(cosine) + deep * abs(sine), wide * abs(sine) + deep * abs(cosine)
-    found = False
+    found, floor, roof = False, -np.inf, np.inf
+    if not ground.underfoot.plain:
+        level = level_about(ground.underfoot, middle_x, middle_z, max(span_x, span_z), near)
+        if level > -np.inf:
+            floor, roof = level + _EVEN, level + ground.tall
     for b in range(ground.corners.shape[0]):
+        if ground.heights[b, 1] <= floor or ground.heights[b, 0] >= roof:
+            continue
         if (
             middle_x + span_x < ground.least[b, 0]
             or middle_x - span_x > ground.most[b, 0]
@@ -138,6 +168,11 @@ def _swept(hull: StrideHull, a: Floats, b: Floats, turned: float, more: float, l
 
 
 @helper
+def _height(state: Floats) -> float:
+    return float(state[HEIGHT]) if state.shape[0] > HEIGHT else 0.0
+
+
+@helper
 def _change(a: Floats, b: Floats) -> float:
     """The change of the ground velocity between two states, m/s."""
     sine_a, cosine_a, sine_b, cosine_b = np.sin(a[2]), np.cos(a[2]), np.sin(b[2]), np.cos(b[2])
@@ -162,13 +197,13 @@ def to_check(
         a, b = states[k], states[k + 1]
         bulge = 0.125 * interval * _change(a, b)
         known = _swept(hull, a, b, b[2] - a[2], skin + _MORE + bulge, low, high)
-        moving[k] = not known or _meets(a[0], a[1], a[2], low, high, ground)
+        moving[k] = not known or _meets(a[0], a[1], a[2], _height(a), low, high, ground)
         speed, sine, cosine = np.sqrt(b[3] * b[3] + b[4] * b[4]), np.sin(b[2]), np.cos(b[2])
         lasting, turning = 0.5 * speed / braking + 0.5 * interval, 0.5 * abs(b[5]) / swinging + 0.5 * interval
         rest[0] = b[0] + lasting * (b[3] * sine + b[4] * cosine)
         rest[1] = b[1] + lasting * (b[3] * cosine - b[4] * sine)
         known = _swept(hull, b, rest, turning * b[5], skin + _MORE, low, high)
-        stopping[k] = not known or _meets(b[0], b[1], b[2], low, high, ground)
+        stopping[k] = not known or _meets(b[0], b[1], b[2], _height(b), low, high, ground)
     return moving, stopping
 
 
@@ -179,20 +214,26 @@ def states_to_check(states: Floats, skin: float, hull: StrideHull, ground: Groun
     for n in range(states.shape[0]):
         row = states[n]
         known = _swept(hull, row, row, 0.0, skin + _MORE, low, high)
-        near[n] = not known or _meets(row[0], row[1], row[2], low, high, ground)
+        near[n] = not known or _meets(row[0], row[1], row[2], _height(row), low, high, ground)
     return near
 
 
 @exact_kernel
-def route_is_open(route: Floats, half: float, ground: Ground) -> bool:
-    """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z."""
+def route_is_open(route: Floats, near: float, half: float, ground: Ground) -> bool:
+    """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z.
+
+    It begins at a height `near`. Strips over ground that is not the plane are looked at in short pieces.
+    """
     low, high = np.empty(2), np.empty(2)
     low[0], low[1], high[0] = -half, -half, half
     for i in range(route.shape[0] - 1):
         dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
-        high[1] = np.hypot(dx, dz) + half
-        if _meets(route[i, 0], route[i, 1], np.arctan2(dx, dz), low, high, ground):
-            return False
+        length, heading = np.hypot(dx, dz), np.arctan2(dx, dz)
+        count = 1 if ground.underfoot.plain else max(int(np.ceil(length / _PIECE)), 1)
+        high[1] = length / count + half
+        for k in range(count):
+            if _meets(route[i, 0] + dx * k / count, route[i, 1] + dz * k / count, heading, near, low, high, ground):
+                return False
     return True
 
 
@@ -201,10 +242,14 @@ def ground_near(ground: Ground, grids: Grids, x: float, z: float, reach: float) 
     """What of it may come within `reach` metres of a place; `grids` as `grids_of` its bounds."""
     near = meeting_any_order(grids, x - reach, z - reach, x + reach, z + reach)
     count = near.shape[0]
-    found = Ground(np.empty((count, ground.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)))
+    found = Ground(
+        np.empty((count, ground.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)), np.empty((count, 2)),
+        ground.underfoot, ground.tall,
+    )  # fmt: skip
     for n in range(count):
         for i in range(2):
             found.least[n, i], found.most[n, i] = ground.least[near[n], i], ground.most[near[n], i]
+            found.heights[n, i] = ground.heights[near[n], i]
             for c in range(ground.corners.shape[1]):
                 found.corners[n, c, i] = ground.corners[near[n], c, i]
     return found

@@ -1,6 +1,7 @@
 """What cannot bend: legs and pelvis of a humanoid among the obstacles that they can touch."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,15 +11,15 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.root.hull import Ground, ground_below, stride_hull
+from elbowroom.planning.root.hull import Ground, ground_below, joined_ground, some_ground, stride_hull
 from elbowroom.world.ground import ground as walked
-from elbowroom.world.ground.ground import heights_along
+from elbowroom.world.ground.ground import heights_along, heights_beside
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import is_empty, joined, some_of
-from elbowroom.world.walkable import Stance, stance_segments
+from elbowroom.world.walkable import Stance, WalkableMap, stance_segments, walkable_window
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -29,6 +30,7 @@ _SPARE_HEIGHT = 0.05  # metres above the pelvis as it walks
 _HALF_DIAGONAL = 0.71  # of a square metre
 _KNEES = 0.1  # metres that legs reach farther where they climb
 _CLIMB = 1.5  # metres up and down that are looked at on a way
+_FAR_BELOW = 0.1  # metres above the ground: what is lower is far from a stance that is held a step above it
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
@@ -49,12 +51,28 @@ class Neighbours(NamedTuple):
         near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
         if near.all():
             return self
-        return Neighbours(some_of(self.obstacles, near), Ground(*(part[near] for part in self.ground)))
+        return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
+
+    def above(self, floor: float) -> "Neighbours":
+        """Those that rise above a height."""
+        rises = self.ground.heights[:, 1] > floor
+        return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_ground(self.ground, rises))
 
     def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
         """These and others."""
-        ground = Ground(*(np.concatenate([a, b]) for a, b in zip(self.ground, more.ground, strict=True)))
-        return Neighbours(joined(self.obstacles, more.obstacles), ground)
+        return Neighbours(joined(self.obstacles, more.obstacles), joined_ground(self.ground, more.ground))
+
+
+class Grid(NamedTuple):
+    """A grid on the ground, as `walkable_window` has it, and where one comes to it."""
+
+    origin: tuple[float, float]
+    heading: float
+    shape: tuple[int, int]
+    cell: float
+    farthest: float
+    height: float  # of who stands in the middle of a row, metres
+    first: int  # and of which
 
 
 class LowerBody:
@@ -65,7 +83,8 @@ class LowerBody:
         self.footing = Footing(self.model, ground)
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach = _measure(self.model)
-        corners, height = obstacles.corners, height + _SPARE_HEIGHT if ground.plain else math.inf
+        tall = height + _SPARE_HEIGHT
+        corners, height = obstacles.corners, tall if ground.plain else math.inf
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
         self.hull = stride_hull(self.model)
@@ -73,8 +92,7 @@ class LowerBody:
             self.hull = self.hull._replace(extents=self.hull.extents + _KNEES)
             self.reach += _KNEES
         self._obstacles, self._low = obstacles, np.flatnonzero(low)
-        self._heights = np.stack([corners[low, :, 1].min(axis=1), corners[low, :, 1].max(axis=1)], axis=1)
-        self.ground = ground_below(corners[low], height)
+        self.ground = ground_below(corners[low], height, ground, tall)
         self.grids = grids_of(self.ground.least, self.ground.most)
         self._near: tuple[tuple[int, int, float, int], Neighbours] | None = None
 
@@ -89,9 +107,9 @@ class LowerBody:
             near = meeting(self.grids, (x - far, z - far), (x + far, z + far))
             low, high = self.footing.heights_between(asked[3] - _CLIMB, asked[3] + _CLIMB)
             if math.isfinite(low):
-                near = near[(self._heights[near, 0] <= high) & (self._heights[near, 1] >= low)]
-            ground = Ground(*(part[near] for part in self.ground))
-            self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), ground)
+                own = self.ground.heights[near]
+                near = near[(own[:, 0] <= high) & (own[:, 1] >= low)]
+            self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), some_ground(self.ground, near))
         return self._near[1]
 
     def clearance(self, among: Neighbours, states: Floats, spare: float = 0.0) -> Floats32:
@@ -105,6 +123,7 @@ class LowerBody:
         if self.footing.plain:
             return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
         rows, found = self.footing.stood(states)
+        near = near.above(float(self.footing.floors(rows).min()))
         segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, rows, spare=spare)
         clear = clearance(segments, self.radii, near.obstacles)
         return np.where(found, clear, np.float32(-1.0))
@@ -121,9 +140,31 @@ class LowerBody:
         heights = heights_along(self.footing.ground, height, places)
         there = np.isfinite(heights)
         above = np.where(there, heights, height)
-        segments[0, 1] = above + self.footing.ground.step + self.stance.radius
-        segments[0, 4] = np.maximum(above + self.stance.high, segments[0, 1])
-        return np.where(there, clearance(segments.astype(np.float32), radii, among.obstacles), np.float32(-1.0))
+        raised = self.raised_stance
+        segments[0, 1], segments[0, 4] = above + raised.low, above + raised.high
+        near = among.above(float(above.min()) + _FAR_BELOW)
+        return np.where(there, clearance(segments.astype(np.float32), radii, near.obstacles), np.float32(-1.0))
+
+    @property
+    def raised_stance(self) -> Stance:
+        """The stance capsule above all that is a step high."""
+        low = self.footing.ground.step + self.stance.radius
+        return self.stance._replace(low=low, high=max(self.stance.high, low))
+
+    def window(self, among: Neighbours, grid: Grid) -> WalkableMap:
+        """The clearance of the stance capsule over a grid; where the ground is not plain, above it, as on a way."""
+        origin, heading, shape, cell, farthest = grid[:5]
+        if self.footing.plain:
+            return walkable_window(among.obstacles, self.stance, origin, heading, shape, cell, farthest)
+        sine, cosine = math.sin(heading), math.cos(heading)
+        ahead, left = (cell * part for part in np.indices(shape, np.float64))
+        places = np.stack([origin[0] + ahead * sine + left * cosine, origin[1] + ahead * cosine - left * sine], axis=-1)
+        heights = heights_beside(self.footing.ground, grid.height, grid.first, places)
+        there = np.isfinite(heights)
+        above = np.where(there, heights, grid.height)
+        near = among.above(float(above.min()) + _FAR_BELOW).obstacles
+        found = walkable_window(near, self.raised_stance, origin, heading, shape, cell, farthest, above)
+        return replace(found, clearance=np.where(there, found.clearance, np.float32(-1.0)))
 
 
 def _measure(model: BodyModel) -> tuple[Stance, float, float]:

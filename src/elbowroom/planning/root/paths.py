@@ -27,6 +27,7 @@ from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSett
 from elbowroom.planning.root.profile import Profile
 from elbowroom.planning.root.query import Answer, Asked, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
 
@@ -52,9 +53,7 @@ class RootPaths:
         self._walker = Walker(
             self.bounds, self._routes.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
         )
-        self.evasions = tuple(
-            EvasionFinder(humanoid, scene.obstacles, grid) for grid in (settings.evasion, settings.wide)
-        )
+        self.evasions = tuple(EvasionFinder(humanoid, scene, grid) for grid in (settings.evasion, settings.wide))
         self._figure = _figure(body.model)
         self._scenes = scene.obstacles.moving
         self.others = Moving()
@@ -64,6 +63,11 @@ class RootPaths:
     def moving(self) -> Moving:
         """All that moves."""
         return self._moving
+
+    @property
+    def restless(self) -> bool:
+        """Whether anything moves now or later: what could but stands for now is as a wall."""
+        return self._moving.fastest > STILL
 
     @property
     def others(self) -> Moving:
@@ -112,7 +116,7 @@ class RootPaths:
         """Along a line of travel."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
-        if not self._moving.tracks and self._routes.above is None and self.bounds.ground.plain:
+        if not self._moving.tracks and self._routes.above is None:
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)
@@ -133,6 +137,8 @@ class RootPaths:
         evasion, before = finder.settings, query.checks
         speeds = (speed, min(speed, evasion.sideways))
         grid = finder.ahead_of(line, start, self._sight(asked, speed), speeds, self._moving, start_time)
+        if grid is None:
+            return
         profiles: list[Profile] = []
         for bodies in evasion.bodies:
             for care in evasion.cares:

@@ -203,8 +203,8 @@ class RootPlanner:
             yield self._taken(_Candidate(plan, evading))
 
     def _out(self, asked: Asked, line: TravelLine, evading: Evading, before: WayOut | None) -> Iterator[_Candidate]:
-        """Ways out for who stands, where nothing moves; not again and again without getting farther."""
-        if len(self.moving) or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
+        """Ways out for who stands, where all else stands; not again and again without getting farther."""
+        if self._paths.restless or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
             return
         tries, ahead = 1, line.coordinates(asked.start.x, asked.start.z)[0]
         if before is not None and before.line == line and ahead < before.ahead + _FARTHER:
@@ -215,7 +215,7 @@ class RootPlanner:
 
     def _left_of(self, way_out: WayOut | None, asked: Asked) -> RootPlan | None:
         """What is left of a way out that is being followed, if it is still free."""
-        states = None if way_out is None or len(self.moving) else way_out.left(asked)
+        states = None if way_out is None or self._paths.restless else way_out.left(asked)
         if states is None or not self._paths.is_free(asked, states):
             return None
         path, (x, z) = RootPath(asked.start_time, asked.interval, states), states[-1, :2].tolist()

@@ -44,6 +44,20 @@ class Grid(NamedTuple):
     ample: float  # clearance of legs that is enough for everything: cells that may be free are taken to have it
 
 
+class Floor(NamedTuple):
+    """What feet stand on over a grid. Metres."""
+
+    heights: Floats  # (rows, columns)
+    step: float  # what rises no higher above it is stepped onto; minus infinity on the plane
+
+
+def places_on(line: TravelLine, grid: Grid) -> Floats:
+    """The places (rows, columns, 2), x and z, of a grid along a line."""
+    left: Floats = grid.aside * (np.arange(float(grid.columns)) - grid.columns // 2)
+    ahead: Floats = grid.first + grid.step * np.arange(float(grid.rows))[:, None]
+    return np.stack(np.broadcast_arrays(*line.point(ahead, left)), axis=-1)
+
+
 class Room:
     """The room of a body on a grid, among what stands and what passes each row when it is reached."""
 
@@ -53,28 +67,27 @@ class Room:
         turned: Turned,
         line: TravelLine,
         grid: Grid,
-        window: Window,
+        where: tuple[Window, Floor],
         near: Nearby,
         passing: Spans,
     ) -> None:
-        """What is `near` stands, as on the map's `window`; what is `passing` moves, a span for each row."""
+        """What is `near` stands, as on the map's window over a floor; what is `passing` moves, a span for each row."""
         shape = grid.rows, grid.columns, len(turned.slowness)
         self.clear: Floats32 = np.empty((3, *shape), np.float32)  # of legs, trunk, hanging arms
         self.shift: Floats32 = np.zeros(shape, np.float32)  # metres to the left, from a cell's middle to its best place
-        left: Floats = grid.aside * (np.arange(float(grid.columns)) - grid.columns // 2)
-        ahead: Floats = grid.first + grid.step * np.arange(float(grid.rows))[:, None]
-        places = np.stack(np.broadcast_arrays(*line.point(ahead, left)), axis=-1)
+        places, (window, floor) = places_on(line, grid), where
         aside = math.cos(line.heading), -math.sin(line.heading)
         known, capsules = np.zeros(shape, np.bool_), _turned_to(line.facing, turned.capsules)
         self._near, self._passing = near, passing
         self._checked = 0
         self._cells = _Cells(
-            self.clear, self.shift, known, places, aside, grid, capsules, body.groups, body.radii, turned.discs.reach
-        )
+            self.clear, self.shift, known, places, floor, aside, grid, capsules, body.groups, body.radii,
+            turned.discs.reach,
+        )  # fmt: skip
         discs = _shape(turned.discs, line.facing)
         _read(self.clear, window, discs, places, grid)
         if any_in(passing):
-            _pass(self.clear, discs, places, passing, LEVELS, grid)
+            _pass(self.clear, discs, places, (passing, floor.heights), LEVELS, grid)
 
     def check_narrow(self, cells: Indices) -> bool:
         """Check those narrow cells of a path, column and turn (m, 2) in each row; whether any was not known."""
@@ -90,6 +103,7 @@ class _Cells(NamedTuple):
     shift: Floats32
     known: Bools  # (rows, columns, T) cells that were checked
     places: Floats  # (rows, columns, 2) of their middles
+    floor: Floor
     left: tuple[float, float]  # a metre to the left of the line, x and z
     grid: Grid
     capsules: Floats32  # (T, C, 6) facing along the line
@@ -111,8 +125,8 @@ def _check_narrow(room: _Cells, cells: Indices, near: Nearby, passing: Spans, mo
         if count >= most or not _in_doubt(room, i, j, t):
             continue
         count += 1
-        stand = first_of(standing, _copy_near(near, room, room.places[i, j], standing))
-        move = first_of(moving, _copy_near(at_span(passing, i), room, room.places[i, j], moving))
+        stand = first_of(standing, _copy_near(near, room, i, j, standing))
+        move = first_of(moving, _copy_near(at_span(passing, i), room, i, j, moving))
         _measure(room, (i, j, t), 0.0, stand, move)
         if room.clear[0, i, j, t] < room.grid.margin:
             for m in range(max(j - 1, 0), min(j + 2, columns)):
@@ -124,13 +138,15 @@ def _check_narrow(room: _Cells, cells: Indices, near: Nearby, passing: Spans, mo
 
 
 @exact_kernel
-def _copy_near(own: Nearby, room: _Cells, place: Floats, out: Nearby) -> int:
-    """Copy the obstacles that may come near a body at a place (2,) to `out`, as seen from there; their number."""
+def _copy_near(own: Nearby, room: _Cells, i: int, j: int, out: Nearby) -> int:
+    """Copy the obstacles that may come near a body in row i and column j to `out`, as seen from there; their number."""
     reach, count = room.reach + room.grid.comfort + 2.0 * room.grid.aside, 0
+    place, height = room.places[i, j], room.floor.heights[i, j]
     for b in range(how_many(own)):
         x, z = place_of(own, b)
-        if np.hypot(x - place[0], z - place[1]) < ball_radius(own, b) + reach:
-            shifted_into(own, b, place[0], place[1], out, count)
+        high = heights_of(own, b)[1] > height + room.floor.step
+        if high and np.hypot(x - place[0], z - place[1]) < ball_radius(own, b) + reach:
+            shifted_into(own, b, (place[0], height, place[1]), out, count)
             count += 1
     return count
 
@@ -264,8 +280,11 @@ def _read(clear: Floats32, window: Window, shape: _Shape, places: Floats, grid: 
 
 
 @exact_kernel
-def _pass(clear: Floats32, shape: _Shape, places: Floats, passing: Spans, heights: Floats, grid: Grid) -> None:
-    """Lower `clear` to what upright boxes that pass leave, a span for each row."""
+def _pass(
+    clear: Floats32, shape: _Shape, places: Floats, over: tuple[Spans, Floats], heights: Floats, grid: Grid
+) -> None:
+    """Lower `clear` to what upright boxes that pass leave, a span for each row, `over` floors (rows, columns)."""
+    passing, floors = over
     discs, offsets, reaches = shape.discs, shape.offsets, shape.reaches
     starts, levels, radii = discs.starts, discs.levels, discs.radii
     for i in range(clear.shape[1]):
@@ -281,7 +300,7 @@ def _pass(clear: Floats32, shape: _Shape, places: Floats, passing: Spans, height
                     for g in range(3):
                         least = clear[g, i, j, t]
                         for k in range(starts[t, g], starts[t, g + 1]):
-                            height, radius = heights[levels[k]], radii[k]
+                            height, radius = floors[i, j] + heights[levels[k]], radii[k]
                             if bottom - radius < height < top + radius and away - reaches[k] < least:
                                 p, q = x + CELL * offsets[k, 0], z + CELL * offsets[k, 1]
                                 least = min(least, away_of(own, m, p, q) - radius)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.root import HEIGHT
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.cost import Prices, lost_on_line
 from elbowroom.planning.root.hull import Ground, StrideHull, ground_near, route_is_open, to_check
@@ -52,7 +53,7 @@ def straight_walk(
     who, x, z = walker, start[0], start[1]
     states = np.empty((stretch.horizon + 1, start.shape[0]))
     ground, route = ground_near(who.ground, who.grids, x, z, stretch.reach), straight_route(x, z, line, stretch.sight)
-    ends = not route_is_open(route, who.half, ground)
+    ends = not route_is_open(route, start[HEIGHT] if start.shape[0] > HEIGHT else 0.0, who.half, ground)
     if ends:
         return False, states, False, 0.0, 0.0, 0.0
     for c in range(start.shape[0]):

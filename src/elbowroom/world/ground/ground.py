@@ -232,3 +232,29 @@ def heights_along(ground: Ground, height: float, places: Floats) -> Floats:
             near = out[n]
         x, z = places[n, 0], places[n, 1]
     return out
+
+
+@exact_kernel
+def heights_beside(ground: Ground, height: float, first: int, places: Floats) -> Floats:
+    """The ground (rows, columns) at places (rows, columns, 2), as one comes to each from the one before.
+
+    One begins in the middle of the row `first`, at about a `height`, goes along the middle to the other rows, and from
+    there aside. Minus infinity where there is none; from there one comes at the height before.
+    """
+    rows, columns = places.shape[0], places.shape[1]
+    out, middle = np.zeros((rows, columns)), columns // 2
+    if ground.plain:
+        return out
+    for along in (1, -1):
+        near, i = height, first
+        while 0 <= i < rows:
+            out[i, middle] = height_at(ground, places[i, middle, 0], places[i, middle, 1], near)
+            near = out[i, middle] if out[i, middle] > _NONE else near
+            for aside in (1, -1):
+                beside, j = near, middle + aside
+                while 0 <= j < columns:
+                    out[i, j] = height_at(ground, places[i, j, 0], places[i, j, 1], beside)
+                    beside = out[i, j] if out[i, j] > _NONE else beside
+                    j += aside
+            i += along
+    return out

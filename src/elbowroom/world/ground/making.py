@@ -165,7 +165,8 @@ def _even(
             found += 1
         for k in range(own.shape[0]):
             height = planes[own[k], 2]
-            if abs(planes[own[k], 7]) + abs(planes[own[k], 8]) > _LEVEL or (level[cell] and abs(height) <= STEP):
+            under = level[cell] and -STEP <= height <= _SAME  # the plane, or below it
+            if abs(planes[own[k], 7]) + abs(planes[own[k], 8]) > _LEVEL or under:
                 continue
             first = True
             for j in range(k):

@@ -56,6 +56,14 @@ def clearance_from_each(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> 
     return out
 
 
+def clearance_from_all(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
+    """The clearance of each capsule of one posture, `segments` (C, 6), from the nearest obstacle, metres, (C,)."""
+    lanes = np.ascontiguousarray(np.asarray(segments, np.float32).T)
+    out = np.full(lanes.shape[1], np.inf, np.float32)
+    clearance_of_each(lanes, np.ascontiguousarray(radii, np.float32), near, out)
+    return out
+
+
 def pairwise_clearance(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
     """The clearance of every capsule from every obstacle in every configuration, metres, shape (C, B, N)."""
     capsules, sizes = _prepared(segments, radii)
@@ -140,9 +148,19 @@ def _pairwise_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
 @kernel
 def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any:
     """The least clearance of `capsules` (6, C), as lanes of one loop."""
-    count, least = capsules.shape[1], _INFINITE
+    least, found = _INFINITE, np.empty(capsules.shape[1], np.float32)
+    clearance_of_each(capsules, radii, near, found)
+    for i in range(found.shape[0]):
+        least = min(least, found[i])
+    return least
+
+
+@kernel
+def clearance_of_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
+    """The clearance of each of `capsules` (6, C) from the nearest of the obstacles, to `out` (C,)."""
+    count = capsules.shape[1]
     if count == 0:
-        return least
+        return
     used = (count + LANES - 1) // LANES
     tiles, squares = np.empty(used * TILE, np.float32), np.empty(used * LANES, np.float32)
     squares[:] = _INFINITE
@@ -151,8 +169,7 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
     _fill_tiles(capsules, _FIRST, count, tiles)
     _lower_all(tiles, used, rows, near.packed, np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):
-        least = min(least, math.sqrt(squares[i]) * _METRES - radii[i])
-    return least
+        out[i] = math.sqrt(squares[i]) * _METRES - radii[i]
 
 
 @kernel

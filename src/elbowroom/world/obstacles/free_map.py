@@ -3,6 +3,9 @@
 It lies in the world's frame and depends on no command, no path and no body: all planners in a place share one map.
 Tiles are filled where somebody comes near and stay, since what stands never moves. What is in a tile does not depend
 on who filled it or when. Moving things are not in it.
+
+Where the ground is not the plane, heights are those above the ground in the middle of a tile, of the floor that one is
+on, and what is no higher than a step is left out: feet may step onto it.
 """
 
 from collections.abc import Callable
@@ -11,18 +14,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.world.ground.ground import PLAIN, Ground, height_along
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import about, is_empty
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Span = tuple[float, float]
+Near = Callable[[Floats, Floats, Span], Nearby]
+Start = tuple[float, float, float]
 
 CELL = 0.04  # metres between neighbouring points
 TILE = 16  # points on a tile's side
 LEVELS: Floats = 0.1 + 0.2 * np.arange(10.0)  # metres above the ground
 FARTHEST = 0.7  # metres: greater distances are not told apart
 _TALL = 0.06  # metres: half the height of the upright line that stands for a level
+_SAME = 0.01  # metres: floors that are told apart
+EVERY = (-np.inf, np.inf)  # heights
 _MOST = 4096  # tiles that are remembered: 40 MB
 
 
@@ -37,49 +46,67 @@ class Window(NamedTuple):
 class FreeMap:
     """The map of one place; threads may share it."""
 
-    def __init__(self, near: Callable[[Floats, Floats], Nearby]) -> None:
-        """`near` tells what stands over a rectangle on the ground, of which it is given the corners (2,), x and z."""
-        self._near = near
-        self._tiles: dict[tuple[int, int], Floats32] = {}
+    def __init__(self, near: Near, ground: Ground = PLAIN) -> None:
+        """`near` tells what stands over a rectangle, of which it is given the corners (2,), x and z, on some `ground`.
 
-    def window(self, low: Floats, high: Floats) -> Window:
-        """The part between two corners (2,) on the ground, x and z; it may reach a little farther."""
+        What reaches into a span of heights.
+        """
+        self._near, self._ground = near, ground
+        self._tiles: dict[tuple[int, int, int], Floats32] = {}
+
+    def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0)) -> Window:
+        """The part between two corners (2,) on the ground, x and z; it may reach a little farther.
+
+        Of the floor that one comes to from a start (x, height, z).
+        """
         side = CELL * TILE
         first = [int(np.floor(edge / side)) for edge in low]
         last = [int(np.floor(edge / side)) for edge in high]
         columns = [
-            np.concatenate([self._tile(i, k) for k in range(first[1], last[1] + 1)], axis=2)
+            np.concatenate([self._tile(i, k, start) for k in range(first[1], last[1] + 1)], axis=2)
             for i in range(first[0], last[0] + 1)
         ]
         return Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
 
-    def distances(self, places: Floats, height: float) -> Floats32:
-        """How far what stands lower than `height` is from places (..., 2), x and z, to some centimetres."""
-        low, high = (edge(places.reshape(-1, 2), axis=0) for edge in (np.min, np.max))
-        window = self.window(low, high)
+    def distances(self, places: Floats, height: float, floor: float = 0.0) -> Floats32:
+        """How far what stands lower than `height` is from places (..., 2), x and z, to some centimetres.
+
+        `floor` is the height of the ground at the first place.
+        """
+        ends = places.reshape(-1, 2)
+        low, high = (edge(ends, axis=0) for edge in (np.min, np.max))
+        window = self.window(low, high, (float(ends[0, 0]), floor, float(ends[0, 1])))
         cells = np.rint((places - (window.x, window.z)) / CELL).astype(np.int64)
         i, k = (np.minimum(cells[..., axis], window.distances.shape[axis + 1] - 1) for axis in (0, 1))
         found: Floats32 = window.distances[height > LEVELS][:, i, k].min(axis=0)
         return found
 
-    def _tile(self, i: int, k: int) -> Floats32:
+    def _tile(self, i: int, k: int, start: Start) -> Floats32:
         """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z."""
-        tile = self._tiles.get((i, k))
-        if tile is None:
-            tile = self._filled(i, k)
-            if len(self._tiles) >= _MOST:
-                self._tiles.clear()
-            self._tiles[i, k] = tile
-        return tile
-
-    def _filled(self, i: int, k: int) -> Floats32:
-        """A tile, reckoned from its middle: so it is as exact far from the world's origin as near to it."""
         half = 0.5 * CELL * TILE
         middle = half * np.array([2.0 * i + 1.0, 2.0 * k + 1.0])
-        near = self._near(middle - half - FARTHEST, middle + half + FARTHEST)
+        floor = 0 if self._ground.plain else self._floor(start, middle)
+        tile = self._tiles.get((i, k, floor))
+        if tile is None:
+            tile = self._filled(middle, floor * _SAME)
+            if len(self._tiles) >= _MOST:
+                self._tiles.clear()
+            self._tiles[i, k, floor] = tile
+        return tile
+
+    def _floor(self, start: Start, middle: Floats) -> int:
+        """How high the ground is at a place, as one comes to it; where there is none, as one sets out."""
+        height = height_along(self._ground, start, float(middle[0]), float(middle[1]))
+        return round((height if np.isfinite(height) else start[1]) / _SAME)
+
+    def _filled(self, middle: Floats, floor: float) -> Floats32:
+        """A tile, reckoned from its middle: so it is as exact far from the world's origin as near to it."""
+        half = 0.5 * CELL * TILE
+        heights = EVERY if self._ground.plain else (floor + self._ground.step, floor + float(LEVELS[-1]) + FARTHEST)
+        near = self._near(middle - half - FARTHEST, middle + half + FARTHEST, heights)
         if is_empty(near):
             return _OPEN
-        found = clearance(_POINTS, _THIN, about(near, float(middle[0]), float(middle[1])))
+        found = clearance(_POINTS, _THIN, about(near, float(middle[0]), float(middle[1]), floor))
         return np.minimum(found, np.float32(FARTHEST)).reshape(_OPEN.shape)
 
 

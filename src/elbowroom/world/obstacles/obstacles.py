@@ -10,14 +10,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.along import Along, Place, along
+from elbowroom.world.obstacles.around_body import Standing, clearances_around
 from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
-from elbowroom.world.obstacles.clearance import clearance, clearance_from_each, clearance_of, pairwise_clearance
+from elbowroom.world.obstacles.clearance import (
+    clearance,
+    clearance_from_all,
+    clearance_from_each,
+    clearance_of,
+    pairwise_clearance,
+)
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.free_map import FreeMap
+from elbowroom.world.obstacles.kept_parts import kept_parts
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.packed import Packed, pack
-from elbowroom.world.obstacles.parts import Parts, parts_of
+from elbowroom.world.obstacles.parts import Parts
 from elbowroom.world.obstacles.rows import about, bounds_of, corners_of, joined, one_of, rows_of
 from elbowroom.world.obstacles.shapes import Box, Hull, Mesh, Shape, extents_of
 
@@ -84,7 +92,7 @@ class Obstacles:
 
     @cached_property
     def _parts(self) -> Parts:
-        return parts_of(self.shapes, self.centers, self.rotations, self.ground)
+        return kept_parts(self.shapes, self.centers, self.rotations, self.ground)
 
     @cached_property
     def _packed(self) -> Packed:
@@ -100,6 +108,10 @@ class Obstacles:
         """The lowest and the highest point (B, 2) of boxes round those that stand."""
         least, most = bounds_of(self.standing)
         return np.stack([least[:, 1], most[:, 1]], axis=1)
+
+    @cached_property
+    def _about_bodies(self) -> Standing:
+        return Standing(self.standing, self._grids, np.ascontiguousarray(self._heights))
 
     @cached_property
     def corners(self) -> Floats:
@@ -144,7 +156,7 @@ class Obstacles:
 
     @cached_property
     def free_map(self) -> FreeMap:
-        """How far away those that stand are, over the ground: one map for all who walk here."""
+        """How far away those that stand are, over the plane: one map for all who walk here."""
         return FreeMap(self.near)
 
     def along(
@@ -170,22 +182,40 @@ class Obstacles:
         """The least and the greatest corners (B, 3) of boxes along the world's axes that hold all of them at a time."""
         return bounds_of(self.at(time))
 
-    def clearance(self, segments: Floats32, radii: ArrayLike, origin: Sequence[float] | Floats, time: float) -> float:
+    def clearance(
+        self,
+        segments: Floats32,
+        radii: ArrayLike,
+        origin: Sequence[float] | Floats,
+        time: float,
+        floor: float = -np.inf,
+    ) -> float:
         """The least clearance, metres, of capsules (C, 6, N) about a place on the ground (x, z), at a time.
 
-        The capsules' coordinates are relative to that place, so that single precision holds anywhere. Infinite where
-        there is nothing.
+        The capsules' coordinates are relative to that place, so that single precision holds anywhere. What stands and
+        does not rise above the height `floor` is left out. Infinite where there is nothing.
         """
         x, z = float(origin[0]), float(origin[1])
         found = np.inf
         if len(self.moving):
             found = _least(segments, radii, about(self.moving.at(time, self._packed), x, z))
-        for reach, numbers in self._wider_and_wider(segments, radii, x, z):
+        for reach, numbers in self._wider_and_wider(segments, radii, x, z, floor):
             if len(numbers):
                 found = min(found, _least(segments, radii, about(self.picked(numbers), x, z)))
             if found <= reach:
                 break
         return float(found)
+
+    def clearances(self, segments: Floats32, radii: Floats32, origin: Floats, time: float, floors: Floats) -> Floats32:
+        """`clearance` of each capsule (C, 6, 1) of one posture, (C,): of the nearest; of others at least so much.
+
+        Of what stands, that which rises above a height of each capsule's own, the `floors` (C,).
+        """
+        found = clearances_around(self._about_bodies, segments, radii, origin[0], origin[1], floors)
+        if len(self.moving):
+            moved = about(self.moving.at(time, self._packed), float(origin[0]), float(origin[1]))
+            found = np.minimum(found, clearance_from_all(segments[:, :, 0], radii, moved))
+        return found
 
     def nearest(
         self, segments: ArrayLike, radii: ArrayLike, origin: Sequence[float] | Floats, time: float
@@ -209,9 +239,12 @@ class Obstacles:
         return best._replace(on_axis=best.on_axis + shift, on_obstacle=best.on_obstacle + shift)
 
     def _wider_and_wider(
-        self, segments: ArrayLike, radii: ArrayLike, x: float, z: float
+        self, segments: ArrayLike, radii: ArrayLike, x: float, z: float, floor: float = -np.inf
     ) -> Iterator[tuple[float, Longs]]:
-        """The numbers of those that stand within so many metres of capsules (C, 6, ...), and at last all."""
+        """The numbers of those that stand within so many metres of capsules (C, 6, ...), and at last all.
+
+        Those that rise above a floor.
+        """
         axes = np.asarray(segments, np.float64)
         ends = np.moveaxis(axes.reshape(len(axes), 2, 3, -1), 2, -1).reshape(-1, 3)
         widest = float(np.max(radii, initial=0.0))
@@ -221,11 +254,12 @@ class Obstacles:
         while many and reach < _FAR:
             low, high = (x + least[0] - reach, z + least[2] - reach), (x + most[0] + reach, z + most[2] + reach)
             numbers = self.numbers_near(low, high)
-            if len(numbers) == many:
-                yield reach, numbers
-                return
             lowest, highest = self._heights[numbers].T
-            yield reach, numbers[(lowest <= most[1] + reach) & (highest >= least[1] - reach)]
+            if len(numbers) == many:
+                yield reach, numbers[highest > floor]
+                return
+            within = (lowest <= most[1] + reach) & (highest >= least[1] - reach)
+            yield reach, numbers[within & (highest > floor)]
             reach *= _WIDER
 
 

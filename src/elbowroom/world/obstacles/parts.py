@@ -14,6 +14,7 @@ from elbowroom.world.obstacles.solids import inner_boxes
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
+_UP = np.array([0.0, 1.0, 0.0])
 RISE = 0.005  # metres: triangles that rise no higher from the ground are the ground
 
 
@@ -56,7 +57,8 @@ def _cut(shape: Shape, center: Floats, turn: Floats, ground: float) -> Parts:
     if not isinstance(shape, Mesh):
         return _in_one_place((shape,), center, turn)
     standing = above_ground(shape, center, turn, ground)
-    pieces = _in_one_place(pieces_of(standing) if standing is not None else (), center, turn)
+    up = quaternion.rotate(quaternion.conjugate(turn), _UP)
+    pieces = _in_one_place(pieces_of(standing, up) if standing is not None else (), center, turn)
     inner = _within(shape, center, turn, ground)
     return Parts(
         pieces.shapes + inner.shapes,

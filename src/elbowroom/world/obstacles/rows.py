@@ -87,10 +87,11 @@ def joined(one: Nearby, other: Nearby) -> Nearby:
     return Nearby(np.concatenate([one.rows, other.rows]), one.packed if len(one.packed) else other.packed)
 
 
-def about(near: Nearby, x: float, z: float) -> Nearby:
+def about(near: Nearby, x: float, z: float, height: float = 0.0) -> Nearby:
     """The same as seen from a place on the ground: so that single precision holds anywhere."""
     rows = near.rows.copy()
     rows[:, 0] -= x
+    rows[:, 1] -= height
     rows[:, 2] -= z
     return Nearby(rows, near.packed)
 
@@ -174,12 +175,12 @@ def move_into(near: Nearby, b: int, place: Floats, turn: Floats, out: Nearby, at
 
 
 @exact_kernel
-def shifted_into(near: Nearby, b: int, x: float, z: float, out: Nearby, at: int) -> None:
-    """Obstacle b as seen from a place on the ground, as obstacle `at` of `out`."""
+def shifted_into(near: Nearby, b: int, place: tuple[float, float, float], out: Nearby, at: int) -> None:
+    """Obstacle b as seen from a place (x, height, z), as obstacle `at` of `out`."""
     for k in range(ROW):
         out.rows[at, k] = near.rows[b, k]
-    out.rows[at, 0] -= x
-    out.rows[at, 2] -= z
+    for i in range(3):
+        out.rows[at, i] -= place[i]
 
 
 @exact_kernel

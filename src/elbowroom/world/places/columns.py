@@ -65,7 +65,7 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
         if keys is None or count > _MOST_SURFACES:
             raise InputError(f"{place.name}: has too much surface to be looked over; is its unit right (--scale)?")
         found.append(keys)
-    keys = np.unique(np.concatenate(found))
+    keys = _distinct(np.concatenate(found))
     low, above = (keys >> _HEIGHT_BITS + 1) & _HEIGHTS, (keys >> 1) & _HEIGHTS
     base = float(least[1])
     return Columns(
@@ -93,7 +93,13 @@ def surface_keys(triangles: Floats, cell: float, shape: tuple[int, int], most: i
         return None
     out = np.empty(count, np.int64)
     _fill(triangles / scale, level, *shape, most, out)
-    return np.unique(out)
+    return _distinct(out)
+
+
+def _distinct(numbers: Ints) -> Ints:
+    """Each number once, increasing; NumPy's own takes several times as long for so many."""
+    ordered = np.sort(numbers)
+    return ordered[np.append(True, np.diff(ordered) > 0)] if len(ordered) else ordered
 
 
 @exact_kernel

@@ -14,7 +14,7 @@ from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.place import Place
 from elbowroom.world.places.reading import read_place
 from elbowroom.world.places.scene_place import ScenePlace, standing_parts
-from elbowroom.world.places.survey import survey
+from elbowroom.world.places.site import site_of
 from elbowroom.world.scene import Gate, Scene
 
 Progress = Callable[[str, float], None]
@@ -32,8 +32,8 @@ def load_place_scene(path: Path, options: PlaceOptions, progress: Progress = lam
 
 def place_scene(place: Place, progress: Progress = lambda _what, _share: None) -> Scene:
     """The scene of a place: its ground becomes height 0, the start is where one can begin; raises `InputError`."""
-    found = survey(place, progress)
-    start, ground = found.beginning, found.ground.height
+    found = site_of(place, progress)
+    start, ground = found.beginning, found.height
     obstacles = walked_over(standing_parts(place, ground), found.floor)
     least, most = place.bounds
     wide, deep = np.minimum((most - least)[[0, 2]] + 2.0 * _AROUND, _LARGEST).tolist()

@@ -79,7 +79,8 @@ class UpperBodyPlanner:
 
         `go_on` is called before each search, and raises an exception to call the plan off.
         """
-        near, path = self._near(path, others), self._legs.stood(path)
+        path = self._legs.stood(path)
+        near = self._near(path, others)
         legs = self._legs.among(others, path)
         rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
         weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
@@ -101,11 +102,11 @@ class UpperBodyPlanner:
         return UpperPlan(plan, search.deepest, search)
 
     def _near(self, path: RootPath, others: Moving | None) -> Along:
-        """What the upper body could reach on a path."""
+        """What the upper body could reach on a path whose feet stand: not what lies under them."""
         reach = self.model.chain.span + _NEARLY
         low_x, high_x, low_z, high_z = ground_covered(path.states)
         ground = (low_x - reach, low_z - reach), (high_x + reach, high_z + reach)
-        heights = self._legs.footing.heights(path.states)
+        heights = self._legs.footing.over_soles(path.states)
         return self._obstacles.along(path.times, ground, others, heights)
 
     def _search_of(

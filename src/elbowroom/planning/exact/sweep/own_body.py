@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL, SEARCH_ORDER, DofGroup
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.body.whole_body import whole_body
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.memory.row_contents import CONTENT
 from elbowroom.planning.exact.memory.row_index import new_row_index
@@ -89,7 +88,7 @@ class OwnBody:
         """
         wanted, allowed = self.pairs.beside(group, group.clear_of)
         return OwnBodyNodes(
-            whole_body(self.model), wanted, np.ascontiguousarray(allowed), postures, resting,
+            self.model.whole, wanted, np.ascontiguousarray(allowed), postures, resting,
             new_row_index(_REMEMBERED, CONTENT + LOCAL),
             np.empty((_REMEMBERED, len(wanted), 6), np.float32), np.empty((_REMEMBERED, len(resting)), np.bool_),
         )  # fmt: skip

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.kinematics import BodyModel
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.body.whole_body import WholeBody, posed_body, whole_body
+from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
@@ -72,7 +72,7 @@ class Seen(NamedTuple):
 def own_parts(model: BodyModel, pairs: SelfPairs, levers_of_body: BodyLevers) -> OwnParts:
     """The parts of a body that must not run into each other."""
     levers = levers_of_body.between(pairs.first, pairs.second, model.roots.indices)
-    return OwnParts(whole_body(model), pairs.first, pairs.second, pairs.kinds, pairs.limits, levers)
+    return OwnParts(model.whole, pairs.first, pairs.second, pairs.kinds, pairs.limits, levers)
 
 
 def parts_of(parts: OwnParts, group: DofGroup) -> OwnParts:
