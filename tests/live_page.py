@@ -1,5 +1,6 @@
 """A page under test: its state is `window.__app`, never its pixels or a wall-clock frame rate."""
 
+import base64
 import time
 from typing import Any
 
@@ -15,6 +16,17 @@ async (frames) => {
   const sliding = document.getAnimations().filter((a) => a.playState === "running" && ends(a)).length;
   const { camera, root } = window.__app;
   return { sliding, at: [...Object.values(camera ?? {}), ...Object.values(root ?? {})].map(Number) };
+}
+"""
+_DROP = """
+(files) => {
+  const transfer = new DataTransfer();
+  for (const [name, text] of files) {
+    transfer.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+  }
+  for (const type of ["dragenter", "dragover", "drop"]) {
+    document.body.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: transfer }));
+  }
 }
 """
 _NO_SERVER = ("WebSocket", "net::ERR_CONNECTION")
@@ -58,6 +70,21 @@ class LivePage:
     def excuse_lost_server(self) -> None:
         """A test that ended its server: what the browser logs while none answers is no error of the page."""
         self.errors[:] = [error for error in self.errors if not any(part in error for part in _NO_SERVER)]
+
+    def excuse_refusals(self) -> None:
+        """A test that sent something wrong: the browser itself logs a refused request; that is no error of the page."""
+        self.errors[:] = [error for error in self.errors if "Failed to load resource" not in error]
+
+    def drop(self, *files: tuple[str, bytes]) -> None:
+        """Drop files on the page, all at once: their names and what is in them."""
+        self.page.evaluate(_DROP, [[name, base64.b64encode(data).decode()] for name, data in files])
+
+    def said(self, part: str, seconds: float = PATIENCE) -> str:
+        """Wait until a notice says this, among other things; what it says."""
+        notice = self.page.locator("#notices .notice p", has_text=part).first
+        notice.wait_for(timeout=1000.0 * seconds)
+        text: str = notice.inner_text()
+        return text
 
     def close(self) -> None:
         """Close the page and its context."""

@@ -1,6 +1,5 @@
 """The page round the picture: panels, time, files, and the line to the server."""
 
-import base64
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,16 +22,6 @@ if SHARED is not None:
     FILES.append(pytest.param(SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments"))
 
 SMALL = (480, 320)  # drawn soon; for tests that look at no panel
-DROP = """
-([name, text]) => {
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([bytes], name));
-  for (const type of ["dragenter", "dragover", "drop"]) {
-    document.body.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: transfer }));
-  }
-}
-"""
 
 
 def test_the_page_comes_up_quietly(open_page: Open) -> None:
@@ -109,7 +98,7 @@ def test_menus_change_the_session(open_page: Open) -> None:
 @pytest.mark.parametrize("path", FILES)
 def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live = open_page("scene=empty", viewport=SMALL)
-    live.page.evaluate(DROP, ["newcomer" + path.suffix, base64.b64encode(path.read_bytes()).decode()])
+    live.drop(("newcomer" + path.suffix, path.read_bytes()))
     state = live.wait(
         "s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60
     )
@@ -122,7 +111,7 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
 def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     titles = "[...document.querySelectorAll('#avatar option')].map((option) => option.value)"
     mine = open_page("scene=empty", viewport=SMALL)
-    mine.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
+    mine.drop(("mine.vrm", STOCK.read_bytes()))
     avatar = mine.wait("s.settings.avatar !== 'stock'", 60)["settings"]["avatar"]
     assert avatar not in open_page("scene=empty", viewport=SMALL).page.evaluate(titles)
     open_page(f"scene=empty&avatar={avatar}", viewport=SMALL).wait(
@@ -147,18 +136,17 @@ def test_the_page_says_what_a_file_permits_and_what_was_made_of_it(open_page: Op
 
 def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:
     live = open_page()
-    live.page.evaluate(DROP, ["cat.vrm", base64.b64encode(b"this is no avatar").decode()])
+    live.drop(("cat.vrm", b"this is no avatar"))
     live.page.wait_for_selector(".notice.error")
     assert live.state()["settings"]["avatar"] == "stock"
-    # The browser itself logs the refused request; that is not an error of the page.
-    live.errors[:] = [error for error in live.errors if "Failed to load resource" not in error]
+    live.excuse_refusals()
 
 
 def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) -> None:
     with LiveServer() as server:
         live = open_page("scene=c", viewport=SMALL, server=server)
         live.wait("s.scene === 'c'")
-        live.page.evaluate(DROP, ["mine.vrm", base64.b64encode(STOCK.read_bytes()).decode()])
+        live.drop(("mine.vrm", STOCK.read_bytes()))
         live.wait("s.settings.avatar !== 'stock'", 60)
         server.stop()
         live.wait("!s.connected && s.connection === 'lost'")

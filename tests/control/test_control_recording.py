@@ -249,6 +249,13 @@ def test_hostile_headers_are_plain_errors(tmp_path: Path, data: bytes) -> None:
         Recording(path)
 
 
+def test_a_recording_of_another_version_is_told_as_one(tmp_path: Path, run: tuple[Path, object]) -> None:
+    path = tmp_path / "newer.elbow"
+    path.write_bytes(run[0].read_bytes().replace(MAGIC, MAGIC[:-2] + b"9\n", 1))
+    with pytest.raises(InputError, match=r"newer\.elbow: was recorded by another version.*format is 9"):
+        Recording(path)
+
+
 def test_nested_json_in_a_header_is_a_plain_error(tmp_path: Path) -> None:
     text = b"[" * 100_000
     path = tmp_path / "deep.elbow"

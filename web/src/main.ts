@@ -4,7 +4,8 @@ import { App } from "./app/app";
 import { keepPage } from "./keeping_page";
 import { readLanguages } from "./preferences";
 import { exposeState } from "./probe";
-import { speak } from "./texts/texts";
+import { words } from "./app/words";
+import { speak, text } from "./texts/texts";
 import { wordDocument } from "./texts/worded";
 
 speak(readLanguages(new URLSearchParams(location.search)));
@@ -17,8 +18,8 @@ try {
   const message = document.createElement("p");
   message.className = "fatal";
   message.textContent = webglWorks()
-    ? `The page could not start: ${error instanceof Error ? error.message : String(error)}`
-    : "This browser offers no WebGL 2, which the picture needs. Switch on hardware acceleration or try another browser.";
+    ? text("page.notStarted", words(error))
+    : text("page.noWebGl");
   document.body.append(message);
   console.error(error);
 }

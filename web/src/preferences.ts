@@ -4,7 +4,7 @@ import { viewNamed, type ViewName } from "./camera/views";
 import type { SteeringMode } from "./input/steering";
 import { OVERLAYS, parseOverlays, type OverlayName } from "./overlays/overlay_names";
 import type { QualityName } from "./stage/quality";
-import { LANGUAGES, type Language } from "./texts/language";
+import { languageOf, LANGUAGES, type Language } from "./texts/language";
 
 export type ThemeChoice = "auto" | "light" | "dark";
 
@@ -35,6 +35,8 @@ export interface SessionWishes {
   readonly showUi: boolean;
 }
 
+/** Characters of a wish that are told back. */
+const LONGEST_TOLD = 40;
 const STORE = "elbowroom.preferences";
 const QUALITIES: readonly QualityName[] = ["low", "medium", "high", "auto"];
 const THEMES: readonly ThemeChoice[] = ["auto", "light", "dark"];
@@ -82,8 +84,8 @@ export function addressWithoutLanguage(address: string): string {
 }
 
 export function readWishes(query: URLSearchParams): SessionWishes {
-  const queue = Number(query.get("queue") ?? NaN);
-  const speed = Number(query.get("speed") ?? NaN);
+  const queue = numberIn(query, "queue");
+  const speed = numberIn(query, "speed");
   const assist = query.get("assist");
   return {
     scene: query.get("scene"),
@@ -95,6 +97,28 @@ export function readWishes(query: URLSearchParams): SessionWishes {
     assist: assist === null ? null : assist !== "0" && assist !== "off",
     showUi: query.get("ui") !== "0",
   };
+}
+
+/** What the address asks for that the page does not know, as it stands there: what the server knows, it checks itself. */
+export function oddities(query: URLSearchParams): readonly string[] {
+  const known: Readonly<Record<string, (value: string) => boolean>> = {
+    camera: (value) => viewNamed(value) === value,
+    speed: () => Number.isFinite(numberIn(query, "speed")),
+    queue: () => Number.isInteger(numberIn(query, "queue")),
+    overlays: (value) => ["all", "none", ""].includes(value) || value.split(",").every((name) => OVERLAYS.some((one) => one === name)),
+    quality: (value) => QUALITIES.some((one) => one === value),
+    theme: (value) => THEMES.some((one) => one === value),
+    lang: (value) => languageOf(value) !== null,
+  };
+  return Object.entries(known).flatMap(([name, knows]) => {
+    const value = query.get(name);
+    return value === null || knows(value) ? [] : [`${name}=${value.slice(0, LONGEST_TOLD)}`];
+  });
+}
+
+/** NaN where there is none. */
+function numberIn(query: URLSearchParams, name: string): number {
+  return Number(query.get(name)?.trim() || NaN);
 }
 
 function readStore(): Record<string, unknown> {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { isPrivate, isStep, queryOf, withOwnAvatar } from "../src/address";
 import type { Settings } from "../src/generated/messages";
-import { readWishes } from "../src/preferences";
+import { oddities, readWishes } from "../src/preferences";
 
 const settings = {
   scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1000000001, assist: true,
@@ -23,6 +23,14 @@ describe("the address line", () => {
     expect(wishes).toMatchObject({
       scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1, assist: null, camera: "side",
     });
+  });
+
+  it("tells what it does not know, and asks the server for none of it", () => {
+    const query = new URLSearchParams("scene=nope&camera=9&speed=abc&queue=&overlays=path,stars&lang=tlh&theme=dark");
+    expect(oddities(query)).toEqual(["camera=9", "speed=abc", "queue=", "overlays=path,stars", "lang=tlh"]);
+    expect(readWishes(query)).toMatchObject({ scene: "nope", camera: "behind", walkSpeed: null, queueSize: null });
+    expect(oddities(new URLSearchParams(queryOf(place, "?theme=dark&lang=zh-TW&quality=low")))).toEqual([]);
+    expect(oddities(new URLSearchParams("overlays=all"))).toEqual([]);
   });
 
   it("does not name an avatar that only this page has", () => {

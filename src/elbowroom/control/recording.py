@@ -15,6 +15,7 @@ wide, nobody lowered the pelvis.
 import hashlib
 import json
 import platform
+import re
 import struct
 import zlib
 from collections.abc import Iterator
@@ -257,7 +258,7 @@ class Recording:
         self._has_end = magic in (MAGIC, _MAGIC_6, _MAGIC_5, _MAGIC_4, _MAGIC_3)
         self._roots = {MAGIC: WITH_FEET, _MAGIC_6: ROOT_STATE}.get(magic, HEIGHT)  # numbers of the root
         if not len(self._places):
-            raise InputError(f"{self.path}: is no recording of this format ({MAGIC.decode().strip()})")
+            raise InputError(_not_read_here(self.path, magic))
         size = file.read(_COUNT.size)
         length = _COUNT.unpack(size)[0] if len(size) == _COUNT.size else 0
         if not 0 < length <= MAX_HEADER_BYTES:
@@ -348,6 +349,14 @@ def _end_note(head: bytes, file: BinaryIO, count: int, crc: int) -> str | None:
     if told != crc:
         return f"the file was changed: its {count} steps are not those that were recorded"
     return "the file goes on after its end" if file.read(1) else None
+
+
+def _not_read_here(path: Path, magic: bytes) -> str:
+    """Why a file that begins like this is not read."""
+    other = re.fullmatch(rb"ELBOWROOM RECORDING (\d)\n", magic)
+    if other is None:
+        return f"{path}: is no recording of this format ({MAGIC.decode().strip()})"
+    return f"{path}: was recorded by another version of Elbowroom: its format is {int(other[1])}"
 
 
 def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> tuple[Steps, bytes] | None:

@@ -10,9 +10,10 @@ import type { ShownPose } from "../net/pose_timeline";
 import { Session } from "../net/session";
 import { Picture } from "../picture";
 import { Pushing, type PushingHost } from "../pushing/pushing";
-import { readPreferences, readWishes } from "../preferences";
+import { oddities, readPreferences, readWishes } from "../preferences";
 import { BestTimes } from "../results";
 import { Steps } from "../steps/steps";
+import { text } from "../texts/texts";
 import { byId } from "../ui/dom";
 import { listenForFiles } from "../ui/file_drop";
 import { FinishCard } from "../ui/finish_card";
@@ -105,7 +106,9 @@ export class App {
     this.deeds = new Deeds(this);
     this.subscribe();
     this.frames.begin();
-    if (query.has("replay")) void this.modes.replayRun(null);
+    const odd = oddities(query);
+    if (odd.length > 0) this.notices.show("warning", text("address.odd", odd.join(text("list.comma"))));
+    if (query.has("replay")) this.arrivals.shownRun();
     void this.modes.buildAddress(location.hash);
   }
 
@@ -134,7 +137,7 @@ export class App {
 
   private listen(): void {
     keepKeysOnView(this.view);
-    listenForFiles((file) => this.arrivals.file(file));
+    listenForFiles((files) => this.arrivals.take(files));
     showKeys(this.keys);
     byId("keys-open", HTMLButtonElement).addEventListener("click", () => {
       this.keyDialog ??= new KeyDialog(this.keys, () => showKeys(this.keys));
@@ -147,7 +150,7 @@ export class App {
       configure: (change) => this.configure(change),
       prefer: (change) => this.taste.prefer(change),
       overlay: (name, on) => this.taste.overlay(name, on),
-      file: (file) => this.arrivals.file(file),
+      files: (files) => this.arrivals.take(files),
       menuCovers: (pixels) => {
         if (!this.modes.build.active) this.picture.stage.setCoveredRight(pixels);
       },

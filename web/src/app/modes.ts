@@ -12,7 +12,6 @@ import { byId } from "../ui/dom";
 import type { FinishCard } from "../ui/finish_card";
 import type { Menu } from "../ui/menu";
 import type { Notices } from "../ui/notices";
-import type { Veil } from "../ui/veil";
 import type { LiveWalk } from "./live_walk";
 import { words } from "./words";
 
@@ -23,7 +22,6 @@ export interface ModesParts {
   readonly menu: Menu;
   readonly notices: Notices;
   readonly finishCard: FinishCard;
-  readonly veil: Veil;
   readonly live: LiveWalk;
   configure(change: Parameters<Session["configure"]>[0]): void;
 }
@@ -77,19 +75,11 @@ export class Modes {
     this.hold();
   }
 
-  /** Shows a recording: a file, or the one that the server was started with. */
+  /** Shows a recording: a file, or the one that the server was started with. @throws Error with one sentence for the user */
   async replayRun(file: File | null): Promise<void> {
-    const { menu, notices, veil } = this.parts;
-    veil.upload(file?.name ?? "…");
-    try {
-      await this.replay.showRun(file);
-      menu.setOpen(false);
-      this.hold();
-    } catch (error) {
-      notices.show("error", words(error));
-    } finally {
-      veil.upload(null);
-    }
+    await this.replay.showRun(file);
+    this.parts.menu.setOpen(false);
+    this.hold();
   }
 
   /** Hands over the walk so far as a recording, which replays here and elsewhere. */
@@ -107,9 +97,9 @@ export class Modes {
     this.beginBuilding();
   }
 
-  /** Builds on the scene of a file. */
-  async buildFile(file: File): Promise<void> {
-    await this.build.showText(await file.text());
+  /** Builds on the scene that a file holds as text. */
+  async buildFile(scene: string): Promise<void> {
+    await this.build.showText(scene);
     this.beginBuilding();
   }
 

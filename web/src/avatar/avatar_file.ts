@@ -3,6 +3,7 @@
 import { VRMLoaderPlugin, VRMUtils, type VRM } from "@pixiv/three-vrm";
 import { Mesh, Object3D, SkinnedMesh, type Group } from "three";
 import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { asked } from "../net/asked";
 import { addDecoders } from "./decoders";
 import { orderGeometry } from "./triangle_order";
 
@@ -19,9 +20,7 @@ export interface AvatarFile {
 export async function loadAvatarFile(url: string): Promise<AvatarFile> {
   const loader = new GLTFLoader();
   loader.register((parser) => new VRMLoaderPlugin(parser, { autoUpdateHumanBones: false }));
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`the server does not give its file (status ${response.status})`);
-  const file = await response.arrayBuffer();
+  const file = await (await asked(url)).arrayBuffer();
   await addDecoders(loader, file);
   const gltf = await loader.parseAsync(file, "").finally(() => loader.dracoLoader?.dispose());
   const vrm = (gltf.userData["vrm"] as VRM | undefined) ?? null;

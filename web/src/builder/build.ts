@@ -1,5 +1,6 @@
 /** Build mode: brings the editor, its panel, the live check and the browser's drafts together; the stage shows the plan meanwhile. */
 
+import { words } from "../app/words";
 import type { SceneMessage } from "../generated/messages";
 import type { Picture } from "../picture";
 import { download } from "../replay/film";
@@ -198,7 +199,7 @@ export class Build implements BuildPanelListener {
     try {
       await deed();
     } catch (error) {
-      this.host.say("error", error instanceof Error ? error.message : String(error));
+      this.host.say("error", words(error));
     }
   }
 }

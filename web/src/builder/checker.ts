@@ -1,5 +1,6 @@
 /** The live check: some time after an edit the avatar walks the plan unseen; a newer edit calls that off. */
 
+import { words } from "../app/words";
 import type { UnseenWalk } from "../generated/messages";
 import type { Plan } from "./plan";
 import { walkUnseen } from "./wire";
@@ -57,7 +58,7 @@ export class Checker {
       const walk = await walkUnseen(plan, this.avatar(), call.signal);
       if (this.call === call) this.say({ state: "walked", walk });
     } catch (error) {
-      if (this.call === call) this.say({ state: "wrong", words: error instanceof Error ? error.message : String(error) });
+      if (this.call === call) this.say({ state: "wrong", words: words(error) });
     }
   }
 

@@ -1,6 +1,7 @@
 /** What build mode asks of the server. All throw an Error with one sentence for the user. */
 
 import type { SceneChoice, UnseenWalk } from "../generated/messages";
+import { asked } from "../net/asked";
 import { sceneDocumentUrl, scenesUrl, walksUrl } from "../net/endpoints";
 import { documentOf, planOf, type SceneDocument } from "./document";
 import type { Plan } from "./plan";
@@ -23,11 +24,4 @@ export async function walkUnseen(plan: Plan, avatar: string, signal: AbortSignal
 /** The document as text, as it is sent and saved. */
 export function textOf(scene: Plan | string): string {
   return typeof scene === "string" ? scene : `${JSON.stringify(documentOf(scene), null, 1)}\n`;
-}
-
-async function asked(url: string, init: RequestInit = {}): Promise<Response> {
-  const response = await fetch(url, init);
-  if (response.ok) return response;
-  const { error } = (await response.json().catch(() => ({}))) as { error?: string };
-  throw new Error(error ?? `status ${response.status}`);
 }

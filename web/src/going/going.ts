@@ -3,6 +3,7 @@
 import { Plane, Raycaster, Vector2, Vector3, type Intersection } from "three";
 import type { ClientMessage, Going, Notice } from "../generated/messages";
 import type { Picture } from "../picture";
+import { heard } from "../texts/sayings";
 import { text } from "../texts/texts";
 import { FloorClicks } from "./floor_click";
 import { GoalMarker } from "./marker";
@@ -38,8 +39,8 @@ export class GoingSomewhere {
     if (going.state === "walking") this.marker.show(going.place, palette.accent, false);
     else if (going.nearest) this.marker.show(going.nearest, palette.accent, true);
     else this.marker.hide();
-    if (going.state === "refused") this.host.say("warning", going.nearest ? text("going.offered") : text("going.noWay", going.reason));
-    if (going.state === "given up") this.host.say("warning", text("going.givenUp", going.reason));
+    if (going.state === "refused") this.host.say("warning", going.nearest ? text("going.offered") : text("going.noWay", heard(going.reason)));
+    if (going.state === "given up") this.host.say("warning", text("going.givenUp", heard(going.reason)));
   }
 
   /** Another scene, or back at the start: nobody goes anywhere. */

@@ -1,6 +1,8 @@
 /** One WebSocket that comes back by itself; poses arrive binary, everything else as JSON text. */
 
 import { readPoseFrame, type ClientMessage, type PoseFrame, type ServerMessage } from "../generated/messages";
+import { heard } from "../texts/sayings";
+import { text } from "../texts/texts";
 
 export type ConnectionState = "connecting" | "open" | "lost";
 
@@ -17,8 +19,6 @@ const LAST_DELAY = 3000;
 const PING_INTERVAL = 1000;
 /** So many pings without a word in answer, and the line is given up. */
 const UNANSWERED = 6;
-const BROKE = "The line to the server broke";
-const NO_ANSWER = "The server does not answer";
 
 export class Connection {
   private socket: WebSocket | null = null;
@@ -62,7 +62,7 @@ export class Connection {
       this.listener.state("open", "");
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
-    socket.onclose = ({ reason }) => this.closed(socket, reason ? `The server has closed the line (${reason})` : opened ? BROKE : NO_ANSWER);
+    socket.onclose = ({ reason }) => this.closed(socket, reason ? text("server.closed", heard(reason)) : text(opened ? "server.broke" : "server.silent"));
     this.socket = socket;
   }
 
@@ -102,7 +102,7 @@ export class Connection {
       const silent = this.socket;
       silent.onclose = silent.onmessage = null;
       silent.close();
-      this.closed(silent, NO_ANSWER);
+      this.closed(silent, text("server.silent"));
       return;
     }
     this.unanswered++;

@@ -9,6 +9,7 @@ import { LeastClearance } from "../results";
 import { Connection, type ConnectionState } from "./connection";
 import { PoseTimeline, type ShownPose } from "./pose_timeline";
 import { ServerClock } from "./server_clock";
+import { heard } from "../texts/sayings";
 import { worded } from "../texts/worded";
 
 /** Who is told what the server says. */
@@ -184,7 +185,7 @@ export class Session {
         break;
       case "notice":
         this.decided ||= message.level === "error";
-        listener.notice(message.level, message.message);
+        listener.notice(message.level, heard(message.message));
         break;
       case "pong":
         break;

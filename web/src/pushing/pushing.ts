@@ -5,6 +5,7 @@ import type { ShownPose } from "../net/pose_timeline";
 import type { Picture } from "../picture";
 import { LooseThings, NOTHING_LOOSE, type Loose } from "../stage/loose";
 import { text } from "../texts/texts";
+import { thingName } from "../texts/thing_names";
 import { ArrowPushing, type Graspable } from "./arrows";
 import { Grip } from "./grip";
 import { Hand } from "./hand";
@@ -105,6 +106,6 @@ export class Pushing {
   private show(number: number | null): void {
     this.host.picture.world.hold(number);
     const name = number === null ? undefined : this.things?.scene.obstacles[number]?.name;
-    if (name !== undefined) this.host.say("info", text("push.inHand", name));
+    if (name !== undefined) this.host.say("info", text("push.inHand", thingName(name)));
   }
 }

@@ -4,6 +4,7 @@ import type { AvatarMessage, PoseFrame, SceneMessage, Settings } from "../genera
 import type { ShownPose } from "../net/pose_timeline";
 import type { Action } from "../input/keyboard";
 import type { Loose } from "../stage/loose";
+import { heard } from "../texts/sayings";
 import { text } from "../texts/texts";
 import { WalkKeeper, type Circumstances } from "./keeper";
 import type { Replay, ReplayHost, ReplayState } from "./replay";
@@ -68,7 +69,7 @@ export class ReplayDoor {
     this.files.push(take);
     await this.open(await this.every(), take);
     if (run.standIn) this.host.say("warning", text("replay.standIn", run.standIn));
-    if (run.note) this.host.say("warning", run.note);
+    if (run.note) this.host.say("warning", heard(run.note));
   }
 
   /** The next pose of the replay; null where none is shown. */

@@ -1,5 +1,6 @@
 /** The replay: one of the kept runs, or one from a file, shown in place of the live walk; maybe a second one with it. */
 
+import { words } from "../app/words";
 import type { ShownPose } from "../net/pose_timeline";
 import type { Picture } from "../picture";
 import { text } from "../texts/texts";
@@ -150,7 +151,7 @@ export class Replay implements PanelListener {
     download(film, film.name);
     if (!canShareFile(film)) return;
     this.panel.offerFilm(() => {
-      shareFile(film).catch((error: unknown) => this.host.say("error", String(error)));
+      shareFile(film).catch((error: unknown) => this.host.say("error", words(error)));
     });
   }
 
@@ -159,7 +160,7 @@ export class Replay implements PanelListener {
     const { host } = this;
     save(this.take, ending).then(
       (note) => note && host.say("info", note),
-      (error: unknown) => host.say("error", text("replay.notSaved", error instanceof Error ? error.message : String(error))),
+      (error: unknown) => host.say("error", text("replay.notSaved", words(error))),
     );
   }
 
@@ -187,7 +188,7 @@ export class Replay implements PanelListener {
     this.take = take;
     if (this.other && (this.other === take || !samePlace(this.other, take))) this.setOther(null);
     picture.showScene(take.scene, take.loose);
-    if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch((error: unknown) => this.host.say("error", String(error)));
+    if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch((error: unknown) => this.host.say("error", words(error)));
     if (take.file) this.player.seek(setsOff(take) - LEAD);
     this.describe();
   }
@@ -200,7 +201,7 @@ export class Replay implements PanelListener {
     const { stage } = this.host.picture;
     const companion = new Companion(other.avatar, stage.currentQuality.rich, stage.palette.ghost);
     stage.scene.add(companion.group);
-    companion.load().catch((error: unknown) => this.host.say("error", String(error)));
+    companion.load().catch((error: unknown) => this.host.say("error", words(error)));
     this.companion = companion;
   }
 

@@ -1,14 +1,11 @@
 /** Recordings that the server reads and poses: `.elbow` files that were dropped here, or the one it was started with. */
 
 import { readPoseFrame, type PoseFrame, type Run } from "../generated/messages";
+import { asked, sent } from "../net/asked";
 import { runUrl, shownRunUrl } from "../net/endpoints";
 import { NOTHING_LOOSE } from "../stage/loose";
+import { text } from "../texts/texts";
 import type { Take } from "./take";
-
-/** Whether a file is a recording, by its name. */
-export function isRecording({ name }: File): boolean {
-  return /\.elbow$/i.test(name);
-}
 
 /** A run, and what there is to say about it. */
 export interface ReadRun {
@@ -18,21 +15,12 @@ export interface ReadRun {
 
 /** Has the server read a recording. @throws Error with one sentence for the user */
 export async function readRun(file: File): Promise<ReadRun> {
-  const headers = { "Content-Type": "application/octet-stream" };
-  return taken(await fetch(runUrl(file.name), { method: "POST", headers, body: file }), file.name);
+  return parseRun(await (await sent(runUrl(file.name), file)).arrayBuffer());
 }
 
 /** The recording that the server was started with. @throws Error */
 export async function shownRun(): Promise<ReadRun> {
-  return taken(await fetch(shownRunUrl()), "");
-}
-
-async function taken(response: Response, name: string): Promise<ReadRun> {
-  if (!response.ok) {
-    const { error } = (await response.json().catch(() => ({}))) as { error?: string };
-    throw new Error(error ?? `${name} was not taken (status ${response.status}).`);
-  }
-  return parseRun(await response.arrayBuffer());
+  return parseRun(await (await asked(shownRunUrl())).arrayBuffer());
 }
 
 let count = 0;
@@ -47,7 +35,7 @@ export function parseRun(answer: ArrayBuffer): ReadRun {
     const frame = readPoseFrame(answer.slice(at, at + run.frameBytes));
     if (frame) frames.push(frame);
   }
-  if (frames.length === 0) throw new Error(`${run.name} holds no frames.`);
+  if (frames.length === 0) throw new Error(text("replay.noFrames", run.name));
   const { scene, avatar, planner, name } = run;
   return { take: { id: -++count, scene, loose: NOTHING_LOOSE, avatar, planner, file: name, frames }, run };
 }

@@ -1,9 +1,9 @@
 /** Saves a run for other programs: the page sends its frames as they were shown, the server writes the file. */
 
 import type { PoseFrame } from "../generated/messages";
+import { sent } from "../net/asked";
 import { motionUrl, pageUrl } from "../net/endpoints";
-import { spoken } from "../texts/texts";
-import { worded } from "../texts/worded";
+import { inOwnWords } from "../texts/worded";
 import { download } from "./film";
 import type { Take } from "./take";
 
@@ -48,20 +48,9 @@ function asSent({ rotations, time }: PoseFrame): ArrayBuffer {
 
 /** Has a take written and hands the file over; what there is to say about it, or "". @throws Error with one sentence for the user */
 export async function save(take: Take, ending: SavedAs): Promise<string> {
-  const headers = { "Content-Type": "application/octet-stream" };
   const response = ending === "html"
-    ? await fetch(pageUrl(take.avatar.id), { method: "POST", headers, body: wholeRun(take) })
-    : await fetch(motionUrl(take.avatar.id, ending), { method: "POST", headers, body: packed(take) });
-  if (!response.ok) {
-    const { error } = (await response.json().catch(() => ({}))) as { error?: string };
-    throw new Error(error ?? `status ${response.status}`);
-  }
+    ? await sent(pageUrl(take.avatar.id), wholeRun(take))
+    : await sent(motionUrl(take.avatar.id, ending), packed(take));
   download(await response.blob(), `${take.scene.name.replace(/[^\w-]+/g, "-")}.${ending}`);
   return inOwnWords(decodeURIComponent(response.headers.get("x-elbowroom-note") ?? ""));
-}
-
-/** The server's notes in the page's language: sentences of parts, each of them a phrase. */
-export function inOwnWords(notes: string): string {
-  if (spoken() === "en") return notes;
-  return notes.split("; ").map((note) => note.split(": ").map(worded).join("：")).join("；");
 }

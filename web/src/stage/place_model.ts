@@ -2,6 +2,7 @@
 
 import { Group, Mesh, Plane, Raycaster, Vector3, type Material, type Object3D, type Texture } from "three";
 import type { Vec3 } from "../camera/spring_arm";
+import { asked } from "../net/asked";
 
 /** With more triangles the camera does not mind the model: looking for the nearest would take too long in every frame. */
 const MOST_LOOKED_AT = 400_000;
@@ -32,9 +33,7 @@ export class PlaceModel {
     this.url = url;
     this.clear();
     if (url === null) return;
-    const response = await fetch(new URL(url, document.baseURI).href);
-    if (!response.ok) throw new Error(`the server does not give its model (status ${response.status})`);
-    const file = await response.arrayBuffer();
+    const file = await (await asked(new URL(url, document.baseURI).href)).arrayBuffer();
     const { GLTFLoader } = await import("three/addons/loaders/GLTFLoader.js");
     const { addDecoders } = await import("../avatar/decoders");
     const loader = new GLTFLoader();

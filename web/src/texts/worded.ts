@@ -10,6 +10,12 @@ export function worded(english: string): string {
   return spoken() === "en" ? english : (PHRASES[english] ?? english);
 }
 
+/** The server's notes in the page's language: sentences of parts, each of them a phrase. */
+export function inOwnWords(notes: string): string {
+  if (spoken() === "en") return notes;
+  return notes.split("; ").map((note) => note.split(": ").map(worded).join("：")).join("；");
+}
+
 /** Words everything that stands in the document already. */
 export function wordDocument(root: HTMLElement): void {
   root.lang = spoken();

@@ -2,6 +2,7 @@
 
 import type { Blocked } from "../generated/messages";
 import { text } from "../texts/texts";
+import { thingName } from "../texts/thing_names";
 
 const MOST_NAMES = 3;
 
@@ -18,10 +19,10 @@ export function blockedSentence({ reason, obstacles, ahead }: Blocked): string {
 
 function listed(names: readonly string[]): string {
   if (names.length > MOST_NAMES) return text("list.more", joined(names.slice(0, MOST_NAMES - 1)), names.length - MOST_NAMES + 1);
-  if (names.length === 1) return names[0] ?? "";
-  return text("list.and", joined(names.slice(0, -1)), names.at(-1) ?? "");
+  if (names.length === 1) return thingName(names[0] ?? "");
+  return text("list.and", joined(names.slice(0, -1)), thingName(names.at(-1) ?? ""));
 }
 
 function joined(names: readonly string[]): string {
-  return names.join(text("list.comma"));
+  return names.map(thingName).join(text("list.comma"));
 }

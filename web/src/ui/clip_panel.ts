@@ -1,6 +1,7 @@
 /** The motion clips in the menu: which one plays, what was recognised in it, and what planning keeps of it. */
 
 import type { ClipChoice, ClipMessage, Configure, Settings } from "../generated/messages";
+import { text } from "../texts/texts";
 import { byId } from "./dom";
 
 export class ClipPanel {
@@ -36,11 +37,9 @@ export class ClipPanel {
 }
 
 export function factsOf(clip: ClipMessage): string {
-  const unit = clip.unit === "body" ? `unit ${clip.metres.toPrecision(3)} m, by the body's height` : clip.unit;
-  const axes = clip.format === "BVH" ? `, ${clip.up.toUpperCase()} up, ${unit}` : "";
-  const walk = clip.speed > 0 ? ` Walks at ${clip.speed.toFixed(1)} m/s.` : "";
-  return (
-    `${clip.format}${axes}: ${clip.seconds.toFixed(1)} s at ${Number(clip.fps.toFixed(2))} frames a second.${walk} ` +
-    `Planning keeps it within ${clip.trunkDegrees.toFixed(0)}° of the trunk and ${clip.armDegrees.toFixed(0)}° of the arms.`
-  );
+  const unit = clip.unit === "body" ? text("clip.unitByBody", clip.metres.toPrecision(3)) : text("clip.unit", clip.unit);
+  const figure = clip.format === "BVH" ? text("clip.figure", clip.format, clip.up.toUpperCase(), unit) : clip.format;
+  const length = text("clip.length", figure, clip.seconds.toFixed(1), Number(clip.fps.toFixed(2)));
+  const walks = clip.speed > 0 ? text("clip.walks", clip.speed.toFixed(1)) : "";
+  return length + walks + text("clip.kept", clip.trunkDegrees.toFixed(0), clip.armDegrees.toFixed(0));
 }

@@ -2,8 +2,8 @@
 
 import { byId } from "./dom";
 
-/** Shows a veil while a file hovers over the page, and hands over the first one that is dropped. */
-export function listenForFiles(take: (file: File) => void): void {
+/** Shows a veil while a file hovers over the page, and hands over those that are dropped, in their order. */
+export function listenForFiles(take: (files: readonly File[]) => void): void {
   const veil = byId("drop", HTMLElement);
   let depth = 0;
   const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
@@ -24,7 +24,6 @@ export function listenForFiles(take: (file: File) => void): void {
     veil.hidden = true;
     if (!hasFiles(event)) return;
     event.preventDefault();
-    const file = event.dataTransfer?.files[0];
-    if (file) take(file);
+    take([...(event.dataTransfer?.files ?? [])]);
   });
 }

@@ -1,6 +1,7 @@
 /** The small table of numbers in the corner. */
 
 import type { Status } from "../generated/messages";
+import { text } from "../texts/texts";
 import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
 
@@ -82,14 +83,14 @@ export class Hud {
 
   private showPlan(status: Status): void {
     const rows: [string, string, string][] = [
-      ["Phase", status.phase, ""],
-      ["Root", status.rootKind.toLowerCase() || "–", ""],
-      ["Plan", words(status.planStatus), tone(status.planStatus)],
-      ["Plans", plansText(status), ""],
-      ["Looks ahead", `${status.lookAhead.toFixed(1)} s`, ""],
+      [worded("Phase"), words(status.phase), ""],
+      [worded("Root"), words(status.rootKind), ""],
+      [worded("Plan"), words(status.planStatus), tone(status.planStatus)],
+      [worded("Plans"), plansText(status), ""],
+      [worded("Looks ahead"), `${status.lookAhead.toFixed(1)} s`, ""],
     ];
     for (const group of status.groups) {
-      const cost = `${group.checks.toLocaleString("en")} checks · ${group.ms.toFixed(1)} ms`;
+      const cost = text("plan.cost", group.checks.toLocaleString("en"), group.ms.toFixed(1));
       rows.push([title(group.group), `${words(group.status)} · ${cost}`, tone(group.status)]);
     }
     this.planList.replaceChildren(
@@ -105,11 +106,11 @@ function spread(p50: number, p95: number): string {
 /** How long a new command waits until the motion is planned for it. */
 function answerText({ answerMs, lateMsP99 }: Status): string {
   const answer = answerMs ? `${answerMs[0].toFixed(0)} ms` : "–";
-  return `${answer} · frames ${lateMsP99.toFixed(0)} ms late`;
+  return `${answer} · ${text("plan.framesLate", lateMsP99.toFixed(0))}`;
 }
 
 function plansText({ plans, plansFailed, latePlans }: Status): string {
-  return `${plans - plansFailed} of ${plans} found` + (latePlans > 0 ? ` · ${latePlans} too late` : "");
+  return text("plan.count", plans - plansFailed, plans) + (latePlans > 0 ? text("plan.late", latePlans) : "");
 }
 
 function clearanceText(clearance: number): string {
@@ -122,10 +123,10 @@ function tone(status: string): string {
 }
 
 function words(status: string): string {
-  return status ? status.toLowerCase().replaceAll("_", " ") : "–";
+  return status ? worded(status.toLowerCase().replaceAll("_", " ")) : "–";
 }
 
 /** A group's label in words: "leftArm" is "left arm". */
 function title(group: string): string {
-  return group.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`);
+  return worded(group.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`));
 }

@@ -16,7 +16,7 @@ export interface MenuListener {
   configure(change: Omit<Configure, "type">): void;
   prefer(change: Partial<Preferences>): void;
   overlay(name: OverlayName, on: boolean): void;
-  file(file: File): void;
+  files(files: readonly File[]): void;
   /** The open menu covers so many pixels at the right of the view; 0 where it is closed or only a drawer. */
   menuCovers(pixels: number): void;
   action(action: Action): void;
@@ -171,8 +171,7 @@ export class Menu {
   private listenToFile(): void {
     byId("open-file", HTMLButtonElement).addEventListener("click", () => this.file.click());
     this.file.addEventListener("change", () => {
-      const chosen = this.file.files?.[0];
-      if (chosen) this.listener.file(chosen);
+      this.listener.files([...(this.file.files ?? [])]);
       this.file.value = "";
     });
   }

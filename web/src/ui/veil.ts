@@ -22,7 +22,7 @@ export class Veil {
   connection(state: ConnectionState, why: string): void {
     if (state === "lost") {
       for (const what of Object.keys(WHAT)) this.reasons.delete(what);
-      this.set("connection", text("veil.again", worded(why)));
+      this.set("connection", text("veil.again", why));
     } else this.set("connection", state === "connecting" ? worded("Connecting") : null);
   }
 
@@ -30,9 +30,10 @@ export class Veil {
     this.set(what, active ? worded(WHAT[what]) : null);
   }
 
-  /** A file on its way to the server; null when it is through. */
-  upload(name: string | null): void {
-    this.set("upload", name === null ? null : text("veil.sending", name));
+  /** A file on its way to the server, and which of how many it is; null when all are through. */
+  upload(name: string | null, at = 1, all = 1): void {
+    const said = () => all > 1 ? text("veil.sendingOf", name ?? "", at, all) : text("veil.sending", name ?? "");
+    this.set("upload", name === null ? null : said());
   }
 
   /** The avatar's own file on its way to the page. */
