@@ -1,4 +1,5 @@
-"""Takes the pictures of the documentation from the running page: `python tools/make_pictures.py [FOLDER]`.
+"""Takes the pictures of the documentation from the running page: `python tools/make_pictures.py [FOLDER [NAME ...]]`,
+all of them or those with these names, such as `dark.png`.
 
 Starts the server and walks the stock avatar into scenes, step by step, in a headless Chromium: some pictures stand,
 one moves. The page is told to move nothing by itself, so the same pictures come out on any machine.
@@ -30,6 +31,7 @@ PREFERENCES = '{"hud": false}'  # times of a page that is drawn without a graphi
 SMALL = (160, 90)  # pixels, while the avatar walks to where the picture is taken
 METRES_PER_STEP = 1.1 / 60
 SETTLED = 12  # pictures until the camera rests and what hides the avatar has faded
+LONGEST = 60.0  # seconds of walking: by then it is where its picture is taken, or stuck
 STEPS_PER_PICTURE = 5  # of 1/60 s: twelve pictures a second
 
 
@@ -170,6 +172,8 @@ def step(page: Page, steps: int) -> float:
     for _ in range(steps):
         page.keyboard.press("Period")
     page.wait_for_function(f"window.__app.simTime > {then - 1e-3}")
+    if then > LONGEST:
+        raise TimeoutError(f"after {then:.0f} s of walking the avatar is still at {page.evaluate('window.__app.root')}")
     return float(page.evaluate("window.__app.root.z"))
 
 
@@ -217,18 +221,21 @@ def write_moving(pictures: list[Image.Image], path: Path) -> None:
             return
 
 
-def main(folder: Path) -> None:
-    """Take all pictures."""
+def main(folder: Path, names: list[str]) -> None:
+    """Take the pictures of these names, all where there is none."""
+    wanted = names or [MOVING_NAME, *(f"{one.name}.png" for one in STILLS)]
     folder.mkdir(parents=True, exist_ok=True)
     with served() as address, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=browser_path(), args=FLAGS)
-        for wanted in STILLS:
-            still(browser, address, wanted).save(folder / f"{wanted.name}.png", optimize=True)
-            print(folder / f"{wanted.name}.png", flush=True)
-        pictures = [picture for part in MOVING for picture in moving(browser, address, part)]
-        write_moving(pictures, folder / MOVING_NAME)
-        print(folder / MOVING_NAME, len(pictures), "pictures")
+        for one in STILLS:
+            if f"{one.name}.png" in wanted:
+                still(browser, address, one).save(folder / f"{one.name}.png", optimize=True)
+                print(folder / f"{one.name}.png", flush=True)
+        if MOVING_NAME in wanted:
+            pictures = [picture for part in MOVING for picture in moving(browser, address, part)]
+            write_moving(pictures, folder / MOVING_NAME)
+            print(folder / MOVING_NAME, len(pictures), "pictures")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER, sys.argv[2:])

@@ -17,6 +17,7 @@ Open = Callable[..., LivePage]
 
 STOCK = Path(elbowroom.__file__).parent / "body" / "data" / "stock.vrm"
 SMALL = (480, 320)
+READING = 300.0  # seconds: each file is read in a process of its own, which starts slowly where others work
 # A file that is larger than any that is sent, without its bytes.
 LARGE = """
 () => {
@@ -43,8 +44,8 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 def test_several_files_are_taken_one_after_the_other(open_page: Open, walk: bytes) -> None:
     live = open_page("scene=empty", viewport=SMALL)
     live.drop(("cat.vrm", b"no avatar"), ("mine.vrm", STOCK.read_bytes()), ("one.elbow", walk), ("two.elbow", walk))
-    live.said("cat.vrm")
-    state = live.wait("s.replay && s.replay.runs === 2")
+    live.said("cat.vrm", READING)
+    state = live.wait("s.replay && s.replay.runs === 2", READING)
     assert state["settings"]["avatar"] != "stock"
     titles = live.page.locator("#replay select").first.inner_text()
     assert "one.elbow" in titles
@@ -57,13 +58,13 @@ def test_what_is_wrong_with_a_recording_is_said_and_the_walk_goes_on(open_page: 
     live = open_page("scene=empty&lang=zh-TW", viewport=SMALL)
     newer = walk.replace(MAGIC, MAGIC[:-2] + b"9\n", 1)
     live.drop(("head.elbow", walk[:40]), ("newer.elbow", newer), ("cat.elbow", b"no recording"))
-    assert "已損壞或被截斷" in live.said("head.elbow")
-    assert "由其他版本的 Elbowroom 記錄，其格式為 9" in live.said("newer.elbow")
-    assert "不是此格式的紀錄" in live.said("cat.elbow")
+    assert "已損壞或被截斷" in live.said("head.elbow", READING)
+    assert "由其他版本的 Elbowroom 記錄，其格式為 9" in live.said("newer.elbow", READING)
+    assert "不是此格式的紀錄" in live.said("cat.elbow", READING)
     assert live.state()["replay"] is None
-    live.drop(("cut.elbow", walk[: len(walk) // 2]))
-    assert "之後的內容遺失" in live.said("檔案")
-    live.wait("s.replay && s.replay.frames > 20")
+    live.drop(("cut.elbow", walk[:-600]))
+    assert "之後的內容遺失" in live.said("檔案被截斷", READING)
+    live.wait("s.replay && s.replay.frames > 20", READING)
     live.page.keyboard.press("Escape")
     live.wait("s.replay === null")
     before = live.state()["root"]["z"]

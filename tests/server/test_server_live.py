@@ -10,6 +10,7 @@ import weakref
 from collections.abc import Iterator
 from contextlib import closing
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 from urllib.request import urlopen
 
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from elbowroom.control.recording import Recording
 from elbowroom.server import admission, changes, session
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.library import Library
@@ -400,11 +402,31 @@ def test_a_place_on_the_floor_is_walked_to_and_a_key_takes_over(client: Client) 
     assert client.wait_for(Going).state == "taken over"
 
 
-def wait_until_alone(url: str) -> None:
+def wait_until_alone(url: str, besides: int = 0) -> None:
     end = time.monotonic() + LONG
-    while json.loads(urlopen(f"{url}/health", timeout=LONG).read())["sessions"]:
+    while json.loads(urlopen(f"{url}/health", timeout=LONG).read())["sessions"] > besides:
         assert time.monotonic() < end
         time.sleep(0.02)
+
+
+def test_copies_of_a_page_have_walks_of_their_own(url: str, tmp_path: Path) -> None:
+    pages = {scene: f"key={'6' * 32}&opening={digit * 32}" for scene, digit in (("a", "7"), ("b", "8"))}
+
+    def recorded(scene: str) -> str:
+        file = tmp_path / f"{scene}.elbow"
+        file.write_bytes(urlopen(f"{url}/api/walk.elbow?{pages[scene]}", timeout=LONG).read())
+        return Recording(file).scene().name
+
+    with client_at(f"{url}/ws?{pages['a']}") as first:
+        first.send(Configure(scene="a"))
+        first.wait_for(SceneMessage, lambda scene: scene.name == "a")
+        with client_at(f"{url}/ws?{pages['b']}") as second:
+            second.send(Configure(scene="b"))
+            second.wait_for(SceneMessage, lambda scene: scene.name == "b")
+            second.frame(lambda frame: frame.time > 1.0)
+            assert [recorded("a"), recorded("b")] == ["a", "b"]
+        wait_until_alone(url, besides=1)
+        assert recorded("a") == "a"  # the copy is gone, the page is not
 
 
 def test_who_loses_the_line_goes_on_in_the_same_place(url: str) -> None:

@@ -5,6 +5,7 @@ import { OVERLAY_TITLES } from "../src/overlays/overlay_names";
 import { chosenLanguage, languageOf, LANGUAGES } from "../src/texts/language";
 import { PHRASES } from "../src/texts/phrases";
 import { TABLE } from "../src/texts/table";
+import { licenceName } from "../src/ui/avatar_about";
 import { helpSections } from "../src/ui/help_sections";
 import { sceneTitle } from "../src/texts/scene_titles";
 import { inChinese, SAYINGS } from "../src/texts/sayings";
@@ -149,6 +150,15 @@ describe("what the server says", () => {
     expect(inChinese("cat.vrm: unpacks to more than 512 MiB")).toBe("cat.vrm：解開後超過 512 MiB");
     expect(inChinese("nobody has ever said this")).toBeNull();
     for (const [english, words] of Object.entries(SAYINGS)) expect(places(words), english).toEqual(places(english));
+  });
+});
+
+describe("licences", () => {
+  it("are called as people call them", () => {
+    expect(licenceName("https://vrm.dev/licenses/1.0/")).toBe("VRM Public License 1.0");
+    expect(licenceName("https://creativecommons.org/licenses/by-nc/4.0/")).toBe("CC BY-NC 4.0");
+    expect(licenceName("http://creativecommons.org/publicdomain/zero/1.0/")).toBe("CC0 1.0");
+    expect(licenceName("Redistribution_Prohibited")).toBe("Redistribution_Prohibited");
   });
 });
 

@@ -31,7 +31,7 @@ from elbowroom.server.library import Library
 from elbowroom.server.meter import LATE, PROMPT
 from elbowroom.server.metrics import CONTENT_TYPE as METRICS_TYPE
 from elbowroom.server.metrics import metrics_text
-from elbowroom.server.page_key import page_key
+from elbowroom.server.open_pages import OpenPages, Tab
 from elbowroom.server.reception import Reception
 from elbowroom.server.reports import scene_message
 from elbowroom.server.runs import run_response, shown_run
@@ -48,7 +48,6 @@ LOG = logging.getLogger("elbowroom.server")
 
 _WORTH_COMPRESSING = 1024  # bytes
 _TRY_AGAIN_LATER = 1013  # close code
-_SILENT = 2.5  # seconds: a page that is there is heard every second
 
 HOW_TO_BUILD = "The page is not built. In a checkout run `make env`; or install the package again with pip."
 _NO_CLIENT = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Elbowroom</title>
@@ -111,7 +110,7 @@ class _Handlers:
     def __init__(self, library: Library, admission: Admission) -> None:
         self._library = library
         self._admission = admission
-        self._of_pages: dict[str, Session] = {}  # by the key of the page
+        self._pages = OpenPages()
 
     async def health(self, request: Request) -> Response:  # noqa: ARG002
         usage, meter, admission = process_usage(), self._library.meter, self._admission
@@ -181,9 +180,8 @@ class _Handlers:
             return JSONResponse({"error": "the recording could not be read; the server's log says more"}, 500)
 
     async def walk(self, request: Request) -> Response:
-        """The walk that a page shows, as a recording; `?key=` is its secret."""
-        key = page_key(request.query_params)
-        session = self._of_pages.get(key) if key else None
+        """The walk that a page shows, as a recording; `?key=` is its secret, `?opening=` which of its copies it is."""
+        session = self._pages.session(Tab.of(request.query_params))
         if session is None:
             return JSONResponse({"error": "this page has no walk here"}, 404)
         try:
@@ -218,16 +216,12 @@ class _Handlers:
             await socket.send_text(encode(Notice("error", reason)))
             await socket.close(_TRY_AGAIN_LATER, reason)
             return
-        key = page_key(socket.query_params)
-        twin = self._of_pages.get(key)  # a copy of the page has its key
-        session = Session(socket, self._library, resumes=twin is None or twin.silence > _SILENT)
-        self._of_pages[key] = session
+        tab = Tab.of(socket.query_params)
+        session = Session(socket, self._library, resumes=not self._pages.is_heard(tab.key))
         try:
-            with self._admission.seat(machine):
+            with self._pages.showing(tab, session), self._admission.seat(machine):
                 await session.run()
         finally:
-            if self._of_pages.get(key) is session:
-                del self._of_pages[key]
             if self._admission.sessions == 0:
                 await asyncio.to_thread(hand_back)
 

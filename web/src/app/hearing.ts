@@ -57,7 +57,9 @@ export class Hearing implements SessionListener {
 
   connection(state: ConnectionState, why: string): void {
     this.parts.veil.connection(state, why);
-    if (state === "open") this.parts.controls.repeat();
+    if (state !== "open") return;
+    this.parts.controls.repeat();
+    this.parts.modes.build.serverBack();
   }
 
   catalog(catalog: Catalog): void {

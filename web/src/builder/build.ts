@@ -88,6 +88,11 @@ export class Build implements BuildPanelListener {
     await this.tried(() => this.load(scene));
   }
 
+  /** The server answers again. */
+  serverBack(): void {
+    if (this.active) this.checker.again();
+  }
+
   close(): void {
     if (!this.active) return;
     this.checker.end();

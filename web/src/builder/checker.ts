@@ -43,6 +43,14 @@ export class Checker {
     if (this.on) this.timer = window.setTimeout(() => void this.walk(plan), REST);
   }
 
+  /** Looks once more where the last look failed: the server may be back. */
+  again(): void {
+    const { plan } = this;
+    if (this.verdict.state !== "wrong" || !plan) return;
+    this.plan = null;
+    this.look(plan);
+  }
+
   /** Calls off what is under way. */
   end(): void {
     window.clearTimeout(this.timer);

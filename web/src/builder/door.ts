@@ -41,6 +41,11 @@ export class BuildDoor {
     await (await this.fetched()).showText(scene);
   }
 
+  /** The server answers again. */
+  serverBack(): void {
+    this.build?.serverBack();
+  }
+
   /** Whether build mode has an answer of its own to an action, and gives it. */
   answers(action: Action): boolean {
     if (!this.active || KEPT.has(action) || action.startsWith("view:")) return false;

@@ -7,6 +7,7 @@ const KEY = /^[0-9a-f]{32}$/;
 export function sessionUrl(): string {
   const url = new URL("ws", document.baseURI);
   url.searchParams.set("key", pageKey());
+  url.searchParams.set("opening", OPENING);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   return url.href;
 }
@@ -38,7 +39,7 @@ export function pageUrl(avatar: string): string {
 
 /** The address of the walk that is shown, as a recording. */
 export function recordingUrl(): string {
-  return `api/walk.elbow?${new URLSearchParams({ key: pageKey() })}`;
+  return `api/walk.elbow?${new URLSearchParams({ key: pageKey(), opening: OPENING })}`;
 }
 
 /** The address that takes a scene that was built. */
@@ -57,6 +58,8 @@ export function walksUrl(avatar: string): string {
 }
 
 let key = "";
+/** Tells this page from its copies, which have its key: a tab that was duplicated. */
+const OPENING = drawn16();
 
 /** The secret by which the server knows which files are this tab's; it outlives a reload, not the tab. */
 function pageKey(): string {
@@ -73,8 +76,12 @@ function keptKey(): string | null {
   }
 }
 
+function drawn16(): string {
+  return [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
 function newKey(): string {
-  const drawn = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  const drawn = drawn16();
   try {
     sessionStorage.setItem(STORE, drawn);
   } catch {

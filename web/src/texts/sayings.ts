@@ -60,6 +60,8 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   "no recording is shown here": "此處沒有播放紀錄",
   "the recording could not be read; the server's log says more": "無法讀取紀錄，詳見伺服器記錄",
   "{0}: is no recording of this format ({1})": "{0}：不是此格式的紀錄（{1}）",
+  "{0}: holds no frames": "{0}：沒有任何影格",
+  "{0}: holds no frames ({1})": "{0}：沒有任何影格（{1}）",
   "{0}: was recorded by another version of Elbowroom: its format is {1}": "{0}：由其他版本的 Elbowroom 記錄，其格式為 {1}",
   "{0}: header of {1} bytes, allowed are 1 to {2}": "{0}：檔頭為 {1} 位元組，允許 1 到 {2}",
   "{0}: the header is damaged or cut off": "{0}：檔頭已損壞或被截斷",

@@ -80,7 +80,7 @@ export class Menu {
     this.offered = catalog.scenes.map(({ name }) => name);
     this.courses.showCatalog(catalog);
     setOptions(this.scene, catalog.scenes.map((s) => [s.name, sceneTitle(s.title)]));
-    setOptions(this.avatar, catalog.avatars.map((a) => [a.id, a.title]));
+    setOptions(this.avatar, catalog.avatars.map((a) => [a.id, worded(a.title)]));
     this.clips.add(catalog.clips);
     setOptions(this.planner, catalog.planners.map((name) => [name, name]));
     this.queue.min = String(Math.min(...catalog.queueSizes));
@@ -128,7 +128,7 @@ export class Menu {
   /** Adds an avatar that came as a file, unless the list has it. */
   addAvatar(id: string, title: string): void {
     if ([...this.avatar.options].some((option) => option.value === id)) return;
-    this.avatar.add(new Option(title, id));
+    this.avatar.add(new Option(worded(title), id));
   }
 
   showOverlays(shown: ReadonlySet<OverlayName>): void {
