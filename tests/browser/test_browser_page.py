@@ -189,3 +189,24 @@ def test_the_first_load_travels_in_less_than_700_kilobytes(open_page: Open) -> N
     code = [(path, size) for path, size in sizes if not path.endswith(".glb")]
     assert len(code) > 4
     assert 100_000 < sum(size for _, size in code) < 700_000, code
+
+
+def test_what_an_address_asks_for_in_vain_is_told_in_one_line_each(open_page: Open) -> None:
+    live = open_page("scene=nope&camera=9&speed=abc", viewport=SMALL)
+    live.said("camera=9, speed=abc")
+    live.said("scene 'nope' is not known here")
+    state = live.wait("s.scene && s.connected")
+    assert state["view"] == "behind"
+    assert state["settings"]["walkSpeed"] > 0.5
+
+
+def test_a_phone_that_is_turned_in_the_middle_of_a_walk_walks_on(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(390, 844), has_touch=True, is_mobile=True)
+    live.page.keyboard.down("w")
+    at = live.wait("s.root.z > 0.3")["root"]["z"]
+    live.page.set_viewport_size({"width": 844, "height": 390})
+    live.wait(f"s.root.z > {at + 0.5}")
+    feet = live.state()["feet"]
+    assert 0 < feet[0] < 844
+    assert 0 < feet[1] < 390
+    live.page.keyboard.up("w")

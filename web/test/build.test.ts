@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import { shownColour } from "../src/builder/colours";
 import { documentOf, nameOf, planOf } from "../src/builder/document";
 import { Drafts } from "../src/builder/drafts";
 import { Editor } from "../src/builder/editor";
@@ -10,6 +11,7 @@ import { Pinch } from "../src/builder/pinch";
 import { emptyPlan, UPRIGHT, type Plan } from "../src/builder/plan";
 import { previewOf } from "../src/builder/preview";
 import { fresh, halfSize, KINDS } from "../src/builder/shapes";
+import { PALETTES } from "../src/stage/palette";
 import { anglesOf, turned, turnOf } from "../src/builder/turns";
 
 const KIND = (kind: string) => kind;
@@ -21,6 +23,21 @@ function busyPlan(): Plan {
   plan = turnedBy(plan, { what: "thing", index: 0 }, 0.3);
   return extended(extended(plan, 1, 3, 4), 1, 3, 5);
 }
+
+describe("colours", () => {
+  it("are on the board as in the picture, where what moves comes last", () => {
+    const plan = busyPlan();
+    const { obstacles, moving } = previewOf(plan);
+    const drawn = [...obstacles, ...moving].map(({ name }) => name);
+    const { obstacles: colours } = PALETTES.dark;
+    plan.things.forEach(({ name }, i) => {
+      const colour = colours[drawn.indexOf(name) % colours.length] ?? 0;
+      expect(shownColour(plan, i, "dark")).toBe(`#${colour.toString(16).padStart(6, "0")}`);
+    });
+    expect(new Set(plan.things.map((_, i) => shownColour(plan, i, "light"))).size).toBeGreaterThan(3);
+    expect(shownColour({ ...plan, things: plan.things.map((thing) => ({ ...thing, color: "#123456" })) }, 2, "light")).toBe("#123456");
+  });
+});
 
 describe("a plan and its document", () => {
   it("say the same, whatever stands in it", () => {

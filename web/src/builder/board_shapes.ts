@@ -1,6 +1,7 @@
 /** What lies on the board, as elements: things, tracks, start, finish, handles. Plain data, so that drawing is one loop. */
 
 import { text } from "../texts/texts";
+import { shownColour, shownTheme } from "./colours";
 import { yawOf } from "./edits";
 import type { Editor } from "./editor";
 import { onBoard, outline } from "./outline";
@@ -71,11 +72,11 @@ function stops({ plan: { tour }, side, selected }: Editor, pixel: number): Board
   })];
 }
 
-function thingShapes({ side, selected, index }: Editor, thing: Thing, i: number, pixel: number): BoardShape[] {
+function thingShapes({ plan, side, selected, index }: Editor, thing: Thing, i: number, pixel: number): BoardShape[] {
   const [first] = thing.track;
   const rotation = first ? aboutY(first.yaw) : thing.rotation;
   const isSelected = index === i;
-  const colored: Record<string, string> = thing.color ? { style: `--own: ${thing.color}` } : { style: "" };
+  const colored = { style: `--own: ${shownColour(plan, i, shownTheme())}` };
   const body: BoardShape = {
     id: `thing ${i}`, tag: "polygon",
     attributes: {

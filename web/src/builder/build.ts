@@ -4,7 +4,9 @@ import { words } from "../app/words";
 import type { SceneMessage } from "../generated/messages";
 import type { Picture } from "../picture";
 import { download } from "../replay/film";
+import { sceneTitle } from "../texts/scene_titles";
 import { text } from "../texts/texts";
+import { thingName } from "../texts/thing_names";
 import { make } from "../ui/dom";
 import { Checker } from "./checker";
 import { nameOf } from "./document";
@@ -78,7 +80,7 @@ export class Build implements BuildPanelListener {
   /** Opens build mode with the scene that is shown, or with an empty one where that cannot be built upon. */
   async show(scene: SceneMessage | null): Promise<void> {
     this.appear();
-    if (scene) await this.tried(async () => this.editor.open(await fetchPlan(scene.name)));
+    if (scene) await this.tried(async () => this.editor.open(inOwnWords(await fetchPlan(scene.name))));
     this.panel.board.fit();
   }
 
@@ -207,6 +209,11 @@ export class Build implements BuildPanelListener {
       this.host.say("error", words(error));
     }
   }
+}
+
+/** A plan with the names of the scenes that come along in the page's language. */
+function inOwnWords(plan: Plan): Plan {
+  return { ...plan, title: sceneTitle(plan.title), things: plan.things.map((thing) => ({ ...thing, name: thingName(thing.name) })) };
 }
 
 function localStore(): Storage | null {

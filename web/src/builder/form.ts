@@ -2,11 +2,9 @@
 
 import { text } from "../texts/texts";
 import { make } from "../ui/dom";
+import { shownColour, shownTheme } from "./colours";
 import type { Editor } from "./editor";
 import { fieldsOf, type Field } from "./fields";
-
-/** What a thing without a colour of its own shows. */
-const NO_COLOR = "#888888";
 
 export class Form {
   readonly element = make("div", { class: "fields", role: "group", "aria-label": text("build.fields") });
@@ -22,7 +20,7 @@ export class Form {
     this.shown = shape;
     fields.forEach((field, i) => {
       const input = this.inputs[i];
-      if (input && document.activeElement !== input) input.value = shownValue(field);
+      if (input && document.activeElement !== input) input.value = this.shownValue(field);
     });
   }
 
@@ -49,11 +47,11 @@ export class Form {
       else if (empty && field.unset) this.editor.put(field.unset());
     } else if (field) this.editor.put(field.set(value));
     const now = fieldsOf(this.editor)[i], input = this.inputs[i];
-    if (now && input) input.value = shownValue(now);
+    if (now && input) input.value = this.shownValue(now);
   }
-}
 
-function shownValue(field: Field): string {
-  if (field.kind === "number") return field.value === null ? "" : String(Math.round(field.value * 1000) / 1000);
-  return field.kind === "color" ? field.value || NO_COLOR : field.value;
+  private shownValue(field: Field): string {
+    if (field.kind === "number") return field.value === null ? "" : String(Math.round(field.value * 1000) / 1000);
+    return field.kind === "color" ? shownColour(this.editor.plan, this.editor.index ?? 0, shownTheme()) : field.value;
+  }
 }
