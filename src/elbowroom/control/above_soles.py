@@ -29,7 +29,7 @@ class AboveSoles:
     """Clearance of one body among what stands on some ground; frozen."""
 
     def __init__(self, model: BodyModel, ground: Ground) -> None:
-        self.footing = Footing(model, ground)
+        self.footing, self._model = Footing(model, ground), model
         self._radii, shins = model.body.radii, not ground.plain and _shins_stay_over(model)
         left, right = (np.isin(model.body.joints, own[1:] if shins else own[2:]) for own in model.figure.legs)
         self._parts: tuple[Bools, Bools, Bools] = left, right, ~(left | right)
@@ -45,6 +45,12 @@ class AboveSoles:
             return False
         both = zip(self.floors(one).tolist(), self.floors(other).tolist(), strict=True)
         return any(first > second + _EVEN or second > first + _EVEN for first, second in both)
+
+    def soles_above(self, axes: Floats32, floors: Floats) -> float:
+        """How far the capsules of the feet (C, 6, 1) keep above what is not looked at under both soles (2,), metres."""
+        feet = self.footing.each_foot(self._model.body)
+        lowest = np.minimum(axes[:, 1, 0], axes[:, 4, 0]) - self._radii
+        return float(min(lowest[own].min(initial=np.inf) - floor for own, floor in zip(feet, floors, strict=True)))
 
     def clearances(self, obstacles: Obstacles, axes: Floats32, origin: Floats, floors: Floats) -> Floats32:
         """The clearance (C,) of each of a posture's capsules (C, 6, 1) about a place from what stands, metres.

@@ -13,6 +13,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
 from elbowroom.control.above_soles import AboveSoles
 from elbowroom.control.neighbour import Neighbour
+from elbowroom.control.turned_legs import turned_legs
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.world.obstacles.moving import Moving
@@ -93,7 +94,8 @@ class BodyCheck:
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
 
-        The root may be followed by its feet, here and below. What feet stand on is left out as `above_soles.py` tells.
+        The root may be followed by its feet, here and below, and tells what they stand on (`standing`). That is left
+        out as `above_soles.py` tells.
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """
@@ -133,7 +135,7 @@ class BodyCheck:
         """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
 
         Each capsule by itself of what stands, the whole body of what moves. Where others move as they mean to, until
-        the second frame.
+        the second frame. Where feet are raised quickly `turned_legs.py` has more moments.
         """
         if self.alone:
             return True
@@ -147,14 +149,31 @@ class BodyCheck:
         poses = [(self._pose(root, upper), time) for root, upper, time in ends]
         if self._soles.change(*frames.roots):
             poses = [(pose._replace(floors=floors, standing=[]), time) for pose, time in poses]
+            if not self._turns_free(frames, floors):
+                return False
         gaps = np.array([self._gaps(pose, time) for pose, time in poses])
         if (gaps[0] + gaps[1] - ways).min() >= 0.0:
             return True
         proof = begun(gaps, ways[None], 1, 0.0, _HALVINGS)
         parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
         while (count := due(proof, parts, shares)) > 0:
-            settle(proof, np.array([self._gaps_at(frames, share, floors) for share in shares[:count]]), count)
+            found = np.array([self._gaps_at(frames, share, floors) for share in shares[:count]])
+            settle(proof, found, count)
         return bool(proof.least.min() >= 0.0)
+
+    def _turns_free(self, frames: Frames, floors: Floats) -> bool:
+        """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
+        legs, parts = turned_legs(self.model, frames.roots, frames.uppers), self.model.roots
+        lifted = self._soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
+        axes = self._pose(frames.roots[0], frames.uppers[0]).axes.copy()
+        for n in range(len(legs.states)):
+            axes[parts.indices, :, 0] = lifted[:, :, n]
+            if self._soles.soles_above(axes, floors) < 0.0:
+                return False
+            gaps = self._soles.clearances(self._standing, axes, frames.roots[0][:2], floors)
+            if gaps[parts.indices].min() < 0.0:
+                return False
+        return True
 
     @property
     def _accompanied(self) -> bool:
@@ -170,7 +189,7 @@ class BodyCheck:
         """The gaps at a share of the time between two frames, above the `floors` (2,) of both."""
         (first, last), (begin, end), (before, after) = frames
         root, upper = first + share * (last - first), begin + share * (end - begin)
-        pose = _Pose(root, upper, self._posed(root, upper, root), floors, [])
+        pose = _Pose(root, upper, self._posed(root, upper), floors, [])
         return self._gaps(pose, before + share * (after - before))
 
     def _gaps(self, pose: _Pose, time: float) -> Floats32:
@@ -190,14 +209,13 @@ class BodyCheck:
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
-        stood = self.standing(root)
-        pose = _Pose(root, upper, self._posed(root, upper, stood), self._soles.floors(stood), [])
+        pose = _Pose(root, upper, self._posed(root, upper), self._soles.floors(root), [])
         self._poses.appendleft(pose)
         return pose
 
-    def _posed(self, root: Floats, upper: Floats, stood: Floats) -> Floats32:
-        """The axes (C, 6, 1) of a pose on what its feet stand on, as seen from the root's place."""
-        near = stood.copy()
+    def _posed(self, root: Floats, upper: Floats) -> Floats32:
+        """The axes (C, 6, 1) of a pose, as seen from the root's place."""
+        near = root.copy()
         near[:2] = 0.0
         return self._capsules(configuration(root, upper)[None], near[None])
 

@@ -26,6 +26,7 @@ from elbowroom.control.passing import expected, way_made
 from elbowroom.control.planning_scene import PlanningScene
 from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.pushing import Pushing
+from elbowroom.control.raised_feet import raised_feet
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.stepping import Around, Stepping
@@ -183,12 +184,12 @@ class Controller:
 
     def _stand_at_start(self) -> None:
         root = on_ground(self.scene, self.start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
-        upper = standing_posture(root)
-        clearance = self._check.clearance(root, upper, 0.0)
+        upper, stood = standing_posture(root), self._check.standing(root)
+        clearance = self._check.clearance(stood, upper, 0.0)
         if clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
-        stood = self._stepping.standing(root) if self.scene.ground.plain else self._check.standing(root)
+        stood = self._stepping.standing(root) if self.scene.ground.plain else stood
         self._shown = self._free = Playback(stood, upper, np.zeros_like(upper))
         self._show(self._free, clearance)
 
@@ -418,16 +419,21 @@ class Controller:
             self._next = Phase.RESET
 
     def _under(self, played: list[tuple[Playback, Floats]], dt: float) -> Iterator[tuple[Playback, Floats]]:
-        """How a motion can be shown, with what it stands on: on plain ground with feet that step."""
+        """How a motion can be shown, with what it stands on: on plain ground with feet that step, else raised to it."""
         if self.scene.ground.plain:
             return self._stepping.under(played, self._shown, self._queue.ahead(), dt, self._look)
-        return ((posed._replace(root=self._check.standing(posed.root)), stance) for posed, stance in played)
+        return ((each, stance) for posed, stance in played for each in self._raised(self._shown, posed, dt))
 
     def _next_pose(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
         """How a pose will be shown `dt` seconds after what is `shown`, if that is free."""
         if self.scene.ground.plain:
             return self._stepping.next(shown, planned, dt, ahead, self._look)
-        return planned._replace(root=self._check.standing(planned.root))
+        return next(self._raised(shown, planned, dt))
+
+    def _raised(self, shown: Playback, posed: Playback, dt: float) -> Iterator[Playback]:
+        """How a pose can be shown `dt` seconds after what is `shown`, on feet that are raised to the ground."""
+        stood = self._check.standing(posed.root)
+        return (posed._replace(root=root) for root in raised_feet(shown.root, stood, dt))
 
     def _settling(self, dt: float) -> Iterator[Playback]:
         """How the pose that is shown can be held, with what it stands on: best first."""
@@ -436,7 +442,7 @@ class Controller:
             if self.scene.ground.plain:
                 yield from self._stepping.settling(self._shown, held, dt, self._look)
             else:
-                yield held._replace(root=self._check.standing(held.root))
+                yield from self._raised(self._shown, held, dt)
 
     def _look(self, root: Floats, upper: Floats) -> Around:
         """What stands and moves about a body."""

@@ -58,10 +58,15 @@ class Rehearsal:
             trial.advance(_SPACING)
             shown = trial.sample()
             shown.root[3:6] += self._held.stance
-            steps = len(self._held.root) > ROOT_STATE
-            root = gliding(self._check.model.gait, root, shown.root, _SPACING) if steps else shown.root
+            root = self._on_feet(root, shown.root)
             found.append(self._check.clearance(root, shown.upper, trial.time))
         return np.array(found)
+
+    def _on_feet(self, before: Floats, root: Floats) -> Floats:
+        """A root state (7,) after the one `before`, which may have feet, on its own."""
+        if len(before) > ROOT_STATE:
+            return gliding(self._check.model.gait, before, root, _SPACING)
+        return self._check.standing(root)
 
 
 def standing_path(path: RootPath, root: Floats) -> RootPath:

@@ -102,7 +102,7 @@ class ClipWalk:
 
     def _show(self) -> None:
         moment: Moment = self._performance.at(self._time)
-        clearance = self._check.clearance(moment.root, moment.upper, self._time)
+        clearance = self._check.clearance(self._check.standing(moment.root), moment.upper, self._time)
         self._moment = moment
         self.frame = Frame(
             time=self._time,
