@@ -91,6 +91,8 @@ pictures: $(VENV)/developer
 	@$(BIN)/elbowroom tour d --targets 8 --seed 2 --no-judge --quiet --plan docs/images/tour.png
 	@if test -n "$(AVATARS)"; then $(BIN)/elbowroom inspect --quiet --pose-sheet docs/images/pose-sheet.png $(AVATARS); \
 	else echo "pose-sheet.png stays as it is: name its avatars, make pictures AVATARS='a.vrm b.glb'"; fi
+	@if test -n "$(HOUSE)"; then $(BIN)/elbowroom inspect --quiet --drop 'IfcDoor_*' --plan docs/images/floors.png $(HOUSE); \
+	else echo "floors.png stays as it is: name its house, make pictures HOUSE=AC14-FZK-Haus.glb"; fi
 
 strangers: $(VENV)/developer
 	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
