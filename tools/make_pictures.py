@@ -66,7 +66,7 @@ class Scene:
 
 STILLS = (
     Still("overlays", View("scene=beam&camera=side&overlays=path,ghosts,nearest", (1280, 720), (70, 25), -250), 1.25),
-    Still("dark", View("scene=d&overlays=capsules,nearest", (1280, 720), (-190, 20), -300, dark=True), 1.9),
+    Still("dark", View("scene=d&overlays=capsules,nearest", (1280, 720), (-190, 30), -190, dark=True), 1.9),
 )
 MOVING_SIZE = (640, 360)
 MOVING = (

@@ -8,7 +8,7 @@ from elbowroom.experiment.report.chart import HEIGHT, WIDTH, Axis, Mark, Panel, 
 from elbowroom.experiment.report.svg import tag
 
 _STYLE = (
-    ".plot{font:11px system-ui,sans-serif}.panel{font-weight:600}.tick{fill:#666}.grid{stroke:#ddd}"
+    ".plot{font:11px system-ui,sans-serif}.panel{font-weight:600;font-size:10px}.tick{fill:#666}.grid{stroke:#ddd}"
     ".line{fill:none;stroke:#0a6ebd;stroke-width:2}.mark{fill:#0a6ebd}.interval{stroke:#0a6ebd;stroke-width:1.5}"
 )
 

@@ -54,8 +54,8 @@ def pose_sheet(
 
 
 def _about(humanoid: Humanoid) -> str:
-    """What kind of file it is, and how tall its figure."""
-    return f"{humanoid.meta.format or 'no file'}, head joint at {humanoid.skeleton.height:.2f}\u00a0m"
+    """What kind of file it is, and how high its head joint."""
+    return f"{humanoid.meta.format or 'no file'}, head at {humanoid.skeleton.height:.2f} m"
 
 
 def _row(humanoid: Humanoid, capsules: bool) -> Image:
