@@ -5,11 +5,12 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.footholds import beside, onward
+from elbowroom.body.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.kinematics import body_model
+from elbowroom.body.living import living
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.root import FOOT, ROOT_STATE
+from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 
 Floats = NDArray[np.float64]
 Velocities = tuple[float, float, float]
@@ -72,3 +73,17 @@ def random_feet(rng: np.random.Generator, roots: Floats) -> Floats:
     high = np.array([0.1, 0.45, 0.6, 1.1, 0.06, 0.99, 0.0, 0.0, 0.0])
     feet = [rng.uniform(low, high, (len(roots), FOOT)) + np.eye(FOOT)[0] * aside for aside in (0.09, -0.09)]
     return np.hstack([roots, np.zeros((len(roots), ROOT_STATE - roots.shape[1])), *feet])
+
+
+def random_carriage(rng: np.random.Generator, rows: Floats) -> Floats:
+    """The same rows (N, WITH_FEET), hips, chest and head carried anyhow (N, SHOWN)."""
+    most = np.array([0.03, 0.02, 0.02, 0.15, 0.1, 0.15, 0.05, 0.05, 0.7, 0.2, 0.0, 0.0, 0.0])
+    return np.hstack([rows, rng.uniform(-most, most, (len(rows), CARRIAGE))])
+
+
+def alive(rows: Floats, room: Callable[[int], float] = lambda _: np.inf) -> Floats:
+    """Rows (frames, WITH_FEET) as they live (frames, SHOWN), with so much room in each frame, metres."""
+    shown = [np.concatenate([rows[0], np.zeros(CARRIAGE)])]
+    for k, row in enumerate(rows[1:], 1):
+        shown.append(living(GAIT, shown[-1], row, DT, room(k), UNKNOWN))
+    return np.array(shown)

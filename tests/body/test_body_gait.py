@@ -61,7 +61,8 @@ def lowered_by(lowering: float) -> Floats:
 
 def legs(model: BodyModel, roots: Floats, lowering: float = 0.0) -> Floats:
     feet, drops = foot_poses(model.gait.legs, model.gait.scale, roots)
-    return leg_rotations(model.leg_rest, feet, hips_sinks(model.gait.half_leg, drops, np.full(len(roots), lowering)))
+    sinks = hips_sinks(model.gait.half_leg, drops, np.full(len(roots), lowering))
+    return leg_rotations(model.leg_rest, feet, sinks, roots)
 
 
 def sole_points(height: float, roots: Floats, lowering: float = 0.0) -> tuple[BodyModel, Floats]:

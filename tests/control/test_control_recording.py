@@ -11,7 +11,7 @@ import pytest
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, followed
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.root import ROOT_STATE, WITH_FEET
+from elbowroom.body.root import ROOT_STATE, SHOWN
 from elbowroom.clips.clip import motions_of
 from elbowroom.clips.files import parse_motion
 from elbowroom.clips.motion_set import MotionSet
@@ -189,7 +189,7 @@ def test_recordings_of_every_older_format_are_read(
         np.testing.assert_array_equal(steps["q"][:, DofGroup.HEAD.at], followed(steps["q"][:, 3:])[:, 11:])
         assert not steps["q"][:, LOWERING].any()
     np.testing.assert_array_equal(steps["root"][:, :ROOT_STATE], whole["root"][:, :ROOT_STATE])
-    assert roots_of(whole).shape[1] == WITH_FEET
+    assert roots_of(whole).shape[1] == SHOWN
     assert roots_of(steps).shape[1] == ROOT_STATE  # their feet are those of the walking cycle
 
 
@@ -295,7 +295,7 @@ def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> Non
 
 
 def test_the_step_record_is_fixed() -> None:
-    assert STEP.itemsize == 418
+    assert STEP.itemsize == 522
 
 
 def test_an_old_recording_may_be_replaced(run: tuple[Path, object], tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_rows_are_what_was_walked(made: Path) -> None:
     assert len(rows) >= 3
     for row in rows:
         q, root = np.array(row["q"]), np.array(row["root"])
-        roots = np.hstack([root, np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"]])
+        roots = np.hstack([root, np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"], row["carriage"]])
         frames = row["frames"]
         assert len(q) == len(roots) == len(row["time"]) == len(row["near"]) == len(row["height"]) == frames
         assert np.diff(row["time"]) == pytest.approx(1.0 / row["fps"], abs=1e-5)

@@ -12,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.geometry import quaternion
-from feet_walks import random_feet
+from feet_walks import random_carriage, random_feet
 from judged_bodies import random_postures
 from naive_pose import required_only
 
@@ -32,13 +32,14 @@ def posed_at_frames(humanoid: Humanoid, q: Floats, roots: Floats) -> Posed:
     return Poser(humanoid).at(ShownMotion.at_rate(q, roots), Moments(frames, frames, np.zeros(len(q)), frames / 60))
 
 
-@pytest.mark.parametrize("footed", [False, True])
+@pytest.mark.parametrize("told", ["root", "feet", "carriage"])
 @pytest.mark.parametrize("name", BODIES)
-def test_equal_to_the_kinematics_of_the_body(name: str, footed: bool) -> None:
+def test_equal_to_the_kinematics_of_the_body(name: str, told: str) -> None:
     humanoid, rng = BODIES[name], np.random.default_rng(4)
     q, roots = random_postures(rng, 200)
     roots[:20, 3:] = FAST[3:]
-    roots = random_feet(rng, roots) if footed else roots
+    roots = roots if told == "root" else random_feet(rng, roots)
+    roots = random_carriage(rng, roots) if told == "carriage" else roots
     posed, capsules = posed_at_frames(humanoid, q, roots), humanoid.capsules
     ends = [
         posed.positions[:, capsules.joints] + np.einsum("ncij,cj->nci", posed.rotations[:, capsules.joints], offsets)
@@ -48,13 +49,14 @@ def test_equal_to_the_kinematics_of_the_body(name: str, footed: bool) -> None:
     np.testing.assert_allclose(np.concatenate(ends, axis=-1), theirs, atol=2e-6)
 
 
-@pytest.mark.parametrize("footed", [False, True])
+@pytest.mark.parametrize("told", ["root", "feet", "carriage"])
 @pytest.mark.parametrize("name", BODIES)
-def test_equal_to_what_the_page_is_sent(name: str, footed: bool) -> None:
+def test_equal_to_what_the_page_is_sent(name: str, told: str) -> None:
     humanoid, rng = BODIES[name], np.random.default_rng(5)
     model = body_model(humanoid)
     q, roots = random_postures(rng, 50)
-    roots = random_feet(rng, roots) if footed else roots
+    roots = roots if told == "root" else random_feet(rng, roots)
+    roots = random_carriage(rng, roots) if told == "carriage" else roots
     rotations, hips = Poser(humanoid).local(q, roots)
     theirs = np.array([local_rotations(model, *row) for row in zip(q, roots, strict=True)])
     same = np.abs(np.sum(rotations * theirs, axis=-1))

@@ -22,7 +22,7 @@ from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
-from feet_walks import path, random_wish, walked
+from feet_walks import alive, path, random_wish, walked
 
 Floats = NDArray[np.float64]
 DENSE = 2000  # looks in an interval
@@ -136,12 +136,21 @@ def on_feet(rng: np.random.Generator) -> Frames:
     return Frames((first, last), (upper, upper + rng.uniform(-0.1, 0.1, LOCAL)), (0.0, FRAME))
 
 
+def carried(rng: np.random.Generator) -> Frames:
+    """Two frames of a walk whose hips and trunk live."""
+    rows = walked(path(random_wish(int(rng.integers(1000))), 60 + int(rng.integers(120)), rng.uniform()))
+    upper, (first, last) = random_upper(rng), alive(rows)[-2:].copy()
+    last[:2] -= first[:2]
+    first[:2] = 0.0
+    return Frames((first, last), (upper, upper), (0.0, FRAME))
+
+
 def between(frames: Frames, shares: Floats) -> tuple[Floats, Floats]:
     (a, b), (m, n) = frames.roots, frames.uppers
     return a + shares[:, None] * (b - a), m + shares[:, None] * (n - m)
 
 
-@pytest.mark.parametrize(("drawn", "near"), [(random_frames, 0.3), (on_feet, 0.1)])
+@pytest.mark.parametrize(("drawn", "near"), [(random_frames, 0.3), (on_feet, 0.1), (carried, 0.1)])
 def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said(
     drawn: Callable[[np.random.Generator], Frames], near: float
 ) -> None:

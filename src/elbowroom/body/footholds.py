@@ -13,6 +13,7 @@ Hips are where the cycle has them, or lower where a foot would be out of reach.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.body.carriage import carried_hip
 from elbowroom.body.gait import (
     GaitShape,
     Stride,
@@ -360,7 +361,7 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
 def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
 
-    For rows (N, WITH_FEET) and lowerings (N,). Hips come down where a foot would be out of reach.
+    For rows (N, WITH_FEET or SHOWN) and lowerings (N,). Hips come down where a foot would be out of reach.
     """
     feet, sinks, drops = np.empty((len(rows), 2, 6)), np.empty((len(rows), 2)), np.empty(len(rows))
     walk_into(legs, scale, rows, np.empty((0, 2, 6)), drops, np.empty(6))
@@ -371,9 +372,10 @@ def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, loweri
             place, roll = (foot[_X], foot[_Z], foot[_YAW]), (foot[_PITCH], foot[_LIFT])
             tilt_foot(legs, side, place, roll, ease_of(1.0, foot[_SWING]), feet[n, side])
             length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
-            dx, dz = feet[n, side, 0] - legs[side, _HIP], feet[n, side, 2] - legs[side, _HIP + 2] + back
+            x, y, z = carried_hip(legs, rows[n], side)
+            dx, dz = feet[n, side, 0] - x, feet[n, side, 2] - z + back
             reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-            down = max(down, legs[side, _HIP + 1] - feet[n, side, 1] - reach)
+            down = max(down, y - feet[n, side, 1] - reach)
         sinks[n, 0], sinks[n, 1] = down, back
     return feet, sinks
 
@@ -419,7 +421,7 @@ def settled(gait: GaitShape, row: Floats) -> bool:
 
 
 def standing(rows: ArrayLike) -> Bools:
-    """Which feet, left and right, stand in rows (..., WITH_FEET): (..., 2)."""
-    feet = np.asarray(rows, np.float64)[..., ROOT_STATE:]
+    """Which feet, left and right, stand in rows (..., WITH_FEET or more): (..., 2)."""
+    feet = np.asarray(rows, np.float64)[..., ROOT_STATE:WITH_FEET]
     stands: Bools = feet[..., _SWING::FOOT] <= 0.0
     return stands

@@ -1,6 +1,6 @@
 """Forward kinematics: where a configuration and a root state put the joints and the collision body.
 
-A posture is `q` (DOF,), a root state (7,), or (WITH_FEET,) with the feet beside it; places are metres, Y up. The root
+A posture is `q` (DOF,), a root state (7,), or one with feet and carriage (`root`); places are metres, Y up. The root
 frame has its origin on the ground and +Z along the heading; the pelvis frame has the same axes, and its origin is the
 hips joint as the stride has it, before the waist or a foot lowers it; the chest frame is that of the last spine joint.
 Capsule arrays have shape (C, 6, N): end points ax, ay, az, bx, by, bz.
@@ -216,7 +216,7 @@ def _rows(values: ArrayLike, size: int) -> Floats:
 
 
 def _states(values: ArrayLike) -> Floats:
-    """Root states as rows: of ROOT_STATE numbers, of those before the height, or WITH_FEET."""
+    """Root states as rows: of ROOT_STATE numbers, of those before the height, WITH_FEET or SHOWN."""
     array = np.ascontiguousarray(values, np.float64)
     return array[None] if array.ndim == 1 else array.reshape(-1, array.shape[-1])
 
@@ -224,13 +224,13 @@ def _states(values: ArrayLike) -> Floats:
 def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
     feet, sinks = lower_body(model.gait, states, np.ascontiguousarray(lowerings))
-    return leg_rotations(model.leg_rest, feet, sinks), sinks
+    return leg_rotations(model.leg_rest, feet, sinks, states), sinks
 
 
 def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
 
-    The feet are those of the states (N, WITH_FEET), or of the walking cycle where these have none (N, 7).
+    The feet are those of the states (N, WITH_FEET or more), or of the walking cycle where these have none (N, 7).
     """
     if states.shape[1] > ROOT_STATE:
         return posed_feet(gait.legs, gait.scale, gait.half_leg, states, lowerings)
@@ -242,21 +242,22 @@ def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floa
 def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
     """Normalised local rotations (J, 4) of every joint for `q` (DOF,) and a root state (7,).
 
-    The hips' rotation is the identity: the root's heading turns the whole body.
+    The hips' own is in the root's axes: the root's heading turns the whole body.
     """
-    posture = np.ascontiguousarray(q, np.float64)
-    legs = _lower_body(model, _states(root), posture[LOWERING : LOWERING + 1])[0][0]
-    return posing.pose_local(model.figure, posture, legs)
+    posture, states = np.ascontiguousarray(q, np.float64), _states(root)
+    legs = _lower_body(model, states, posture[LOWERING : LOWERING + 1])[0][0]
+    return posing.pose_local(model.figure, posture, legs, states[0])
 
 
 def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
     """The hips joint (3,) in the root frame for `q` (DOF,) and a root state (7,).
 
-    It is where T-pose has it, less what the gait and the waist's lowering take.
+    It is where T-pose has it, less what the gait and the waist's lowering take, and as it is carried.
     """
-    lowering = np.ascontiguousarray(q, np.float64)[LOWERING : LOWERING + 1]
-    _, sinks = _lower_body(model, _states(root), lowering)
-    position: Floats = model.offsets[0] - np.array([0.0, sinks[0, 0], sinks[0, 1]])
+    lowering, states = np.ascontiguousarray(q, np.float64)[LOWERING : LOWERING + 1], _states(root)
+    _, sinks = lower_body(model.gait, states, lowering.copy())
+    shift = posing.hips_shift(model.figure, states[0])
+    position: Floats = model.offsets[0] + np.array(shift) - np.array([0.0, sinks[0, 0], sinks[0, 1]])
     return position
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.carriage import carried_hip, carried_turns
+from elbowroom.body.root import WITH_FEET
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.jit import helper, kernel
 
@@ -69,12 +71,13 @@ def _relative(a: Floats, b: Floats, out: Floats) -> None:
 
 
 @kernel
-def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
+def leg_rotations(rest: Floats, feet: Floats, sinks: Floats, rows: Floats) -> Floats:
     """Normalised local rotations (N, 2, 4, 4) of thigh, shin, foot and toes; left leg first.
 
     `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) from `gait.foot_poses`; `sinks` (N, 2) from `gait.hips_sinks`. The
     knee bends forward, in the plane through hip and ankle that turns by half the foot's yaw, and outward as the hips
-    go back in a crouch. A target out of reach is approached straight.
+    go back in a crouch. A target out of reach is approached straight. Legs hang on hips as `rows` (N, 7 or more) carry
+    them (`carriage`).
     """
     out = np.empty((len(feet), 2, LEG_ROTATIONS, 4))
     at_rest, posed, scratch = np.empty((2, 2, 3, 3)), np.empty((3, 3)), np.empty((3, 3))
@@ -82,13 +85,16 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
         for bone in range(2):
             x, y, z = rest[side, 3 + 3 * bone], rest[side, 4 + 3 * bone], rest[side, 5 + 3 * bone]
             _bone_basis(x, y, z, 1.0, 0.0, 0.0, at_rest[side, bone])
-    thigh, shin, foot = np.empty(4), np.empty(4), np.empty(4)
+    thigh, shin, foot, hips, carried = np.empty(4), np.empty(4), np.empty(4), np.empty(4), rows.shape[1] > WITH_FEET
     for n in range(len(feet)):
+        if carried:
+            hips[0], hips[1], hips[2], hips[3] = carried_turns(rows[n])[0]
         for side in range(2):
             r, f = rest[side], feet[n, side]
             upper = np.sqrt(r[3] * r[3] + r[4] * r[4] + r[5] * r[5])
             lower = np.sqrt(r[6] * r[6] + r[7] * r[7] + r[8] * r[8])
-            dx, dy, dz = f[0] - r[0], f[1] - r[1] + sinks[n, 0], f[2] - r[2] + sinks[n, 1]
+            x, y, z = carried_hip(rest, rows[n], side)
+            dx, dy, dz = f[0] - x, f[1] - y + sinks[n, 0], f[2] - z + sinks[n, 1]
             distance = np.sqrt(dx * dx + dy * dy + dz * dz)
             dx, dy, dz = dx / distance, dy / distance, dz / distance
             reach = _soft_reach(max(distance, abs(upper - lower) + 0.05 * upper), upper + lower)
@@ -108,8 +114,11 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats) -> Floats:
             _turn_between(at_rest[side, 1], posed, scratch, shin)
             cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
             foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
-            for i in range(4):
-                out[n, side, 0, i] = thigh[i]
+            if carried:
+                _relative(hips, thigh, out[n, side, 0])
+            else:
+                for i in range(4):
+                    out[n, side, 0, i] = thigh[i]
             _relative(thigh, shin, out[n, side, 1])
             _relative(shin, foot, out[n, side, 2])
             out[n, side, 3, 0], out[n, side, 3, 1] = np.sin(0.5 * f[5]), 0.0

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.carriage import carried_turns, shifted_by
 from elbowroom.body.gait import hips_sink
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.jit import helper, kernel, plain
 
 Floats = NDArray[np.float64]
@@ -18,6 +19,7 @@ Indices = NDArray[np.int64]
 Segments = NDArray[np.float32]
 
 _FIRST, _SECOND = plain(0), plain(1)  # places in a row of capsules or joints
+_WAIST, _HEAD = 0, 1  # places among the columns
 _OTHER_END = plain(3)  # where it begins in the row (6,) of a capsule
 
 
@@ -219,6 +221,52 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
 
 
 @helper
+def _set(out: Floats, k: int, turn: tuple[float, float, float, float]) -> None:
+    out[k, 0], out[k, 1], out[k, 2], out[k, 3] = turn
+
+
+@helper
+def _turn_before(turn: tuple[float, float, float, float], local: Floats, joint: int, scratch: Floats) -> None:
+    """local[joint] = turn local[joint]; `scratch` (2, 4)."""
+    _set(scratch, _FIRST, turn)
+    for i in range(4):
+        scratch[1, i] = local[joint, i]
+    _product(scratch, _FIRST, scratch, _SECOND, local, joint)
+
+
+@kernel
+def hips_shift(figure: Figure, row: Floats) -> tuple[float, float, float]:
+    """How far the hips joint is, in the root's axes, from where it was planned."""
+    one, other, offsets = figure.legs[0, 0], figure.legs[1, 0], figure.offsets
+    return shifted_by(
+        row,
+        -0.5 * (offsets[one, 0] + offsets[other, 0]),
+        -0.5 * (offsets[one, 1] + offsets[other, 1]),
+        -0.5 * (offsets[one, 2] + offsets[other, 2]),
+    )
+
+
+@helper
+def _carry_hips(figure: Figure, row: Floats, rotations: Floats, places: Floats, scratch: Floats) -> None:
+    """Carry the hips as a row (SHOWN,) says; they are where they were planned, turned by the heading alone."""
+    _set(scratch, _FIRST, carried_turns(row)[0])
+    x, y, z = hips_shift(figure, row)
+    _offset(rotations, _FIRST, (x, y, z), places, _FIRST, places, _FIRST, _FIRST)
+    for i in range(4):
+        scratch[1, i] = rotations[0, i]
+    _product(scratch, _SECOND, scratch, _FIRST, rotations, _FIRST)
+
+
+@helper
+def _carry_trunk(figure: Figure, row: Floats, local: Floats, scratch: Floats) -> None:
+    """Chest and head as a row (SHOWN,) carries them, beyond their posture."""
+    _, chest, head = carried_turns(row)
+    columns = figure.columns
+    _turn_before(chest, local, columns.joints[columns.begins[_WAIST]], scratch)
+    _turn_before(head, local, columns.joints[columns.begins[_HEAD]], scratch)
+
+
+@helper
 def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, scratch: Floats) -> None:
     """Every joint that moves, for a posture `q` (DOF,) and legs (2, 4, 4)."""
     columns, arms = figure.columns, figure.arms
@@ -231,10 +279,13 @@ def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, s
 
 
 @kernel
-def pose_local(figure: Figure, q: Floats, leg_rotations: Floats) -> Floats:
-    """Local rotations (J, 4) of one posture `q` (DOF,), legs (2, 4, 4)."""
-    local = figure.base.copy()
-    _set_body(figure, q, leg_rotations, local, np.empty((2, 4)))
+def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats) -> Floats:
+    """Local rotations (J, 4) of a posture `q` (DOF,), legs (2, 4, 4), carried as a row (7 or more,) says."""
+    local, scratch = figure.base.copy(), np.empty((2, 4))
+    _set_body(figure, q, leg_rotations, local, scratch)
+    if row.shape[0] > WITH_FEET:
+        _carry_trunk(figure, row, local, scratch)
+        _set(local, _FIRST, carried_turns(row)[0])
     return local
 
 
@@ -242,7 +293,7 @@ def pose_local(figure: Figure, q: Floats, leg_rotations: Floats) -> Floats:
 def pose_body(
     figure: Figure, capsules: CapsuleChain, q: Floats, roots: Floats, leg_rotations: Floats, sinks: Floats
 ) -> tuple[Segments, Floats, Floats]:
-    """The body in the world for postures (N, DOF), roots (N, 7), legs (N, 2, 4, 4) and hips' sinks (N, 2).
+    """The body in the world for postures (N, DOF), roots (N, 7 or more), legs (N, 2, 4, 4) and hips' sinks (N, 2).
 
     Returns capsules (C, 6, N), and place (N, 3) and rotation (N, 4) of the chest's frame.
     """
@@ -253,6 +304,9 @@ def pose_body(
     for n in range(len(q)):
         _set_body(figure, q[n], leg_rotations[n], local, scratch)
         _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
+        if roots.shape[1] > WITH_FEET:
+            _carry_hips(figure, roots[n], rotations, places, scratch)
+            _carry_trunk(figure, roots[n], local, scratch)
         _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
         _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
         for i in range(3):
@@ -266,11 +320,13 @@ def pose_body(
 def pose_legs(figure: Figure, capsules: CapsuleChain, roots: Floats, leg_rotations: Floats, sinks: Floats) -> Segments:
     """Capsules (C, 6, N) of pelvis and legs in the world."""
     out = np.empty((len(capsules.joints), 6, len(roots)), np.float32)
-    local, row = figure.base.copy(), np.empty((1, 6))
+    local, row, scratch = figure.base.copy(), np.empty((1, 6)), np.empty((2, 4))
     rotations, places = np.empty(figure.base.shape), np.empty(figure.offsets.shape)
     for n in range(len(roots)):
         _set_legs(figure.legs, leg_rotations[n], local)
         _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
+        if roots.shape[1] > WITH_FEET:
+            _carry_hips(figure, roots[n], rotations, places, scratch)
         _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
         _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
     return out

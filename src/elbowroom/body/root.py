@@ -1,7 +1,8 @@
 """The state of the root: where the body stands, how it moves, where in the stride it is, and what its feet stand on.
 
 Behind it in the same row there may be the state of the feet (`footholds`): WITH_FEET numbers in all. A row without feet
-has those of the walking cycle (`gait`).
+has those of the walking cycle (`gait`). Behind the feet there may be how hips, chest and head are carried (`carriage`):
+SHOWN numbers in all. Without those they are as they are planned.
 """
 
 from typing import NamedTuple
@@ -46,3 +47,5 @@ HEIGHT = RootState._fields.index("height")  # the first that is 0 on level groun
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
 FOOT = 9  # numbers that say where a foot is, see `footholds`
 WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet
+CARRIAGE = 13  # numbers that say how hips, chest and head are carried, see `carriage`
+SHOWN = WITH_FEET + CARRIAGE  # number of components of a root state array as it is shown on the plane

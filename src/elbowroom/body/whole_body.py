@@ -97,7 +97,7 @@ def _taken_apart(body: WholeBody) -> PosedBy:
 
 @exact_kernel
 def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
-    """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), or (N, WITH_FEET), in the world.
+    """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), or longer ones, in the world.
 
     And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
     """
@@ -109,7 +109,7 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
         feet, drops = foot_poses(by.gait_legs, by.scale, roots)
         raise_feet(by.gait_legs, roots, feet, drops)
         sinks = hips_sinks(by.half_leg, drops, lowerings)
-    legs = leg_rotations(by.leg_rest, feet, sinks)
+    legs = leg_rotations(by.leg_rest, feet, sinks, roots)
     return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
 
 

@@ -42,7 +42,7 @@ class ArmsBesideLegs:
         self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about
 
     def apart(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Floats:
-        """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET,).
+        """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET or SHOWN,).
 
         What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near. `axes` (C, 6, 1)
         are those of the body's capsules, where they are known, as seen from anywhere.

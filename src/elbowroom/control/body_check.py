@@ -38,7 +38,7 @@ def configuration(root: Floats, upper: Floats) -> Floats:
 class Frames(NamedTuple):
     """Two frames that are shown one after the other."""
 
-    roots: tuple[Floats, Floats]  # (WITH_FEET,)
+    roots: tuple[Floats, Floats]  # (SHOWN,)
     uppers: tuple[Floats, Floats]  # (LOCAL,)
     times: tuple[float, float]  # seconds
 
@@ -46,7 +46,7 @@ class Frames(NamedTuple):
 class _Pose(NamedTuple):
     """A pose that was asked about, and where it puts the body."""
 
-    root: Floats  # (ROOT_STATE,) or (WITH_FEET,)
+    root: Floats  # (ROOT_STATE,), (WITH_FEET,) or (SHOWN,)
     upper: Floats  # (LOCAL,)
     axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
     floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
@@ -94,8 +94,8 @@ class BodyCheck:
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
 
-        The root may be followed by its feet, here and below, and tells what they stand on (`standing`). That is left
-        out as `above_soles.py` tells.
+        The root may be followed by feet and carriage, here and below, and tells what feet stand on (`standing`). That
+        is left out as `above_soles.py` tells.
 
         The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
         """

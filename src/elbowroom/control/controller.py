@@ -29,7 +29,7 @@ from elbowroom.control.pushing import Pushing
 from elbowroom.control.raised_feet import raised_feet
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
-from elbowroom.control.stepping import Around, Stepping
+from elbowroom.control.stepping import Ahead, Around, Stepping
 from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -52,6 +52,7 @@ _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
+_BREATHES = 1 / 31  # seconds: who rests need not move in every frame
 
 
 class Controller:
@@ -399,6 +400,7 @@ class Controller:
         rate = self._rate(dt)
         self._queue.advance(dt, rate)
         if self._resting:
+            self._breathe(dt)
             return
         if ended:
             self._hold(dt)
@@ -418,16 +420,26 @@ class Controller:
         if self._queue.empty:
             self._next = Phase.RESET
 
+    def _breathe(self, dt: float) -> None:
+        """Who rests lives on where that touches nothing: breathes, and shifts its weight."""
+        since = self._queue.time - self._shown_at
+        if self.scene.ground.plain and self._assist and dt > 0.0 and since >= _BREATHES:
+            posed = self._stepping.breathing(self._shown, since, self._room)
+            clearance = self._clearance_of(posed)
+            if self._is_free(posed, clearance):
+                self._show(posed, clearance)
+
     def _under(self, played: list[tuple[Playback, Floats]], dt: float) -> Iterator[tuple[Playback, Floats]]:
         """How a motion can be shown, with what it stands on: on plain ground with feet that step, else raised to it."""
         if self.scene.ground.plain:
-            return self._stepping.under(played, self._shown, self._queue.ahead(), dt, self._look)
+            ahead = Ahead(self._queue.ahead(), self._room)
+            return self._stepping.under(played, self._shown, ahead, dt, self._look)
         return ((each, stance) for posed, stance in played for each in self._raised(self._shown, posed, dt))
 
     def _next_pose(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
         """How a pose will be shown `dt` seconds after what is `shown`, if that is free."""
         if self.scene.ground.plain:
-            return self._stepping.next(shown, planned, dt, ahead, self._look)
+            return self._stepping.next(shown, planned, dt, Ahead(ahead, self._room), self._look)
         return next(self._raised(shown, planned, dt))
 
     def _raised(self, shown: Playback, posed: Playback, dt: float) -> Iterator[Playback]:
@@ -440,9 +452,14 @@ class Controller:
         for part in _SETTLING if self._assist else _SETTLING[:1]:
             held = self._holding.settle(self._shown, part * dt)
             if self.scene.ground.plain:
-                yield from self._stepping.settling(self._shown, held, dt, self._look)
+                yield from self._stepping.settling(self._shown, held, dt, self._room, self._look)
             else:
                 yield from self._raised(self._shown, held, dt)
+
+    @property
+    def _room(self) -> float:
+        """Metres about the body that is shown; without assistance nothing is looked at, and hips are as planned."""
+        return max(self._clearance, 0.0) if self._assist else -1.0
 
     def _look(self, root: Floats, upper: Floats) -> Around:
         """What stands and moves about a body."""

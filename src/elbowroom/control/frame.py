@@ -54,7 +54,7 @@ class Frame:
 
     time: float  # seconds since the start, by the sum of all dt
     q: Floats  # (DOF,) the configuration, see `body.dof`
-    root: Floats  # (WITH_FEET,) the root state (7,), see `body.root`, followed by the feet, see `body.footholds`
+    root: Floats  # (SHOWN,) the root state (7,), the feet, and how hips, chest and head are carried, see `body.root`
     phase: Phase  # the flow that the last turn took
     clearance: float  # metres from the nearest obstacle, negative where touching, infinite where there is none
     stuck: bool  # the user pushes, and planning has found no way on for the root or for the limbs

@@ -1,12 +1,13 @@
 """Recordings: what was asked and what was shown, step by step, in a file that survives a crash.
 
-A `.elbow` file is the line `ELBOWROOM RECORDING 7`, a header, chunks and an end. Header: its length (uint32), UTF-8
+A `.elbow` file is the line `ELBOWROOM RECORDING 8`, a header, chunks and an end. Header: its length (uint32), UTF-8
 JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
 data (uint32 each), the data: `STEP` records. Where things were pushed, a chunk `HAND` of `THING` records stands before
 that of their steps. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All numbers are little-endian. A
 file is only ever appended to, so one that was cut off is good up to its last whole chunk.
 
-Older files are read too: in those of the format 6, feet followed from the root; in those of the format 5, with 7
+Older files are read too: in those of the format 7, hips were carried as they were planned; in those of the format 6,
+feet followed from the root; in those of the format 5, with 7
 numbers of the root, all ground was level; in those of the format 4 nothing was pushed; in those of the format 3, 14
 numbers of `q` wide, the head followed the waist; those of the format 2 have no end; and in those of the format 1, 13
 wide, nobody lowered the pelvis.
@@ -29,7 +30,7 @@ from numpy.typing import NDArray
 
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
-from elbowroom.body.root import HEIGHT, ROOT_STATE, WITH_FEET, RootState
+from elbowroom.body.root import HEIGHT, ROOT_STATE, SHOWN, WITH_FEET, RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
@@ -41,7 +42,8 @@ from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
-MAGIC = b"ELBOWROOM RECORDING 7\n"
+MAGIC = b"ELBOWROOM RECORDING 8\n"
+_MAGIC_7 = b"ELBOWROOM RECORDING 7\n"
 _MAGIC_6 = b"ELBOWROOM RECORDING 6\n"
 _MAGIC_5 = b"ELBOWROOM RECORDING 5\n"
 _MAGIC_4 = b"ELBOWROOM RECORDING 4\n"
@@ -64,7 +66,7 @@ STEP = np.dtype(
         ("direction", "<f8"),  # not a number where the command has none
         ("dt", "<f8"),
         ("q", "<f8", DOF),
-        ("root", "<f8", WITH_FEET),
+        ("root", "<f8", SHOWN),
         ("phase", "u1"),  # place in `Phase`
         ("flags", "u1"),
     ]
@@ -72,7 +74,7 @@ STEP = np.dtype(
 _Q_3 = np.arange(DofGroup.HEAD.at.start)  # the places of older files' numbers in `q`
 _Q_1 = np.delete(_Q_3, LOWERING)
 _PLACES = {
-    **dict.fromkeys((MAGIC, _MAGIC_6, _MAGIC_5, _MAGIC_4), np.arange(DOF)),
+    **dict.fromkeys((MAGIC, _MAGIC_7, _MAGIC_6, _MAGIC_5, _MAGIC_4), np.arange(DOF)),
     _MAGIC_3: _Q_3,
     _MAGIC_2: _Q_3,
     _MAGIC_1: _Q_1,
@@ -172,7 +174,7 @@ class StepWriter:
         )
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
-        root = np.pad(frame.root, (0, WITH_FEET - len(frame.root)))  # none on uneven ground
+        root = np.pad(frame.root, (0, SHOWN - len(frame.root)))  # none on uneven ground
         self._things.note(self.steps)
         self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
@@ -255,8 +257,8 @@ class Recording:
     def _read_header(self, file: BinaryIO) -> RecordingHeader:
         magic = file.read(len(MAGIC))
         self._places = _PLACES.get(magic, np.arange(0))
-        self._has_end = magic in (MAGIC, _MAGIC_6, _MAGIC_5, _MAGIC_4, _MAGIC_3)
-        self._roots = {MAGIC: WITH_FEET, _MAGIC_6: ROOT_STATE}.get(magic, HEIGHT)  # numbers of the root
+        self._has_end = magic in (MAGIC, _MAGIC_7, _MAGIC_6, _MAGIC_5, _MAGIC_4, _MAGIC_3)
+        self.root_size = {MAGIC: SHOWN, _MAGIC_7: WITH_FEET, _MAGIC_6: ROOT_STATE}.get(magic, HEIGHT)  # numbers of it
         if not len(self._places):
             raise InputError(_not_read_here(self.path, magic))
         size = file.read(_COUNT.size)
@@ -275,7 +277,7 @@ class Recording:
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
         self.note, self.things = None, np.empty(0, THING)
-        stored = _stored(len(self._places), self._roots)
+        stored = _stored(len(self._places), self.root_size)
         count, crc = 0, 0
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
@@ -313,8 +315,8 @@ class Recording:
 
 
 def roots_of(steps: Steps) -> NDArray[np.float64]:
-    """Root states of `STEP` records with feet (N, WITH_FEET), or without (N, ROOT_STATE) where it has none."""
-    roots = np.ascontiguousarray(steps["root"], np.float64).reshape(-1, WITH_FEET)
+    """Root states of `STEP` records with feet and carriage (N, SHOWN), or (N, ROOT_STATE) where they have no feet."""
+    roots = np.ascontiguousarray(steps["root"], np.float64).reshape(-1, SHOWN)
     return roots if roots[:, ROOT_STATE:].any() else np.ascontiguousarray(roots[:, :ROOT_STATE])
 
 

@@ -25,7 +25,7 @@ _HARD_BY = 0.01  # metres of clearance: sliding along is a way out
 class Held(NamedTuple):
     """The pose in which an avatar is held after a contact."""
 
-    root: Floats  # (WITH_FEET,)
+    root: Floats  # (SHOWN,)
     upper: Floats  # (LOCAL,)
     stance: Floats  # (3,) velocities of the stride in which the legs were held; the root stands
     clearance: float  # metres

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.lookahead import Lookahead
@@ -78,7 +77,7 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
             obey(controller, pushed)
             frame = controller.step(command_of(step), float(step["dt"]))
             time = frame.time
-            if not (_same(step, frame) and same_places(controller, pushed)):
+            if not (_same(step, frame, recording.root_size) and same_places(controller, pushed)):
                 return ReplayResult(count + 1, time, _difference(count, step, frame))
             count += 1
         if progress is not None:
@@ -86,8 +85,8 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
     return ReplayResult(count, time, None)
 
 
-def _same(step: Any, frame: Frame) -> bool:
-    known = len(step["root"]) if step["root"][ROOT_STATE:].any() else ROOT_STATE  # older recordings have no feet
+def _same(step: Any, frame: Frame, known: int) -> bool:
+    """Whether a frame is the recorded one, in as many numbers of the root as are `known`: older ones had fewer."""
     same_root = step["root"][:known].tobytes() == frame.root[:known].tobytes()
     same_pose = step["q"].tobytes() == frame.q.tobytes() and same_root
     return bool(same_pose and _PHASES.index(frame.phase) == step["phase"])

@@ -35,7 +35,7 @@ def turned_legs(model: BodyModel, roots: tuple[Floats, Floats], uppers: tuple[Fl
     states, lowerings = np.stack(roots), np.array([upper[_LOWERING] for upper in uppers])
     states[:, :2] -= states[0, :2]
     feet, sinks = lower_body(model.gait, states, lowerings)
-    turns = leg_rotations(model.leg_rest, feet, sinks)
+    turns = leg_rotations(model.leg_rest, feet, sinks, states)
     shown = quaternion.slerp(turns[0], turns[1], SHARES[:, None, None])
     rows = _between(states)
     return TurnedLegs(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.root import FOOT, HEIGHT, ROOT_STATE, RootState
+from elbowroom.body.root import CARRIAGE, FOOT, HEIGHT, ROOT_STATE, WITH_FEET, RootState
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
@@ -61,7 +61,8 @@ def row_of(
         "command": np.array([_wish(command) for command, _ in kept]),
         "root": roots[:, :HEIGHT],
         "height": roots[:, HEIGHT],
-        "feet": roots[:, ROOT_STATE:] if roots.shape[1] > ROOT_STATE else np.zeros((len(roots), 2 * FOOT)),
+        "feet": _behind(roots, ROOT_STATE, 2 * FOOT),
+        "carriage": _behind(roots, WITH_FEET, CARRIAGE),
         "q": q,
         "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
         "rotations": local.reshape(len(frames), -1),
@@ -70,6 +71,11 @@ def row_of(
         "nearest": _nearest(humanoid, scene, q, roots, times),
         "near": [_near(scene, root) for root in roots],
     }
+
+
+def _behind(roots: Floats, first: int, size: int) -> Floats:
+    """Some numbers (F, size) of the roots, 0 where these are too short."""
+    return roots[:, first : first + size] if roots.shape[1] > first else np.zeros((len(roots), size))
 
 
 def _document(scene: Scene) -> dict[str, Any]:

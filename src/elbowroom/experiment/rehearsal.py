@@ -9,10 +9,11 @@ from functools import lru_cache
 import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
-from elbowroom.body.footholds import beside, gliding, onward, settled
+from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
-from elbowroom.body.root import ROOT_STATE, RootState
+from elbowroom.body.living import living
+from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.body.slim_capsule import Wanted, slimmest
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
@@ -121,10 +122,11 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
 
 
 def rehearse_feet(humanoid: Humanoid) -> None:
-    """Stand, glide and step."""
+    """Stand, glide, step and live."""
     gait, root = body_model(humanoid).gait, np.zeros(ROOT_STATE)
     row = gliding(gait, beside(gait, root), root, 0.01)
     settled(gait, onward(gait, row, root, 0.01))
+    living(gait, np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
 
 
 def rehearse_place() -> None:

@@ -22,7 +22,7 @@ class ShownFrames:
 
     times: Floats  # (N,) seconds, not decreasing
     q: Floats  # (N, DOF) see `body.dof`
-    roots: Floats  # (N, WITH_FEET) see `body.root`; (N, ROOT_STATE) of older recordings
+    roots: Floats  # (N, SHOWN) see `body.root`; (N, ROOT_STATE) of old recordings
     jumps: NDArray[np.bool_]  # (N,) the frame does not follow from the one before it
     clock: Floats  # (N,) the scene's own time
 

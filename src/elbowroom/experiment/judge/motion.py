@@ -39,7 +39,7 @@ class ShownMotion:
 
     times: Floats  # (F,) seconds; not decreasing
     q: Floats  # (F, DOF) see `body.dof`
-    roots: Floats  # (F, WITH_FEET) see `body.root`, or (F, 7) without feet
+    roots: Floats  # (F, SHOWN) see `body.root`, or (F, 7) without feet
     jumps: NDArray[np.bool_]  # (F,) the frame does not follow from the one before it: nothing is shown between them
     assisted: NDArray[np.bool_]  # (F,) the planner was at work
     clock: Floats | None = None  # (F,) the scene's own time, by which things move; None: the frames' times

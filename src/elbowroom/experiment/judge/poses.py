@@ -16,7 +16,7 @@ from elbowroom.body.gait import gait_shape
 from elbowroom.body.hands import relaxed_rotations
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import lower_body
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.geometry import quaternion
@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 _SPINE_PARTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
 _NECK_PARTS = {"neck": 0.5, "head": 0.5}
+_SIDES = "left", "right"
 _RIGHT, _UP, _AHEAD = 0, 1, 2  # axes
 _SETBACK = 0.5  # how far lowered hips go back, against how far they go down
 _SPLAY = 1.2  # radians that the knees open for each leg length that the hips go back
@@ -49,7 +50,7 @@ class Poser:
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
         """Normalised joint rotations (N, J, 4) and hips (N, 3) in the root frame for `q` (N, DOF), `roots` (N, 7).
 
-        The roots may be followed by their feet.
+        The roots may be followed by their feet, and these by how hips, chest and head are carried.
         """
         lowerings = np.ascontiguousarray(q[:, LOWERING])
         feet, sinks = lower_body(self._gait, np.ascontiguousarray(roots, np.float64), lowerings)
@@ -61,9 +62,15 @@ class Poser:
         _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
         lowered = 0.25 * self._gait.legs[:, 8:10].sum() * lowering[:, None]
         moved = -sinks[:, :1] * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
-        for side, name in enumerate(("left", "right")):
-            _pose_leg(self.skeleton, name, feet[:, side], moved, rotations)
-        return rotations, self.skeleton.positions[0] + moved
+        carriage = _carriage(roots)
+        middle = 0.5 * sum(self.skeleton.positions[self.skeleton.index(f"{side}UpperLeg")] for side in _SIDES)
+        for side, name in enumerate(_SIDES):
+            hip = self.skeleton.positions[self.skeleton.index(f"{name}UpperLeg")]
+            shifted = middle + carriage.moved + quaternion.rotate(carriage.hips, hip - middle)
+            _pose_leg(self.skeleton, name, feet[:, side], (moved, shifted, carriage.hips), rotations)
+        _carry(self.skeleton, carriage, rotations)
+        arm = quaternion.rotate(carriage.hips, self.skeleton.positions[0] - middle)
+        return rotations, middle + carriage.moved + arm + moved
 
     def world(self, local: Floats, hips: Floats, places: Floats) -> Posed:
         """Joints in the world for rotations (N, J, 4), hips (N, 3) and places (N, 3 or 4) of the root.
@@ -101,6 +108,38 @@ class Poser:
         )
 
 
+class _Carriage(NamedTuple):
+    """How hips, chest and head are carried beyond the planned pose, in the root's axes."""
+
+    moved: Floats  # (N, 3) metres
+    hips: Floats  # (N, 4)
+    chest: Floats  # (N, 4)
+    gaze: Floats  # (N, 4) of the head against where it was planned
+
+
+def _carriage(roots: Floats) -> _Carriage:
+    told = roots[:, WITH_FEET:]
+    if not told.shape[1]:
+        told = np.zeros((len(roots), 10))
+    (turn, raised, chest_turn, chest_raised, bend, gaze, nod) = told[:, 3:10].T
+    hips = quaternion.multiply(quaternion.about_axis(_UP, turn), quaternion.about_axis(_AHEAD, raised))
+    chest = quaternion.multiply(quaternion.about_axis(_UP, chest_turn), quaternion.about_axis(_AHEAD, chest_raised))
+    chest = quaternion.multiply(chest, quaternion.about_axis(_RIGHT, bend))
+    looks = quaternion.multiply(quaternion.about_axis(_UP, gaze), quaternion.about_axis(_RIGHT, nod))
+    return _Carriage(told[:, :3], hips, chest, looks)
+
+
+def _carry(skeleton: Skeleton, carriage: _Carriage, out: Floats) -> None:
+    """Hips turn with all on them; the spine's first bone turns the chest back, and the neck's the head."""
+    spine = next(skeleton.index(bone) for bone in _SPINE_PARTS if skeleton.has(bone))
+    neck = next(skeleton.index(bone) for bone in _NECK_PARTS if skeleton.has(bone))
+    out[:, 0] = carriage.hips
+    against = quaternion.multiply(quaternion.conjugate(carriage.hips), carriage.chest)
+    out[:, spine] = quaternion.multiply(against, out[:, spine])
+    back = quaternion.multiply(carriage.gaze, quaternion.conjugate(carriage.chest))
+    out[:, neck] = quaternion.multiply(back, out[:, neck])
+
+
 def _pose_column(skeleton: Skeleton, parts: Mapping[str, float], bend: Floats, twist: Floats, out: Floats) -> None:
     """The rotation vector of Ry(twist) Rx(bend), spread over those of a column's bones that the avatar has."""
     end = quaternion.multiply(quaternion.about_axis(_UP, twist), quaternion.about_axis(_RIGHT, bend))
@@ -121,15 +160,17 @@ def _pose_arm(skeleton: Skeleton, side: str, mirror: float, arm: Floats, out: Fl
     out[:, skeleton.index(f"{side}LowerArm")] = quaternion.about_axis(_UP, -mirror * elbow)
 
 
-def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, moved: Floats, out: Floats) -> None:
+def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, hips: tuple[Floats, Floats, Floats], out: Floats) -> None:
     """Hip, knee, ankle and toes for feet (N, 6): ankle x, y, z, yaw, pitch, bend of the toes, in the root frame.
 
-    `moved` (N, 3) is how far the hips are from their place in T-pose.
+    `hips` tell how far they are from their place in T-pose without carriage (N, 3), where the leg's joint is with
+    carriage alone (N, 3), and how they are turned (N, 4).
     """
+    moved, shifted, turned = hips
     bones = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")]
     hip, knee, ankle = (skeleton.positions[skeleton.index(bone)] for bone in bones[:3])
     thigh, shin = knee - hip, ankle - knee
-    outward = foot[:, :3] - moved - hip
+    outward = foot[:, :3] - moved - shifted
     lengths = np.linalg.norm(thigh), np.linalg.norm(shin)
     opening = (1.0 if side == "left" else -1.0) * _SPLAY * -moved[:, _AHEAD] / sum(lengths)
     knee_axis = quaternion.rotate(quaternion.about_axis(_UP, 0.5 * foot[:, 3] + opening), [1.0, 0.0, 0.0])
@@ -138,7 +179,7 @@ def _pose_leg(skeleton: Skeleton, side: str, foot: Floats, moved: Floats, out: F
     lower = quaternion.from_matrix(_axes(to_ankle, axis) @ _axes(shin, np.eye(3)[_RIGHT]).T)
     sole = quaternion.multiply(quaternion.about_axis(_UP, foot[:, 3]), quaternion.about_axis(_RIGHT, foot[:, 4]))
     turns = [
-        upper,
+        quaternion.multiply(quaternion.conjugate(turned), upper),
         quaternion.multiply(quaternion.conjugate(upper), lower),
         quaternion.multiply(quaternion.conjugate(lower), sole),
         quaternion.about_axis(_RIGHT, foot[:, 5]),

@@ -7,9 +7,11 @@ from time import thread_time_ns
 import numpy as np
 
 from elbowroom.body.dof import DOF
+from elbowroom.body.footholds import UNKNOWN, beside
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.living import living
+from elbowroom.body.root import CARRIAGE, ROOT_STATE
 
 MANY = 256
 _ROUNDS, _CALLS = 7, 50
@@ -24,10 +26,12 @@ class Cost:
 
 
 def cost(humanoid: Humanoid) -> Cost:
-    """Time the posing of walking bodies."""
+    """Time the posing of walking bodies, feet and carriage included."""
     model = body_model(humanoid)
-    states = np.zeros((MANY, ROOT_STATE))
-    states[:, 3], states[:, 6] = 1.1, np.linspace(0.0, 1.0, MANY)
+    roots = np.zeros((MANY, ROOT_STATE))
+    roots[:, 3], roots[:, 6] = 1.1, np.linspace(0.0, 1.0, MANY)
+    still = np.concatenate([beside(model.gait, roots[0]), np.zeros(CARRIAGE)])
+    states = np.array([living(model.gait, still, beside(model.gait, root), 1.0, np.inf, UNKNOWN) for root in roots])
     postures = np.zeros((MANY, DOF))
     return Cost(
         _best(lambda: posture_capsules(model, postures[:1], states[:1])),

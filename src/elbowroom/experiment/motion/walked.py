@@ -23,7 +23,7 @@ class Walked:
     """N frames, 1/60 s apart."""
 
     script: Script
-    roots: Floats  # (N, WITH_FEET)
+    roots: Floats  # (N, SHOWN)
     joints: Posed
     standing: Bools  # (N, 2) which feet stand, as the walk means it
     clearances: Floats  # (N,) metres from what is in the way

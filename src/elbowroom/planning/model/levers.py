@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.carriage import ASIDE, CHEST_TURN, HEAD_TURN, OF_HIPS, POSING, UP
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of
 from elbowroom.body.gait import hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.posing import Column
-from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
@@ -34,6 +35,9 @@ _KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by 
 # Where feet are measured: x from the hip, z, yaw, pitch, lift, share of the swing. Metres of a standard leg, radians.
 _FEET_AT = np.array([[-0.15, 0.15], [-0.5, 0.5], [-0.7, 0.7], [-0.4, 1.2], [0.0, 0.07], [0.0, 1.0]])
 _FOOT_MOVES = len(_FEET_AT) - 1  # of each foot: its way over the ground is one
+# How hips are carried where that is measured: aside, up, ahead, turned, raised on the left. The same units.
+_CARRIED_AT = np.array([[-0.04, 0.04], [-0.04, 0.02], [-0.03, 0.03], [-0.15, 0.15], [-0.1, 0.1]])
+_OF_FEET = MOVES + 2 * _FOOT_MOVES  # how many moves come before those of the carriage
 # Where the components of each local group begin in an upper body, and how many there are.
 _COMPONENTS = np.array([[columns_of(group).start, group.size] for group in LOCAL_GROUPS])
 
@@ -106,7 +110,7 @@ class BodyLevers:
     from_pelvis: Floats  # (C, M) in the pelvis frame
     from_chest: Floats  # (C, M) in the chest frame; of the trunk and what hangs on it
     bob: Floats  # (M,) of the pelvis frame above the ground
-    steps: Floats  # (C, K) in the root's frame for the K moves of feet; of what is above the legs those of the hips
+    steps: Floats  # (C, K) in the root's frame for the K moves of feet and carriage
     spans: Floats  # (C,) metres: no point of a capsule's axis gets farther from the root's axis
 
     def between(self, first: Indices, second: Indices, legs: Indices) -> Floats:
@@ -122,8 +126,8 @@ class BodyLevers:
     def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> Floats:
         """No point of a capsule's axis moves farther, (C,) metres, while a posture changes evenly to another.
 
-        They are told by root states and upper bodies (LOCAL,). The root states have feet (WITH_FEET,) or go with the
-        walking cycle (7,).
+        They are told by root states and upper bodies (LOCAL,). The root states have feet (WITH_FEET,), and carriage
+        (SHOWN,), or go with the walking cycle (7,).
         """
         return _travel(self.from_pelvis, self.bob, self.steps, self.spans, *roots, *uppers)
 
@@ -177,7 +181,8 @@ def _set_moves_of_groups(upper: Floats, moves: Floats) -> None:
 def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
     """What feet do, and what of the root lowers the hips, (K,), for a change of a root state with feet.
 
-    Velocity over the ground, turning rate, phase; of each foot its way, yaw, pitch, lift, and share of the swing.
+    Velocity over the ground, turning rate, phase; of each foot its way, yaw, pitch, lift, and share of the swing; what
+    poses the body of the carriage, where there is one.
     """
     moves[0], moves[1], moves[2] = np.hypot(root[3], root[4]), abs(root[5]), abs(root[6])
     for side in range(2):
@@ -185,6 +190,8 @@ def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
         moves[at] = np.hypot(foot[0], foot[1])
         for i in range(1, _FOOT_MOVES):
             moves[at + i] = abs(foot[i + 1])
+    for i in range(POSING if root.shape[0] > WITH_FEET else 0):
+        moves[_OF_FEET + i] = abs(root[WITH_FEET + i])
 
 
 @exact_kernel
@@ -219,9 +226,33 @@ def _measured(model: BodyModel) -> BodyLevers:
     from_pelvis[legs, -MOVES:], lowered, bob[-MOVES:] = _stride_levers(model)
     from_pelvis[legs, _columns(DofGroup.WAIST).start + _LOWERING] = lowered
     aside, (of_legs, of_hips) = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift, _foot_levers(model)
-    steps = np.tile(of_hips, (len(from_pelvis), 1))
-    steps[legs] = of_legs
+    steps = np.zeros((len(from_pelvis), _OF_FEET + POSING))
+    steps[:, : len(of_hips)] = of_hips
+    steps[:, _OF_FEET:] += _carriage_levers(model)
+    steps[legs], steps[legs, : len(of_hips)] = 0.0, of_legs
     return BodyLevers(from_pelvis, from_chest, bob, steps, aside + _lengths(model))
+
+
+def _carriage_levers(model: BodyModel) -> Floats:
+    """What the carriage does at most to capsules (C, POSING) that are carried by the spine, as it is planned.
+
+    Hips that turn take the spine's lowest joint along, a chest that turns takes all above it; the head turns back
+    against the chest, and by itself.
+    """
+    levers, spans = np.zeros((len(model.body.radii), POSING)), _lengths(model)
+    below = int(model.chains[DofGroup.WAIST].column.joints[0])
+    levers[:, : UP + 2 - ASIDE] = 1.0
+    levers[:, UP + 2 - ASIDE : OF_HIPS] = float(np.linalg.norm(model.offsets[below])) + _apart(model)
+    levers[:, OF_HIPS : HEAD_TURN - ASIDE] = spans[:, None]
+    head = model.capsules_of(DofGroup.HEAD).indices
+    levers[head, CHEST_TURN - ASIDE : HEAD_TURN - ASIDE] *= 2.0
+    levers[head, HEAD_TURN - ASIDE :] = spans[head, None]
+    return levers
+
+
+def _apart(model: BodyModel) -> float:
+    """Metres from the hips joint to the middle between those of the legs."""
+    return float(np.linalg.norm(model.offsets[model.figure.legs[:, 0]].mean(axis=0)))
 
 
 def _lengths(model: BodyModel) -> Floats:
@@ -258,21 +289,24 @@ def _stride_levers(model: BodyModel) -> tuple[Floats, Floats, Floats]:
 
 
 def _foot_levers(model: BodyModel) -> tuple[Floats, Floats]:
-    """Levers of pelvis and legs in the root's frame for the moves of feet (C, K), and of the hips (K,).
+    """Levers of pelvis and legs in the root's frame for the moves of feet and hips (C, K), and of the hips (K,).
 
     They are measured, on feet everywhere within a stride and some beyond reach, and a quarter more is taken.
     """
-    gait, drawn = model.gait, evenly_spread(_STRIDES, len(_FEET_AT) * 2 + len(_VELOCITIES) + 2)
-    rows, lowerings = np.zeros((_STRIDES, WITH_FEET)), _LOWEST * np.maximum(2.0 * drawn[:, 0] - 1.0, 0.0)
+    gait, drawn = model.gait, evenly_spread(_STRIDES, len(_FEET_AT) * 2 + len(_VELOCITIES) + 2 + OF_HIPS)
+    rows, lowerings = np.zeros((_STRIDES, SHOWN)), _LOWEST * np.maximum(2.0 * drawn[:, 0] - 1.0, 0.0)
     rows[:, 6] = drawn[:, 1]
     rows[:, 3:6] = _VELOCITIES[:, 0] + drawn[:, 2:5] * np.ptp(_VELOCITIES, axis=1)
+    rows[:, ASIDE : ASIDE + OF_HIPS] = _CARRIED_AT[:, 0] + drawn[:, -OF_HIPS:] * np.ptp(_CARRIED_AT, axis=1)
+    rows[:, ASIDE : UP + 2] *= gait.scale
     sizes = np.array([gait.scale, gait.scale, 1.0, 1.0, gait.scale, 1.0])
-    for side, part in enumerate(np.split(drawn[:, 5:], 2, axis=1)):
+    for side, part in enumerate(np.split(drawn[:, 5:-OF_HIPS], 2, axis=1)):
         foot = sizes * (_FEET_AT[:, 0] + part * np.ptp(_FEET_AT, axis=1))
         foot[:, 0] += gait.legs[side, 0]
         rows[:, ROOT_STATE + FOOT * side :][:, : len(sizes)] = foot
     begin, ways, dips = _seen_from_root(model, rows, lowerings), [], []
-    for column in (*range(3, 7), *(ROOT_STATE + FOOT * side + i for side in range(2) for i in range(len(_FEET_AT)))):
+    feet = (ROOT_STATE + FOOT * side + i for side in range(2) for i in range(len(_FEET_AT)))
+    for column in (*range(3, 7), *feet, *range(ASIDE, ASIDE + OF_HIPS)):
         moved = rows.copy()
         moved[:, column] += _STEP
         after = _seen_from_root(model, moved, lowerings)
@@ -283,11 +317,11 @@ def _foot_levers(model: BodyModel) -> tuple[Floats, Floats]:
 
 
 def _joined(levers: Floats) -> Floats:
-    """Levers (18 or so, ...) for each number that is told of root and feet, as those (K, ...) for `_moves_of_feet`."""
-    of_root, of_feet = levers[:4], levers[4:].reshape(2, len(_FEET_AT), *levers.shape[1:])
+    """Levers (21 or so, ...) for each number told of root, feet and hips, as those (K, ...) for `_moves_of_feet`."""
+    of_root, of_feet = levers[:4], levers[4:-OF_HIPS].reshape(2, len(_FEET_AT), *levers.shape[1:])
     ground = np.hypot(of_feet[:, :1], of_feet[:, 1:2])
     feet = np.concatenate([ground, of_feet[:, 2:]], axis=1).reshape(-1, *levers.shape[1:])
-    joined: Floats = np.concatenate([np.hypot(of_root[:1], of_root[1:2]), of_root[2:], feet])
+    joined: Floats = np.concatenate([np.hypot(of_root[:1], of_root[1:2]), of_root[2:], feet, levers[-OF_HIPS:]])
     return joined
 
 

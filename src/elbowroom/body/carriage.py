@@ -1,0 +1,89 @@
+"""How a body that is shown carries its hips, chest and head: a little off the planned pose, as people do who walk.
+
+Behind the feet of a row stand CARRIAGE numbers. Ten of them pose the body: how far the hips are to the left, above and
+ahead of where they were planned, how far they are turned and their left side is raised; how far the chest is turned,
+its left side raised, and bent; how far the head is turned and nods. The hips turn about the middle between the joints
+of the legs; chest and head are told from where they were planned, so neither follows the hips, nor the head the chest.
+The other three are what `living` remembers. Legs reach from the carried hips to the same feet.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import WITH_FEET
+from elbowroom.jit import helper, kernel
+
+Floats = NDArray[np.float64]
+Quaternion = tuple[float, float, float, float]
+
+# Places in a row: metres in the root's axes, and radians.
+ASIDE, UP, AHEAD, TURN, LIST = WITH_FEET, WITH_FEET + 1, WITH_FEET + 2, WITH_FEET + 3, WITH_FEET + 4
+CHEST_TURN, CHEST_LIST, CHEST_BEND = WITH_FEET + 5, WITH_FEET + 6, WITH_FEET + 7
+HEAD_TURN, HEAD_NOD = WITH_FEET + 8, WITH_FEET + 9
+OF_HIPS, POSING = 5, 10  # so many of the numbers move the hips, and so many pose anything
+
+
+@helper
+def _turned(turn: float, raised: float) -> Quaternion:
+    """Ry(turn) Rz(raised)."""
+    cy, sy, cz, sz = math.cos(0.5 * turn), math.sin(0.5 * turn), math.cos(0.5 * raised), math.sin(0.5 * raised)
+    return sy * sz, sy * cz, cy * sz, cy * cz
+
+
+@helper
+def _times(a: Quaternion, b: Quaternion) -> Quaternion:
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+@helper
+def _about_left(angle: float) -> Quaternion:
+    """A rotation about the axis to the left."""
+    return math.sin(0.5 * angle), 0.0, 0.0, math.cos(0.5 * angle)
+
+
+@kernel
+def carried_turns(row: Floats) -> tuple[Quaternion, Quaternion, Quaternion]:
+    """What a row (SHOWN,) turns hips, lowest joint of the spine, and lowest joint of the neck by, `xyzw`.
+
+    Each is a rotation in the axes of the joint above, and goes before what the posture turns the joint by.
+    """
+    hips = _turned(row[TURN], row[LIST])
+    chest = _times(_turned(row[CHEST_TURN], row[CHEST_LIST]), _about_left(row[CHEST_BEND]))
+    head = _times(_turned(row[HEAD_TURN], 0.0), _about_left(row[HEAD_NOD]))
+    back = (-hips[0], -hips[1], -hips[2], hips[3])
+    level = (-chest[0], -chest[1], -chest[2], chest[3])
+    return hips, _times(back, chest), _times(head, level)
+
+
+@kernel
+def shifted_by(row: Floats, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """How far a row (SHOWN,) moves a point of the hips that is planned at (x, y, z) from the middle of the hip joints.
+
+    Metres in the root's axes. A row without carriage moves nothing.
+    """
+    if row.shape[0] <= WITH_FEET:
+        return 0.0, 0.0, 0.0
+    a, b, c, w = _turned(row[TURN], row[LIST])
+    tx, ty, tz = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
+    return (
+        row[ASIDE] + w * tx + b * tz - c * ty,
+        row[UP] + w * ty + c * tx - a * tz,
+        row[AHEAD] + w * tz + a * ty - b * tx,
+    )
+
+
+@kernel
+def carried_hip(legs: Floats, row: Floats, side: int) -> tuple[float, float, float]:
+    """Where a leg's joint at the hip is in the root's frame; `legs` (2, 3 or more) tell first where it was planned."""
+    hip, twin = legs[side], legs[1 - side]
+    x, y, z = shifted_by(row, 0.5 * (hip[0] - twin[0]), 0.5 * (hip[1] - twin[1]), 0.5 * (hip[2] - twin[2]))
+    return hip[0] + x, hip[1] + y, hip[2] + z
