@@ -149,8 +149,8 @@ class BodyCheck:
         poses = [(self._pose(root, upper), time) for root, upper, time in ends]
         if self._soles.change(*frames.roots):
             poses = [(pose._replace(floors=floors, standing=[]), time) for pose, time in poses]
-            if not self._turns_free(frames, floors):
-                return False
+        if self._soles.raised(*frames.roots) and not self._turns_free(frames, floors):
+            return False
         gaps = np.array([self._gaps(pose, time) for pose, time in poses])
         if (gaps[0] + gaps[1] - ways).min() >= 0.0:
             return True
