@@ -23,6 +23,24 @@ function standing(x: number, z: number, heading: number): Followed {
   return { x, z, heading, eye: 1.55, ground: 0, sideways: 0, trail: false };
 }
 
+/** Two walls across the way at z = 0, with a gap of 40 cm between them, and a lintel. */
+function doorway(): CameraObstacles {
+  const walls = [wall([2.2, 1.1, 0], [2, 1.1, THICK]), wall([-2.2, 1.1, 0], [2, 1.1, THICK])].map(prepareBox);
+  return { all: [...walls, prepareBox(wall([0, 2.35, 0], [4.2, 0.15, THICK]))], walls };
+}
+
+describe("in a doorway that is narrower than the shoulders", () => {
+  it("the avatar is seen all the way through, from behind", () => {
+    const obstacles = doorway(), camera = new ThirdPersonCamera(() => false);
+    camera.snap(standing(0, -2, 0));
+    for (let z = -2; z < 1.5; z += 0.01) {
+      camera.update(standing(0.04 * Math.sin(6 * z), z, 0), obstacles, 1 / 60);
+      expect(camera.avatarOpacity, `at ${z.toFixed(2)}`).toBe(1);
+      expect(distanceToBoxes(obstacles.all, ...camera.position)).toBeGreaterThan(0.1);
+    }
+  });
+});
+
 function shown(name: ViewName, obstacles: CameraObstacles, followed: Followed): ThirdPersonCamera {
   const camera = new ThirdPersonCamera(() => false);
   camera.snap(followed);

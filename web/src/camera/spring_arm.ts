@@ -30,6 +30,8 @@ export interface PreparedBox {
 const CONTACT_TOLERANCE = 1e-4;
 const RETREAT_STEP = 0.02;
 const MAX_STEPS = 128;
+/** Metres round the line of sight that walls must leave free: one sees through a door that is narrower than the camera's own room. */
+const SIGHT = 0.12;
 /** How fast a sphere that begins squeezed grows to its full radius, metres per metre. */
 const PROBE_GROWTH = 0.5;
 
@@ -139,7 +141,7 @@ export interface CameraObstacles {
 }
 
 /**
- * How far from the pivot the camera may be: no wall lies between, and no box of any kind round the camera itself.
+ * How far from the pivot the camera may be: no wall lies between, and no box of any kind within `radius` of the camera itself.
  *
  * Without assist the avatar walks through walls too; one that the pivot is inside cannot hold the arm back.
  */
@@ -147,7 +149,7 @@ export function cameraReach(
   obstacles: CameraObstacles, pivot: Vec3, direction: Vec3, wanted: number, radius: number,
 ): number {
   const walls = obstacles.walls.filter((wall) => distanceToBox(wall, ...pivot) > CONTACT_TOLERANCE);
-  let reach = freeReach(walls, pivot, direction, wanted, radius);
+  let reach = freeReach(walls, pivot, direction, wanted, Math.min(radius, SIGHT));
   while (reach > 0) {
     const room = distanceToBoxes(obstacles.all, ...pointAlong(pivot, direction, reach));
     if (room >= radius - 2 * CONTACT_TOLERANCE) return reach;
