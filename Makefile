@@ -75,7 +75,7 @@ browser: $(VENV)/developer
 	@echo "==> Tests in a real browser"
 	@sh tools/install_browser.sh
 	@sh tools/install_judges.sh $(BIN)/python
-	@$(BIN)/python -m pytest -m browser -n 2 --dist loadfile $(ARGS)
+	@$(BIN)/python -m pytest -m "browser and not long" -n 2 --dist loadfile $(ARGS)
 
 docs: $(VENV)/developer
 	@echo "==> Pages in site/index.html"

@@ -4,9 +4,10 @@ import base64
 import time
 from typing import Any
 
+from playwright.sync_api import TimeoutError as StillNotError
+
 LOAD_SECONDS = 60.0
 PATIENCE = 60.0  # seconds: much more than it takes, as other programs may keep both processors busy
-STEP = 0.05
 REST = 12  # frames over which what is shown may not change, to be at rest
 # A few frames later: the panels that slide (what turns for ever is not waited for), the camera and the avatar.
 _SHOWN = """
@@ -48,13 +49,14 @@ class LivePage:
         return snapshot
 
     def wait(self, condition: str, seconds: float = PATIENCE) -> dict[str, Any]:
-        """Wait until a JavaScript condition on `s`, the page's state, holds; the state then."""
-        deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline:
-            if self.page.evaluate(f"(() => {{ const s = window.__app; return !!s && !!({condition}); }})()"):
-                return self.state()
-            time.sleep(STEP)
-        raise AssertionError(f"after {seconds:g} s still not: {condition}; the page says {self.state()}")
+        """Wait until a JavaScript condition on `s`, the page's state, holds in a picture; the state then."""
+        try:
+            seen = self.page.wait_for_function(f"() => {_then(condition)}", timeout=1000.0 * seconds)
+        except StillNotError as error:
+            text = f"after {seconds:g} s still not: {condition}; the page says {self.state()}"
+            raise AssertionError(text) from error
+        state: dict[str, Any] = seen.json_value()
+        return state
 
     def settle(self, seconds: float = PATIENCE) -> None:
         """Wait until panels, camera and avatar have come to rest, however slow the machine."""
@@ -93,6 +95,11 @@ class LivePage:
     def _note(self, message: Any) -> None:
         if message.type == "error":
             self.errors.append(message.text)
+
+
+def _then(condition: str) -> str:
+    """A copy of the page's state if the condition holds: what is true in one picture may be over in the next."""
+    return f"{{ const s = window.__app; return !!s && !!({condition}) && structuredClone({{ ...s }}); }}"
 
 
 def _near(a: list[float], b: list[float]) -> bool:

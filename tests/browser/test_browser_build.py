@@ -142,7 +142,7 @@ def test_a_scene_travels_in_an_address_and_drafts_stay(open_page: Open) -> None:
     assert state["build"]["things"][:-1] == names
 
 
-@pytest.mark.parametrize("size", [(390, 844), (844, 390)])
+@pytest.mark.parametrize("size", [(390, 844), pytest.param((844, 390), marks=pytest.mark.long)])
 def test_all_of_it_can_be_reached_on_a_phone(open_page: Open, size: tuple[int, int]) -> None:
     live = open_page("scene=doorway&lang=zh-Hant", viewport=size, has_touch=True)
     live.page.locator("#menu-button").click()

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -39,6 +40,7 @@ def differing(a: Picture, b: Picture) -> int:
     return int(np.count_nonzero(np.abs(a - b).max(axis=2) > _VISIBLE))
 
 
+@pytest.mark.long
 def test_compressed_avatars_look_as_plain_ones(open_page: Open, tmp_path: Path) -> None:
     """A figure that is not drawn differs by 10,000 pixels."""
     plain = stock_avatar_path().read_bytes()

@@ -25,6 +25,7 @@ def film(recording: Path, output: Path, *options: str) -> None:
     assert result.returncode == 0, result.stderr
 
 
+@pytest.mark.long
 def test_a_webm_is_played_by_a_browser(chromium: object, recording: Path, tmp_path: Path) -> None:
     film(recording, tmp_path / "walk.webm", "--fps", "5", "--camera", "front")
     page = chromium.new_page()  # type: ignore[attr-defined]

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 from live_server import LiveServer
 from make_pictures import Scene, Still, View, moving, still
 
@@ -14,6 +16,7 @@ def test_a_picture_that_stands(chromium: Any, live_server: LiveServer) -> None:
     assert len(picture.getcolors(1 << 20) or []) > 500  # obstacles, ground and avatar, lit
 
 
+@pytest.mark.long
 def test_a_picture_that_moves(chromium: Any, live_server: LiveServer) -> None:
     pictures = moving(chromium, live_server.url, Scene(VIEW, 0.3, 0.45))
     assert len(pictures) >= 2

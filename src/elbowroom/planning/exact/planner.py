@@ -91,14 +91,14 @@ class ExactPlanner:
         """
         memory, stand = self.memory, self.memory.standing
         before = memory.version
-        again = alone and stand is not None and stand.answers(query, before)
+        again = alone and stand is not None and stand.is_asked_again(query)
         moves = not is_still(query.root.as_array()[3:6])
         hurry = query.hurry or (moves and memory.command != query.command)
         memory.command = query.command
         at_last = again and stand is not None and stand.left == 1
         whole = NewPlan(self._body, root_planner, query, self._horizon(query), hurry, at_last).made(left)
         turns = stand.left - 1 if again and stand is not None else memory.attempts.left
-        known = alone and not hurry and memory.version == before and stands(whole, query)
+        known = alone and not hurry and stands(whole, query)
         memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None
         lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None

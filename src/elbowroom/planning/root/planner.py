@@ -143,17 +143,17 @@ class RootPlanner:
 
     def ways_out(
         self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
-    ) -> Iterator[RootPlan]:
+    ) -> Iterator[tuple[RootPlan, int]]:
         """Paths that step to where the command leads on, the cheapest first; arguments and duties as for `candidates`.
 
-        They are for who has asked for those, and can follow none.
+        With each, how many key intervals the steps take. They are for who has asked for those, and can follow none.
         """
         line, before = self.memory.line, self.memory.way_out
         if line is None:
             return
         for candidate in self._out(Asked(start, command, horizon, interval, start_time), line, None, before):
             self._offered.append(candidate)
-            yield candidate.plan
+            yield candidate.plan, 0 if candidate.way_out is None else candidate.way_out.length
 
     def follow(self, plan: RootPlan) -> None:
         """Take one of the paths that `candidates` gave last."""

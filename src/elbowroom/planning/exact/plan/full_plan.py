@@ -85,9 +85,13 @@ class StandingPlan(NamedTuple):
     left: int  # paths that have not had their turn to be thought through
 
     def answers(self, query: MotionQuery, version: int) -> bool:
-        """Whether this is the answer to `query` too."""
+        """Whether this is the answer to `query` too, with the posture sets of a version."""
+        return version == self.version and self.is_asked_again(query)
+
+    def is_asked_again(self, query: MotionQuery) -> bool:
+        """Whether `query` is the one that this answered, asked later."""
         known, asked = self.query, query
-        if known.command != asked.command or version != self.version or known.horizon != asked.horizon:
+        if known.command != asked.command or known.horizon != asked.horizon:
             return False
         pairs = (
             (known.root.as_array(), asked.root.as_array()),

@@ -104,25 +104,28 @@ class NewPlan:
         return query.root, query.command, self.horizon, query.interval, query.time
 
     def _way_out(self) -> FullPlan | None:
-        """A plan over a few steps to where the command leads on, or over as many of them as there is a path for.
+        """A plan over a few steps to where the command leads on, or else over those that lead farthest away from here.
 
-        None if none of them can be taken.
+        None if none of them can be taken. Away from what is in the way there is room to bend before it.
         """
-        before, part = self.root_planner.memory, None
-        for root in self.root_planner.ways_out(*self._asked):
+        before, here = self.root_planner.memory, (self.query.root.x, self.query.root.z)
+        away, farthest = 0.0, None
+        for root, length in self.root_planner.ways_out(*self._asked):
             self.body.memory.attempts.enter_root(root.checks)
             if self.body.memory.attempts.spent:
                 break
             upper = self._upper_body(root.path, Effort.QUICK)
             if upper.reached == self.horizon:
                 return FullPlan(root, upper.plan, upper.margins)
-            if part is None or upper.reached > part.upper.reached:
-                part = _Tried(root, upper)
-        stepped = None if part is None else self._braked(part.root, part.upper.reached)
-        if part is None or stepped is None or stepped.root.kind is RootPlanKind.STOPPED:
+            reached = min(upper.reached, length)
+            so_far = math.dist(root.path.states[reached, :2], here)
+            if so_far > away + _STANDING:
+                away, farthest = so_far, (root, reached + 1)
+        stepped = None if farthest is None else self._braked(*farthest)
+        if farthest is None or stepped is None or stepped.root.kind is RootPlanKind.STOPPED:
             self.root_planner.memory = before
             return None
-        self.root_planner.follow(part.root)
+        self.root_planner.follow(farthest[0])
         return stepped
 
     def _can_wait(self, upper: UpperPlan) -> bool:

@@ -1,0 +1,23 @@
+"""Who has come to a stand with the face at a beam takes a step back, bends, and passes."""
+
+import pytest
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.control.controller import Controller
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+
+BEYOND = 2.8  # metres
+PATIENCE = 8.0  # seconds
+
+
+@pytest.mark.parametrize(("z", "phase"), [(1.65, 1.9), (1.72, 1.9), (1.77, 0.0), (1.8, 1.9), (1.81, 0.0)])
+def test_who_stands_at_a_beam_passes_under_it(z: float, phase: float) -> None:
+    controller = Controller(Humanoid.default(), Scene.load("beam"), start=RootState(0.0, z, phase=phase))
+    time = 0.0
+    while controller.root.z < BEYOND:
+        frame = controller.step(Command(forward=1.0, direction=0.0), 1 / 60)
+        assert frame.clearance >= 0.0
+        time += 1 / 60
+        assert time < PATIENCE, f"still at z {controller.root.z:.3f}: {frame.plan and frame.plan.local.blockade}"
