@@ -14,6 +14,7 @@ from elbowroom.control import steering
 from elbowroom.control.body_check import BodyCheck, Frames, configuration
 from elbowroom.control.canned import standing_posture
 from elbowroom.control.desk import ImmediateDesk
+from elbowroom.control.ducking import ducked
 from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.holding import Holding
@@ -448,13 +449,23 @@ class Controller:
         return (posed._replace(root=root) for root in raised_feet(shown.root, stood, dt))
 
     def _settling(self, dt: float) -> Iterator[Playback]:
-        """How the pose that is shown can be held, with what it stands on: best first."""
-        for part in _SETTLING if self._assist else _SETTLING[:1]:
-            held = self._holding.settle(self._shown, part * dt)
-            if self.scene.ground.plain:
-                yield from self._stepping.settling(self._shown, held, dt, self._room, self._look)
-            else:
-                yield from self._raised(self._shown, held, dt)
+        """How the pose that is shown can be held, with what it stands on: best first; at last lower, to be able to."""
+        parts = [part * dt for part in (_SETTLING if self._assist else _SETTLING[:1])]
+        held = [self._holding.settle(self._shown, part) for part in parts]
+        for pose in held:
+            yield from self._stood(pose, dt)
+        stood = RootState.of(self._shown.root)._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
+        for pose, part in zip(held, parts, strict=True):
+            lower = ducked(pose, self._check.standing(stood), part, self._clearance_now)
+            if lower is not None:
+                yield from self._stood(lower, dt)
+
+    def _stood(self, held: Playback, dt: float) -> Iterator[Playback]:
+        """A pose that is held, with what it stands on: best first."""
+        if self.scene.ground.plain:
+            yield from self._stepping.settling(self._shown, held, dt, self._room, self._look)
+        else:
+            yield from self._raised(self._shown, held, dt)
 
     @property
     def _room(self) -> float:
@@ -482,7 +493,10 @@ class Controller:
 
     def _clearance_of(self, posed: Playback) -> float:
         """Of a pose, now."""
-        return self._check.shown_clearance(posed.root, posed.upper, self._queue.time)
+        return self._clearance_now(posed.root, posed.upper)
+
+    def _clearance_now(self, root: Floats, upper: Floats) -> float:
+        return self._check.shown_clearance(root, upper, self._queue.time)
 
     def _hold(self, dt: float) -> None:
         """Stay in the last good pose; the legs come to a stand where they can."""

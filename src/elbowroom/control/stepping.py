@@ -76,13 +76,16 @@ class Stepping:
         return self._alive(shown.root[:WITH_FEET], shown, shown, dt, Ahead(UNKNOWN, room))
 
     def settling(self, shown: Playback, posed: Playback, dt: float, room: float, look: Look) -> list[Playback]:
-        """A pose that is held, on the feet that follow on what is shown within `dt` seconds: best first."""
+        """A pose that is held, on the feet that follow on what is shown within `dt` seconds: best first.
+
+        Arms make way for legs that come to a stand; if that touches they stay.
+        """
         steps, glides = (follow(self._gait, shown.root, posed.root, dt) for follow in (onward, gliding))
         roots = [steps, glides] if look(steps, posed.upper).room >= _ROOM else [glides, steps]
         made = [self._alive(root, posed, shown, dt, Ahead(UNKNOWN, room)) for root in roots]
-        if not any(lively(pose.root) for pose in made):
-            return made
-        return made + [self._alive(root, posed, shown, dt, Ahead(UNKNOWN, _NOT_AT_ALL)) for root in roots]
+        if any(lively(pose.root) for pose in made):
+            made += [self._alive(root, posed, shown, dt, Ahead(UNKNOWN, _NOT_AT_ALL)) for root in roots]
+        return [pose._replace(upper=self._arms.apart(pose.root, pose.upper)) for pose in made] + made
 
     def next(self, shown: Playback, posed: Playback, dt: float, ahead: Ahead, look: Look) -> Playback:
         """How a pose is shown `dt` seconds after what is `shown`, if that is free: see `under`."""

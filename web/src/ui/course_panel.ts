@@ -2,7 +2,7 @@
 
 import type { Catalog } from "../generated/messages";
 import { courseName, courseOf } from "../results";
-import { byId, setOptions } from "./dom";
+import { byId, setOptions, showValue } from "./dom";
 
 const MOST_SEEDS = 10_000;
 
@@ -33,7 +33,7 @@ export class CoursePanel {
     const course = courseOf(scene);
     if (!course) return;
     this.level.value = String(course.level);
-    this.seed.value = String(course.seed);
+    showValue(this.seed, String(course.seed));
   }
 
   private ask(): void {

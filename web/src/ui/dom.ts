@@ -27,3 +27,9 @@ export function setOptions(select: HTMLSelectElement, options: readonly (readonl
   select.replaceChildren(...options.map(([id, title]) => new Option(title, id)));
   select.value = value;
 }
+
+/** Shows what an input stands for, unless a hand is on it: what one types or drags is not taken away. */
+export function showValue(input: HTMLInputElement, value: string): void {
+  const typing = input.type === "number" && document.activeElement === input;
+  if (!typing && !input.matches(":active")) input.value = value;
+}

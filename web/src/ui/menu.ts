@@ -8,7 +8,7 @@ import type { Preferences } from "../preferences";
 import { worded } from "../texts/worded";
 import { ClipPanel } from "./clip_panel";
 import { CoursePanel } from "./course_panel";
-import { byId, make, setOptions } from "./dom";
+import { byId, make, setOptions, showValue } from "./dom";
 import { sceneTitle } from "../texts/scene_titles";
 
 /** What the user does with the menu. */
@@ -94,8 +94,8 @@ export class Menu {
     this.scene.value = settings.scene;
     this.avatar.value = settings.avatar;
     this.planner.value = settings.planner;
-    this.queue.value = String(settings.queueSize);
-    this.speed.value = String(settings.walkSpeed);
+    showValue(this.queue, String(settings.queueSize));
+    showValue(this.speed, String(settings.walkSpeed));
     this.showValues();
     this.clips.showSettings(settings);
     const assist = byId("assist", HTMLButtonElement);

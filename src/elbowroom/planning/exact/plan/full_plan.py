@@ -11,10 +11,10 @@ from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.motion import Motion, MotionQuery
-from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan
+from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
-from elbowroom.planning.stillness import STILL, UNMOVED
+from elbowroom.planning.stillness import STILL, UNMOVED, is_still
 
 Floats = NDArray[np.float64]
 
@@ -115,7 +115,9 @@ class StandingPlan(NamedTuple):
 
 
 def stands(whole: FullPlan, query: MotionQuery) -> bool:
-    """Whether a plan leaves all as it is."""
+    """Whether a plan leaves all as it is: it says so, or there is no motion in it for one who stands."""
+    if whole.local.status is not PlanStatus.FOUND:
+        return is_still(query.root.as_array()[3:6]) and is_still(query.velocity)
     return _stays(whole.root.path.states, whole.local.configurations, query.upper, query.velocity)
 
 
