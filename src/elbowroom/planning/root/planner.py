@@ -149,8 +149,8 @@ class RootPlanner:
         With each, how many key intervals the steps take. They are for who has asked for those, and can follow none.
         """
         line, before = self.memory.line, self.memory.way_out
-        if line is None:
-            return
+        if line is None or wanted_speed(command, self.settings.motion) < SLOW:
+            return  # who is in no hurry stays
         for candidate in self._out(Asked(start, command, horizon, interval, start_time), line, None, before):
             self._offered.append(candidate)
             yield candidate.plan, 0 if candidate.way_out is None else candidate.way_out.length
