@@ -71,7 +71,7 @@ STILLS = (
 MOVING_SIZE = (640, 360)
 MOVING = (
     Scene(View("scene=d&ui=0", MOVING_SIZE, (330, 14), -300), 0.5, 4.3),
-    Scene(View("scene=doorway&ui=0", MOVING_SIZE, (70, 30), -120), 0.9, 3.4),
+    Scene(View("scene=doorway&ui=0", MOVING_SIZE, (0, 30), -120), 0.9, 2.9),
     Scene(View("scene=beam&ui=0", MOVING_SIZE, (210, -4), -170), 1.0, 4.5),
 )
 MOVING_NAME = "walk.webp"
