@@ -27,10 +27,10 @@ def box(begin: float, top: float, length: float) -> dict[str, Any]:
     return {"type": "box", "center": [0.0, 0.5 * top, begin + 0.5 * length], "size": [WIDE, top, length]}
 
 
-def ramp(degrees: float) -> list[dict[str, Any]]:
-    top, half, run = math.tan(math.radians(degrees)) * 2.0, 0.5 * WIDE, 2.0
+def ramp(degrees: float, run: float = 2.0) -> list[dict[str, Any]]:
+    top, half = math.tan(math.radians(degrees)) * run, 0.5 * WIDE
     points = [[x, y, z] for x in (-half, half) for y, z in ((0.0, 0.0), (0.0, run), (top, run))]
-    return [{"type": "hull", "points": points, "center": [0.0, 0.0, 2.0]}, box(4.0, top, 3.0)]
+    return [{"type": "hull", "points": points, "center": [0.0, 0.0, 2.0]}, box(2.0 + run, top, 3.0)]
 
 
 def stair(rise: float, tread: float, steps: int) -> list[dict[str, Any]]:
@@ -42,9 +42,14 @@ PLACES: dict[str, list[dict[str, Any]]] = {
     **{f"a sill of {height} cm": [box(3.0, 0.01 * height, 0.1)] for height in (1, 5, 10, 20)},
     "a kerb": [box(2.5, 0.15, 2.0)],
     "a ramp of 15 degrees": ramp(15.0),
+    "a long ramp of 18.6 degrees": ramp(18.6, 4.0),
     "a stair of 17 by 28 cm": stair(0.17, 0.28, 4),
 }
-LONGEST = {"a ramp of 15 degrees": 12.0, "a stair of 17 by 28 cm": 20.0}  # seconds; of all others 9
+LONGEST = {
+    "a ramp of 15 degrees": 12.0,
+    "a long ramp of 18.6 degrees": 14.0,
+    "a stair of 17 by 28 cm": 20.0,
+}  # seconds; of all others 9
 
 
 def scene_of(name: str) -> Scene:

@@ -1,12 +1,13 @@
 """While nothing moves, at most two frames a second are on the wire; what is new goes out at once."""
 
 from dataclasses import fields
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from elbowroom.server.pose_frame import PoseFrame, pack
-from elbowroom.server.standstill import SELDOM, Standstill
+from elbowroom.server.standstill import SELDOM, UNSEEN, Standstill
 
 RATE = 60
 
@@ -24,6 +25,17 @@ def test_who_stands_still_costs_two_frames_a_second() -> None:
     assert all(sent[: RATE // 2])
     assert sum(sent[2 * RATE :]) <= 18 / SELDOM + 1
     assert sum(sent[2 * RATE :]) >= 18 / SELDOM - 2
+
+
+def test_who_breathes_costs_as_many_frames_as_one_can_see() -> None:
+    watch, sent = Standstill(), []
+    for i in range(20 * RATE):
+        x = 0.005 * float(np.sin(i / RATE))
+        if watch.worth_sending(frame(i, x=x), i / RATE, restless=False):
+            sent.append((i / RATE, x))
+    late = [x for time, x in sent if time > 2.0]
+    assert len(late) < 18 * 8
+    assert max(abs(a - b) for a, b in pairwise(late)) < 1.5 * UNSEEN
 
 
 def test_what_is_new_goes_out_at_once() -> None:

@@ -118,7 +118,7 @@ class RoomMap:
 def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     """The room over a part of a scene's ground for somebody; kept on disk where much stands there."""
     standing, ground = scene.obstacles.standing, scene.ground
-    if how_many(standing) < _MANY:
+    if len(standing.rows) < _MANY:
         return _made(scene, girth, area)
     floor = () if scene.place is None or scene.place.floor is None else (scene.place.floor.there,)
     about = np.array([*girth, *area, *scene.ground_center, *scene.ground_size, ground.cell, *ground.corner])
