@@ -113,7 +113,7 @@ def test_replay_names_what_it_was_recorded_with(
     """As if here were another processor, on which the last bits come out otherwise."""
     there = recording.this_machine()
     monkeypatch.setattr(recording, "this_machine", lambda: there | {"processor": "generic"})
-    monkeypatch.setattr(replays, "_same", lambda step, frame: False)
+    monkeypatch.setattr(replays, "_same", lambda *_: False)
     result = RUNNER.invoke(app, ["replay", str(run[1])])
     assert result.exit_code == 1
     assert f"processor {there['processor']} (here generic)" in result.stdout
