@@ -36,7 +36,9 @@ class Outcome(Enum):
 
 def packed(value: object) -> bytes:
     """What was made, as bytes."""
-    return pickle.dumps(value, protocol=5)
+    stream = io.BytesIO()
+    _Plain(stream, protocol=5).dump(value)
+    return stream.getvalue()
 
 
 def unpacked(data: bytes) -> Any:
@@ -47,6 +49,12 @@ def unpacked(data: bytes) -> Any:
         raise
     except Exception as error:
         raise pickle.UnpicklingError(f"no answer: {error}") from None
+
+
+class _Plain(pickle.Pickler):
+    def reducer_override(self, value: object) -> Any:
+        """Members of enumerations by their value: some versions of Python write a call of `getattr` for them."""
+        return (type(value), (value.value,)) if isinstance(value, Enum) else NotImplemented
 
 
 class _OwnRecords(pickle.Unpickler):
