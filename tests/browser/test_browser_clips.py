@@ -88,7 +88,7 @@ def test_a_motion_dropped_on_the_page_plays(open_page: Any, tmp_path: Path) -> N
     live_page.page.set_input_files("#file", str(path))
     playing = live_page.wait("s.settings.clip !== '' && s.simTime > 0.3")
     assert live_page.page.input_value("#clip") == playing["settings"]["clip"]
-    assert "BVH, Y up, cm" in live_page.page.inner_text("#clip-facts")
+    assert "BVH, Y up, unit cm" in live_page.page.inner_text("#clip-facts")
     live_page.page.check("#clip-planned")
     live_page.wait("s.settings.clipAsPlanned")
     live_page.page.select_option("#clip", "")
