@@ -8,7 +8,7 @@ from elbowroom.body.kinematics import body_model
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import FOOT, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
-from elbowroom.control.arms_beside_legs import ArmsBesideLegs
+from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath

@@ -34,7 +34,7 @@ def test_a_whiff_of_velocity_hides_no_stop(humanoid: Humanoid) -> None:
 
 def test_an_idle_avatar_with_a_whiff_of_velocity_stops_planning(humanoid: Humanoid) -> None:
     controller = Controller(humanoid, Scene.load("empty"))
-    controller._free.root[3:6] = 1e-19
+    controller._shown.root[3:6] = 1e-19
     plans = [frame.plan.number for frame in (controller.step(Command(), DT) for _ in range(60)) if frame.plan]
     assert plans[-1] <= 2
 

@@ -6,7 +6,7 @@ from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RISES, RootState
-from elbowroom.control.turned_legs import SHARES, turned_legs
+from elbowroom.control.feet.turned_legs import SHARES, turned_legs
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Poser

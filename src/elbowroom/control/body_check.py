@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOWERING
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.control.above_soles import AboveSoles
+from elbowroom.control.feet.above_soles import AboveSoles
+from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.control.neighbour import Neighbour
-from elbowroom.control.turned_legs import turned_legs
 from elbowroom.planning.halving import begun, due, settle
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -71,6 +72,11 @@ class BodyCheck:
         self._empty = not len(scene.obstacles)
         self._poses: deque[_Pose] = deque(maxlen=_REMEMBERED)
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
+
+    @property
+    def footing(self) -> Footing:
+        """How feet stand on the ground here."""
+        return self._soles.footing
 
     @property
     def alone(self) -> bool:

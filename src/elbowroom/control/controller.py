@@ -1,7 +1,7 @@
 """The control loop of the paper's Figure 4: plan, play, reset."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,13 +11,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
-from elbowroom.control.body_check import BodyCheck, Frames, configuration
-from elbowroom.control.canned import standing_posture
+from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.desk import ImmediateDesk
-from elbowroom.control.ducking import ducked
 from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
-from elbowroom.control.holding import Holding
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.control.lookahead import STOCK_LOOKAHEAD, Lookahead
@@ -27,10 +24,9 @@ from elbowroom.control.passing import expected, way_made
 from elbowroom.control.planning_scene import PlanningScene
 from elbowroom.control.prediction import neighbour, slimmer
 from elbowroom.control.pushing import Pushing
-from elbowroom.control.raised_feet import raised_feet
 from elbowroom.control.rehearsal import Held
 from elbowroom.control.settings import ControlSettings
-from elbowroom.control.stepping import Ahead, Around, Stepping
+from elbowroom.control.showing import Showing
 from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
@@ -40,7 +36,7 @@ from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Place, Spot, Way
 from elbowroom.planning.root.plan import RootPlanKind
-from elbowroom.planning.stillness import UNMOVED, is_still
+from elbowroom.planning.stillness import is_still
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene, on_ground
 
@@ -50,10 +46,8 @@ FORWARD = Command(forward=1.0)
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
-_SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
-_BREATHES = 1 / 31  # seconds: who rests need not move in every frame
 
 
 class Controller:
@@ -91,7 +85,6 @@ class Controller:
         self.motions = motions  # how it walks and evades
         self._errands = Errands(ahead.desk or ImmediateDesk())
         self._fitted = fitted(motions, humanoid)
-        self._stepping = Stepping(humanoid, self._fitted)
         self._around = PlanningScene(humanoid, scene, self.settings, self._fitted)
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
@@ -110,6 +103,7 @@ class Controller:
         """Check and plan among what stands now: all of the scene, or all but what is loose."""
         others = self.others
         self._around = PlanningScene(self.humanoid, standing, self.settings, self._fitted)
+        self._showing.go_among(self._around)
         self.others = others
 
     @property
@@ -173,8 +167,6 @@ class Controller:
         self._pushing = Pushing(self.scene)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._errands.begin()
-        self._holding = Holding()
-        self._assist = self.settings.assist
         self._plan_report: PlanReport | None = None
         self._command = Command()
         self._stands_by = True  # whether the user wants nothing
@@ -182,18 +174,19 @@ class Controller:
         self._flow = self._next = Phase.PLAN
         self._blocked = self._resting = self._halting = False
         self.late_plans = 0  # that could not be shown any more when they came
-        self._stand_at_start()
+        self._showing = self._standing_at_start()
 
-    def _stand_at_start(self) -> None:
+    def _standing_at_start(self) -> Showing:
         root = on_ground(self.scene, self.start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
-        upper, stood = standing_posture(root), self._check.standing(root)
-        clearance = self._check.clearance(stood, upper, 0.0)
-        if clearance < 0.0:
+        showing = Showing(self._around, root, assist=self.settings.assist)
+        if showing.clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")
-        stood = self._stepping.standing(root) if self.scene.ground.plain else stood
-        self._shown = self._free = Playback(stood, upper, np.zeros_like(upper))
-        self._show(self._free, clearance)
+        return showing
+
+    @property
+    def _shown(self) -> Playback:
+        return self._showing.pose
 
     @property
     def root(self) -> RootState:
@@ -213,7 +206,7 @@ class Controller:
         """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
         onward = self._command.forward > 0.0
         model, walker = self._check.model, self._walker()
-        return neighbour(self.humanoid, model, walker, self._shown, self._queue, self._next_pose, onward=onward)
+        return neighbour(self.humanoid, model, walker, self._shown, self._queue, self._showing.follow, onward=onward)
 
     def _walker(self, command: Command | None = None) -> Walker:
         """Where this avatar is, and where to it is asked to go, with what was planned for last or with a command."""
@@ -237,17 +230,16 @@ class Controller:
     @property
     def assist(self) -> bool:
         """Whether upper-body motion is planned; off, the canned walk is shown, touching what it touches."""
-        return self._assist
+        return self._showing.assist
 
     @assist.setter
     def assist(self, wanted: bool) -> None:
-        if wanted == self._assist:
+        if wanted == self.assist:
             return
-        self._assist = wanted
+        self._showing.assist = wanted
         self._next, self._resting = Phase.RESET, False
-        if wanted and self._clearance < 0.0:
+        if wanted and self._showing.leave_touch():
             self._clear()
-            self._show(self._free, self._clearance_of(self._free))
 
     def step(self, command: Command, dt: float) -> Frame:
         """Go on by `dt` seconds under `command` and say what to show.
@@ -276,7 +268,7 @@ class Controller:
     def _aside(self, command: Command) -> Command:
         """What to do under a command: a step aside, where nothing is wanted and others want to pass."""
         self._stands_by = command.idle
-        if not command.idle or not self.others or not self._assist:
+        if not command.idle or not self.others or not self.assist:
             return command
         shown, free_map = self._shown, self._around.scene.free_map
         body = self._check.body(shown.root, shown.upper)
@@ -331,10 +323,10 @@ class Controller:
             hurry,
         )  # fmt: skip
         held = None
-        if self._holding.active and self._assist:
-            held = Held(start.root, start.upper, self._holding.stance, self._clearance)
+        if self._showing.holding.active and self.assist:
+            held = Held(start.root, start.upper, self._showing.holding.stance, self._showing.clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        self._errands.ask(Question(query, self._assist, held, reserve), self._around.wayfinder.answer, self._queue)
+        self._errands.ask(Question(query, self.assist, held, reserve), self._around.wayfinder.answer, self._queue)
         self._take_plan(command)
 
     def _others_beside(self, start: Playback, time: float, command: Command) -> Moving:
@@ -350,7 +342,7 @@ class Controller:
     def _planning_start(self, at_once: bool, hurry: bool) -> tuple[float, Playback]:
         """When and from where to plan; where nothing is left to play, it is what is shown now."""
         if self._queue.empty:
-            return self._queue.time, self._holding.start(self._shown)
+            return self._queue.time, self._showing.holding.start(self._shown)
         time = self._errands.start(self._queue, at_once=at_once, hurry=hurry)
         return time, self._queue.at(time)
 
@@ -359,7 +351,7 @@ class Controller:
         heard = self._errands.hear(self._queue)
         if heard is None:
             return
-        if heard.question.assist is not self._assist or steering.overturned(heard.question.query.command, command):
+        if heard.question.assist is not self.assist or steering.overturned(heard.question.query.command, command):
             self._next = Phase.RESET
         elif heard.late:
             self.late_plans += 1
@@ -381,17 +373,7 @@ class Controller:
             path = replace(answer.path, start_time=start)
             self._queue.splice(path, answer.uppers, question.query.velocity, answer.velocities)
             still = command.idle and not self._check.restless
-            self._resting = still and self._stands_still(path.states, answer.uppers)
-
-    def _stands_still(self, states: Floats, uppers: Floats) -> bool:
-        """Whether a motion changes nothing of what is shown: that stands, and so does the motion, in the same pose."""
-        shown, stance = self._shown, self._holding.stance
-        feet = self._stepping
-        if self.scene.ground.plain and not (feet.stay(self._before.root, shown.root) or feet.rests(shown.root)):
-            return False
-        if not all(map(is_still, (states[:, 3:6], shown.root[3:6], stance, shown.upper_velocity))):
-            return False
-        return bool(np.abs(uppers - shown.upper).max() < UNMOVED)
+            self._resting = still and self._showing.changes_nothing(path.states, answer.uppers)
 
     # --- flow B ------------------------------------------------------------------------------------------------------
 
@@ -400,116 +382,25 @@ class Controller:
         ended = self._queue.empty and not self._errands.continues
         rate = self._rate(dt)
         self._queue.advance(dt, rate)
+        now = self._queue.time
         if self._resting:
-            self._breathe(dt)
+            self._showing.rest(now, dt)
             return
-        if ended:
-            self._hold(dt)
+        if ended or not self._showing.play(self._queue.sample(), self._queue.ahead(), now, dt):
+            self._clear()
+            self._next = Phase.RESET
+            self._showing.hold(now, dt)
             return
-        played = self._holding.over(self._queue.sample(), dt)
-        for posed, stance in self._under(played, dt):
-            clearance = self._clearance_of(posed)
-            if not self._assist or self._is_free(posed, clearance):
-                self._holding.end(stance)
-                self._blocked = False
-                self._show(posed, clearance)
-                break
-        else:
-            self._hold(dt)
+        self._blocked = False
         if rate < _STANDING_RATE and self._halting:
             self._clear()
         if self._queue.empty:
             self._next = Phase.RESET
 
-    def _breathe(self, dt: float) -> None:
-        """Who rests lives on where that touches nothing: breathes, and shifts its weight."""
-        since = self._queue.time - self._shown_at
-        if self.scene.ground.plain and self._assist and dt > 0.0 and since >= _BREATHES:
-            posed = self._stepping.breathing(self._shown, since, self._room)
-            clearance = self._clearance_of(posed)
-            if self._is_free(posed, clearance):
-                self._show(posed, clearance)
-
-    def _under(self, played: list[tuple[Playback, Floats]], dt: float) -> Iterator[tuple[Playback, Floats]]:
-        """How a motion can be shown, with what it stands on: on plain ground with feet that step, else raised to it."""
-        if self.scene.ground.plain:
-            ahead = Ahead(self._queue.ahead(), self._room)
-            return self._stepping.under(played, self._shown, ahead, dt, self._look)
-        return ((each, stance) for posed, stance in played for each in self._raised(self._shown, posed, dt))
-
-    def _next_pose(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
-        """How a pose will be shown `dt` seconds after what is `shown`, if that is free."""
-        if self.scene.ground.plain:
-            return self._stepping.next(shown, planned, dt, Ahead(ahead, self._room), self._look)
-        return next(self._raised(shown, planned, dt))
-
-    def _raised(self, shown: Playback, posed: Playback, dt: float) -> Iterator[Playback]:
-        """How a pose can be shown `dt` seconds after what is `shown`, on feet that are raised to the ground."""
-        stood = self._check.standing(posed.root)
-        return (posed._replace(root=root) for root in raised_feet(shown.root, stood, dt))
-
-    def _settling(self, dt: float) -> Iterator[Playback]:
-        """How the pose that is shown can be held, with what it stands on: best first; at last lower, to be able to."""
-        parts = [part * dt for part in (_SETTLING if self._assist else _SETTLING[:1])]
-        held = [self._holding.settle(self._shown, part) for part in parts]
-        for pose in held:
-            yield from self._stood(pose, dt)
-        stood = RootState.of(self._shown.root)._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
-        for pose, part in zip(held, parts, strict=True):
-            lower = ducked(pose, self._check.standing(stood), part, self._clearance_now)
-            if lower is not None:
-                yield from self._stood(lower, dt)
-
-    def _stood(self, held: Playback, dt: float) -> Iterator[Playback]:
-        """A pose that is held, with what it stands on: best first."""
-        if self.scene.ground.plain:
-            yield from self._stepping.settling(self._shown, held, dt, self._room, self._look)
-        else:
-            yield from self._raised(self._shown, held, dt)
-
-    @property
-    def _room(self) -> float:
-        """Metres about the body that is shown; without assistance nothing is looked at, and hips are as planned."""
-        return max(self._clearance, 0.0) if self._assist else -1.0
-
-    def _look(self, root: Floats, upper: Floats) -> Around:
-        """What stands and moves about a body."""
-        return Around(self._check.room_of_legs(root, upper, self._queue.time), self._check.axes(root, upper))
-
     def _rate(self, dt: float) -> float:
         """How fast to play: slower where the motion would end before a plan has come; its poses stay the same."""
         left = self._queue.left if self._queue.ends_moving else math.inf
         return self._errands.foresight.next_rate(left, dt, halting=self._halting)
-
-    def _is_free(self, posed: Playback, clearance: float) -> bool:
-        """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
-        if self._check.restless and self._clearance < 0.0 and clearance >= self._clearance:
-            return True  # away from what has come upon it
-        if clearance < 0.0:
-            return False
-        roots, uppers = (self._shown.root, posed.root), (self._shown.upper, posed.upper)
-        frames = Frames(roots, uppers, (self._shown_at, self._queue.time))
-        return self._check.free_between(frames)
-
-    def _clearance_of(self, posed: Playback) -> float:
-        """Of a pose, now."""
-        return self._clearance_now(posed.root, posed.upper)
-
-    def _clearance_now(self, root: Floats, upper: Floats) -> float:
-        return self._check.shown_clearance(root, upper, self._queue.time)
-
-    def _hold(self, dt: float) -> None:
-        """Stay in the last good pose; the legs come to a stand where they can."""
-        self._clear()
-        self._next = Phase.RESET
-        for still in self._settling(dt):
-            clearance = self._clearance_of(still)
-            if not self._assist or self._is_free(still, clearance):
-                break
-        else:
-            still = still._replace(root=self._shown.root)
-            clearance = self._clearance_of(still) if self._check.restless else self._clearance
-        self._show(still, clearance)
 
     # --- flow C ------------------------------------------------------------------------------------------------------
 
@@ -526,12 +417,6 @@ class Controller:
 
     # --- what is shown -----------------------------------------------------------------------------------------------
 
-    def _show(self, playback: Playback, clearance: float) -> None:
-        self._before = self._shown
-        self._shown, self._clearance, self._shown_at = playback, clearance, self._queue.time
-        if clearance >= 0.0:
-            self._free = playback
-
     def _frame(self, command: Command) -> Frame:
         key_frames = self._queue.unplayed()
         return Frame(
@@ -539,9 +424,9 @@ class Controller:
             q=configuration(self._shown.root, self._shown.upper),
             root=self._shown.root,
             phase=self._flow,
-            clearance=self._clearance,
+            clearance=self._showing.clearance,
             stuck=not command.idle and (self._blocked or self._walled_in()),
-            touching=self._clearance < 0.0,
+            touching=self._showing.clearance < 0.0,
             fill=min(len(key_frames.times), self.settings.queue_size),
             key_frames=key_frames,
             goal=self._goal(),

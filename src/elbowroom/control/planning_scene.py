@@ -1,10 +1,13 @@
-"""What stands about one avatar, and all that checks its poses, plans its motion and finds its ways there."""
+"""What stands about one avatar, and all that stands its feet, checks its poses, plans its motion and finds its ways."""
 
 from functools import cached_property
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.feet.feet import Feet
+from elbowroom.control.feet.raised import RaisedFeet
+from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.planners import Planners
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.wayfinder import Wayfinder
@@ -19,6 +22,8 @@ class PlanningScene:
         """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
         self._humanoid, self.scene = humanoid, scene
         self.check = BodyCheck(humanoid, scene)
+        footing = self.check.footing
+        self.feet: Feet = Stepping(humanoid, motions) if footing.plain else RaisedFeet(footing)
         self.planners = Planners(settings.planner, humanoid, scene, motions)
         self.wayfinder = Wayfinder(settings, self.check, motions, self.planners)
 

@@ -1,0 +1,118 @@
+"""The avatar's feet and hips under what is played.
+
+Feet step as the root goes, and wait or glide where no step can be shown. Hips, chest and head live (`body/living.py`)
+as far as there is room, and are where they were planned where there is none.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOWERING, DofGroup, columns_of
+from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled, standing
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model, lower_body
+from elbowroom.body.living import lively, living
+from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
+from elbowroom.clips.motion_set import MotionSet
+from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
+from elbowroom.control.feet.feet import Moment
+from elbowroom.control.key_frame_queue import Playback
+from elbowroom.planning.shared import Shared
+
+Floats = NDArray[np.float64]
+
+_ROOM = 0.10  # metres about the legs in which feet step as they like
+_STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
+_TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
+_NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
+
+_ARMS: Shared[ArmsBesideLegs] = Shared()
+
+
+class Stepping:
+    """How one avatar stands and steps; frozen, the state of its feet is in the root states that are shown."""
+
+    def __init__(self, humanoid: Humanoid, motions: MotionSet) -> None:
+        """`motions` are those that it walks with."""
+        model = body_model(humanoid)
+        self._gait = model.gait
+        self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
+
+    def standing(self, root: Floats) -> Floats:
+        """A root state (7,) with feet beside each other, carried as planned, (SHOWN,)."""
+        return np.concatenate([beside(self._gait, root), np.zeros(CARRIAGE)])
+
+    def are_still(self, before: Floats, shown: Floats) -> bool:
+        """Whether feet that are shown (SHOWN,), after others, make no step while the root rests.
+
+        They are where they were and stand, so that no step can be shown or none is needed; or none is left to make.
+        """
+        same = np.array_equal(before[ROOT_STATE:WITH_FEET], shown[ROOT_STATE:WITH_FEET])
+        return bool(standing(shown).all() and same) or settled(self._gait, shown)
+
+    def resting(self, moment: Moment) -> Playback:
+        """What who rests shows next: it breathes, and shifts its weight."""
+        return self._alive(moment._replace(ahead=UNKNOWN), moment.shown.root[:WITH_FEET], moment.shown)
+
+    def settling(self, moment: Moment, held: Playback) -> list[Playback]:
+        """How a pose that is held could be shown next, as legs come to a stand: best first.
+
+        Arms make way for legs that come to a stand; if that touches they stay.
+        """
+        moment = moment._replace(ahead=UNKNOWN)
+        steps, glides = (follow(self._gait, moment.shown.root, held.root, moment.dt) for follow in (onward, gliding))
+        roots = [steps, glides] if moment.look(steps, held.upper).room >= _ROOM else [glides, steps]
+        made = [self._alive(moment, root, held) for root in roots]
+        if any(lively(pose.root) for pose in made):
+            made += [self._alive(moment._replace(room=_NOT_AT_ALL), root, held) for root in roots]
+        return [pose._replace(upper=self._arms.apart(pose.root, pose.upper)) for pose in made] + made
+
+    def next(self, moment: Moment, posed: Playback) -> Playback:
+        """How a pose is shown next, if that is free: see `under`."""
+        after = self._steps(moment, posed)
+        around = moment.look(after.root, posed.upper)
+        if around.room < _ROOM:
+            after = self._glides(moment, posed)
+            around = moment.look(after.root, posed.upper)
+        return after._replace(upper=self._arms.apart(after.root, posed.upper, around.axes))
+
+    def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
+        """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
+
+        Where legs have room feet step to where the root is to come, else they glide to where they were planned, and
+        arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go as planned; or
+        feet step, or wait.
+        """
+        still = moment._replace(room=_NOT_AT_ALL)
+        for posed, stance in played:
+            alive = self.next(moment, posed)
+            yield alive, stance
+            if lively(moment.shown.root) or lively(alive.root):
+                yield self.next(still, posed), stance
+        for follow in (self._glides, self._steps):
+            for posed, stance in played:
+                yield follow(still, posed), stance
+        for posed, stance in played:
+            root = onward(self._gait, moment.shown.root, posed.root, 0.0)
+            if not self._is_strained(root, posed.upper):
+                yield self._alive(still, root, posed), stance
+
+    def _steps(self, moment: Moment, posed: Playback) -> Playback:
+        return self._alive(moment, onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead), posed)
+
+    def _glides(self, moment: Moment, posed: Playback) -> Playback:
+        return self._alive(moment, gliding(self._gait, moment.shown.root, posed.root, moment.dt), posed)
+
+    def _alive(self, moment: Moment, root: Floats, posed: Playback) -> Playback:
+        """A pose on a root with feet (WITH_FEET,), with hips, chest and head that live."""
+        faces = float(posed.upper[_TWIST] + posed.upper[_HEAD_TURN])
+        shown, dt = moment.shown.root, moment.dt
+        return posed._replace(root=living(self._gait, shown, root, dt, moment.room, moment.ahead, faces))
+
+    def _is_strained(self, root: Floats, upper: Floats) -> bool:
+        """Whether a foot that has waited lies so far behind that the hips would come far down to it."""
+        lowering, state = upper[LOWERING - DofGroup.ROOT.size :][:1].copy(), root[None, :ROOT_STATE].copy()
+        sinks = [lower_body(self._gait, rows, lowering)[1][0, 0] for rows in (root[None], state)]
+        return bool(sinks[0] - sinks[1] > _STRAIN * self._gait.half_leg)
