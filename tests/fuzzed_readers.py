@@ -10,10 +10,14 @@ import tempfile
 import zlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fuzzing import Container, Reader
+
+if TYPE_CHECKING:
+    from elbowroom.formats.takes import Take
 
 
 def _chunks(data: bytes) -> list[bytes]:
@@ -122,6 +126,78 @@ def animation_reader() -> Reader:
             planning_motion(library.clip(name).motion)
 
     return Reader(read, (animated_glb(), animated_glb(vrma=True), animated_glb(mode="CUBICSPLINE")), words, GLB)
+
+
+def _take() -> "Take":
+    """A small motion of all bones, by their names."""
+    from bvh_builder import BONES, BvhRecipe, random_motion, write_bvh
+    from elbowroom.formats.bvh import parse_bvh
+
+    motion = random_motion(np.random.default_rng(0), 4)
+    return parse_bvh(write_bvh(motion, BvhRecipe(unit=1.0, names=dict(zip(BONES, BONES, strict=True)))), "a.bvh").take()
+
+
+def _clips(name: str) -> Callable[[bytes], object]:
+    """Reads a motion file, down to the motion in planning's terms."""
+    from elbowroom.clips.files import parse_motion
+    from elbowroom.clips.planning_motion import planning_motion
+
+    def read(data: bytes) -> None:
+        library = parse_motion(data, name)
+        for clip in library.clips:
+            planning_motion(library.clip(clip).motion)
+
+    return read
+
+
+def usd_reader() -> Reader:
+    """UsdSkel in USD as text."""
+    from elbowroom.formats.usd.writing import write_usda
+
+    placed = b"""(-1, 0.5, 0)
+        float xformOp:rotateY.timeSamples = { 0: 3, 2: 90 }
+        uniform token[] xformOpOrder = ["xformOp:translate", "!invert!xformOp:rotateY"]
+"""
+    good = write_usda(_take(), {}, 1.0)
+    moved = good.replace(
+        b'def Skeleton "skeleton"', b"double3 xformOp:translate = " + placed + b'def Skeleton "skeleton"'
+    )
+    words: tuple[bytes, ...] = (
+        b'def Xform "a" {',
+        b"}",
+        b"(",
+        b"[[[[",
+        b'"""',
+        b"@@@",
+        b"<",
+        b"/*",
+        b"1e999",
+        b"nan",
+        b".timeSamples = { 0: [",
+    )
+    words += (b'["xformOp:transform"]', b"rel skel:animationSource = </a>", b"metersPerUnit = 0", b'upAxis = "X"')
+    return Reader(_clips("fuzz.usda"), (good, moved), words)
+
+
+def hanim_motion_reader() -> Reader:
+    """The interpolators of an H-Anim figure."""
+    from hanim_builder import HanimRecipe
+    from hanim_mover import build_moving
+
+    turns = np.array([[0.0, 1.0, 0.0, 0.5 * frame] for frame in range(5)])
+    moves = {("", "translation"): turns[:, 1:], ("hips", "rotation"): turns, ("leftUpperArm", "rotation"): turns}
+    words: tuple[bytes, ...] = (
+        b'keyValue="0 1 0 1e9"',
+        b'key="1 0"',
+        b'cycleInterval="0"',
+        b'<ROUTE fromNode="Clock" fromField="fraction_changed" toNode="Clock" toField="set_fraction"/>',
+        b"set_translation",
+        b'DEF="Figure"',
+        b'scale="0 0 0"',
+        b'rotation="0 0 0 nan"',
+    )
+    seeds = tuple(build_moving(HanimRecipe(encoding, points=4), moves) for encoding in ("xml", "classic"))
+    return Reader(_clips("fuzz.x3d"), seeds, words)
 
 
 def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
@@ -391,6 +467,8 @@ READERS: dict[str, Callable[[], Reader]] = {
     "bones": bones_reader,
     "bvh": bvh_reader,
     "animation": animation_reader,
+    "usd": usd_reader,
+    "x3d-motion": hanim_motion_reader,
     "x3d-xml": xml_reader,
     "x3d-classic": classic_reader,
     "vrml97": vrml_reader,

@@ -46,7 +46,7 @@ def x3d_places(scene: ET.Element, frames: int) -> dict[str, Floats]:
     def field(node: ET.Element, name: str, width: int) -> Floats:
         moved = keys.get(f"{node.get('DEF')}_{name}")
         values = numbers(moved or node.get(name) or "0 0 0 0"[: 2 * width - 1], width)
-        return values if moved else np.tile(values, (frames, 1))
+        return values if len(values) == frames else np.tile(values[:1], (frames, 1))  # still ones have one or two
 
     def visit(node: ET.Element, place: Floats, turn: Floats) -> None:
         center = numbers(node.get("center") or "0 0 0", 3)[0]

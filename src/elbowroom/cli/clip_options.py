@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 Swing = Annotated[
     str | None,
-    typer.Option("--swing", help="Walk as in this clip: FILE or FILE#CLIP (BVH, GLB, VRMA).", metavar="CLIP"),
+    typer.Option("--swing", help="Walk as in this clip: FILE or FILE#CLIP (BVH, GLB, VRMA, X3D, USD).", metavar="CLIP"),
 ]
 Dodge = Annotated[
     list[str] | None,

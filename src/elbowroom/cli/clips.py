@@ -23,7 +23,7 @@ EXAMPLES = (
 def clips(
     *,
     files: Annotated[
-        list[str], typer.Argument(help="BVH, GLB or VRMA files; FILE#CLIP for one clip.", metavar="FILE...")
+        list[str], typer.Argument(help="Files in BVH, GLB, VRMA, X3D, USD; FILE#CLIP for one clip.", metavar="FILE...")
     ],
     play: Annotated[
         bool | None, typer.Option("--play/--list", help="Play them on the page; the default on a terminal.")

@@ -19,8 +19,8 @@ from elbowroom.geometry import quaternion
 _STANDS = (quaternion.IDENTITY, quaternion.about_axis(0, -0.5 * np.pi), quaternion.about_axis(2, 0.5 * np.pi))
 
 
-def bvh_bones(tree: NodeTree, place: str, told: Field | None = None) -> dict[str, int]:
-    """The bones of a BVH skeleton, parents first; raises `InputError` where one that is needed is missing.
+def tree_bones(tree: NodeTree, place: str, told: Field | None = None) -> dict[str, int]:
+    """The bones of a BVH or USD skeleton, parents first; raises `InputError` where one that is needed is missing.
 
     `told` is what the user says of them, as for avatars (`FILE.bones.json`).
     """
@@ -32,11 +32,12 @@ def bvh_bones(tree: NodeTree, place: str, told: Field | None = None) -> dict[str
 
 
 def gltf_bones(
-    gltf: Gltf, tree: NodeTree, named: dict[str, int] | None, told: Field | None = None
+    gltf: Gltf, tree: NodeTree, named: dict[str, int] | None, told: Field | None = None, *, strict: bool = True
 ) -> tuple[NodeTree, dict[str, int]]:
     """The bones of a glTF skeleton, `named` by the file itself or found, and the tree with hands and feet it lacked.
 
-    `told` is what the user says of them, as for avatars.
+    `told` is what the user says of them, as for avatars. What the file names is taken `strict`, or hands and feet may
+    be missing.
 
     Raises `InputError` where one that is needed is missing.
     """
@@ -44,8 +45,11 @@ def gltf_bones(
     chosen = {} if told is None else override_nodes(told, nodes)
     if named is not None:
         bones = {bone: node for bone, node in (named | chosen).items() if node is not None}
-        return tree, checked_bones(bones, nodes, gltf.name, strict=True).nodes
-    checked = checked_bones(map_bones(nodes, chosen).nodes, nodes, gltf.name, strict=False)
+    else:
+        bones = map_bones(nodes, chosen).nodes
+    checked = checked_bones(bones, nodes, gltf.name, strict=named is not None and strict)
+    if named is not None and strict:
+        return tree, checked.nodes
     mended, bones, _ = repaired(gltf, tree, _without_detached(checked))
     return (tree if mended is gltf else read_nodes(mended)), bones
 

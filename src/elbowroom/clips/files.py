@@ -1,12 +1,13 @@
-"""Motion files: BVH, the animations of a glTF file, and VRM animations, told apart by their content."""
+"""Motion files, told apart by their content: BVH, the animations of a glTF file, VRM animations, X3D and USD."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.body.bone_mapping.override import override_beside, read_override
+from elbowroom.body.hanim_names import hanim_bones
 from elbowroom.clips.body_motion import body_motion
-from elbowroom.clips.bones import bvh_bones, gltf_bones
+from elbowroom.clips.bones import gltf_bones, tree_bones
 from elbowroom.clips.clip import Clip
 from elbowroom.clips.figure import figure_of
 from elbowroom.clips.told import Told
@@ -15,9 +16,15 @@ from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.bvh import MAX_BYTES, is_bvh, parse_bvh
 from elbowroom.formats.fields import Field, beginning_of
 from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.hanim.figure import HanimFigure, parse_figure
+from elbowroom.formats.hanim.motion import hanim_animations, hanim_take
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.takes import Take
+from elbowroom.formats.usd.prims import Prim, is_usd, parse_usda
+from elbowroom.formats.usd.skel import usd_skeletons, usd_take
 from elbowroom.formats.vrm import read_vrm, read_vrm_animation
+from elbowroom.formats.x3d.files import unpacked
+from elbowroom.formats.x3d.recognised import is_x3d
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +85,18 @@ def parse_motion(
         raise InputError(f"{name} is empty")
     if _is_gltf(data):
         return _from_gltf(parse_gltf(data, name, folder), told, bones)
+    if is_x3d(data):
+        return _from_x3d(parse_figure(data, name, folder), told, bones)
+    if is_usd(data):
+        return _from_usd(parse_usda(data, name), told, bones)
     if not is_bvh(data):
-        raise InputError(f"{name}{beginning_of(data)}: it is neither BVH (HIERARCHY) nor glTF, GLB or VRMA")
+        raise InputError(f"{name}{beginning_of(data)}: it is neither BVH (HIERARCHY) nor glTF, GLB, VRMA, X3D or USD")
     return _from_bvh(data, name, told, bones)
 
 
 def is_motion_only(data: bytes, name: str) -> bool:
-    """Whether a file shows no avatar: BVH, a VRM animation, or a glTF without meshes that is animated."""
-    if is_bvh(data):
+    """Whether a file shows no avatar: BVH, USD, a VRM animation, or a glTF without meshes that is animated."""
+    if is_bvh(data) or is_usd(data):
         return True
     if not _is_gltf(data):
         return False
@@ -95,7 +106,9 @@ def is_motion_only(data: bytes, name: str) -> bool:
 
 
 def has_animations(data: bytes, name: str) -> bool:
-    """Whether a file is a glTF with animations."""
+    """Whether a file is a glTF or X3D file with animations."""
+    if is_x3d(data):
+        return any(b"Interpolator" in part for part in (data, unpacked(data, name)))
     return _is_gltf(data) and bool(parse_gltf(data, name).root.at("animations").items())
 
 
@@ -109,7 +122,7 @@ def _from_bvh(data: bytes, name: str, told: Told, named: Field | None) -> Motion
         raise InputError(f"{name} holds no frames: it is a skeleton without motion")
 
     def clip() -> Clip:
-        figure = figure_of(take, bvh_bones(take.tree, name, named), told, name)
+        figure = figure_of(take, tree_bones(take.tree, name, named), told, name)
         return Clip(take.name, name, "BVH", len(take), figure, body_motion(take, figure, floor_known=False))
 
     return MotionFile(name, "BVH", {take.name: clip})
@@ -134,6 +147,41 @@ def _from_gltf(gltf: Gltf, told: Told, chosen: Field | None) -> MotionFile:
 
     names = _distinct([animation.name for animation in animations])
     return MotionFile(gltf.name, kind, {name: _bound(clip, i, name) for i, name in enumerate(names)})
+
+
+def _from_x3d(figure: HanimFigure, told: Told, chosen: Field | None) -> MotionFile:
+    animations = hanim_animations(figure)
+    if not animations:
+        raise InputError(f"{figure.file} holds no interpolators, driven by a TimeSensor, of an H-Anim figure")
+    kind = "X3D" if ".x3d" in figure.file.lower() else "VRML97"
+
+    def clip(index: int, name: str) -> Clip:
+        place = f"{figure.file}#{name}"
+        gltf = figure.gltf()
+        nodes = read_nodes(gltf)
+        named = hanim_bones(figure.joints, nodes)
+        tree, bones = gltf_bones(gltf, nodes, named.nodes if named.is_humanoid else None, chosen, strict=False)
+        take = _at_rate(hanim_take(animations[index], figure, tree, place), told)
+        body = figure_of(take, bones, told, place, metric=True)
+        return Clip(name, figure.file, kind, len(take), body, body_motion(take, body, floor_known=True))
+
+    names = _distinct([animation.name for animation in animations])
+    return MotionFile(figure.file, kind, {name: _bound(clip, i, name) for i, name in enumerate(names)})
+
+
+def _from_usd(stage: Prim, told: Told, chosen: Field | None) -> MotionFile:
+    skeletons = usd_skeletons(stage)
+    if not skeletons:
+        raise InputError(f"{stage.file} holds no SkelAnimation of a Skeleton")
+
+    def clip(index: int, name: str) -> Clip:
+        place = f"{stage.file}#{name}"
+        take = _at_rate(usd_take(skeletons[index], place), told)
+        body = figure_of(take, tree_bones(take.tree, place, chosen), told, place, metric=True)
+        return Clip(name, stage.file, "USD", len(take), body, body_motion(take, body, floor_known=True))
+
+    names = _distinct([skeleton.name for skeleton in skeletons])
+    return MotionFile(stage.file, "USD", {name: _bound(clip, i, name) for i, name in enumerate(names)})
 
 
 def _bound(clip: Callable[[int, str], Clip], index: int, name: str) -> Callable[[], Clip]:

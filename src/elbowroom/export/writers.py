@@ -16,7 +16,7 @@ from elbowroom.export.layout import Layout, Rest, RootMotion, take_of, tips
 from elbowroom.formats.bvh_writing import write_bvh
 from elbowroom.formats.hanim.writing import write_hanim
 from elbowroom.formats.skeleton_glb import skeleton_glb, vrm_animation
-from elbowroom.formats.usda_writing import write_usda
+from elbowroom.formats.usd.writing import write_usda
 
 
 @dataclass(frozen=True)

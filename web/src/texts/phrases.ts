@@ -34,8 +34,8 @@ export const PHRASES: Readonly<Record<string, string>> = {
   "Avatar": "角色",
   "Open a file …": "開啟檔案…",
   "Avatar or motion file": "角色或動作檔案",
-  "or drop an avatar (.vrm, .glb, .x3d, .wrl), a place (.glb, .wrl, .obj, ...), a motion (.bvh, .vrma, .glb) or a recording (.elbow) anywhere":
-    "或將角色（.vrm、.glb、.x3d、.wrl）、場所（.glb、.wrl、.obj 等）、動作（.bvh、.vrma、.glb）或紀錄（.elbow）拖放到頁面任何位置",
+  "or drop an avatar (.vrm, .glb, .x3d, .wrl), a place (.glb, .wrl, .obj, ...), a motion (.bvh, .vrma, .glb, .usda) or a recording (.elbow) anywhere":
+    "或將角色（.vrm、.glb、.x3d、.wrl）、場所（.glb、.wrl、.obj 等）、動作（.bvh、.vrma、.glb、.usda）或紀錄（.elbow）拖放到頁面任何位置",
   "Elbowroom stock avatar": "Elbowroom 內建角色",
   "Motion clip": "動作片段",
   "none: walk": "無：步行",

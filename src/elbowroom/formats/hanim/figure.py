@@ -54,6 +54,17 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
+class Placed:
+    """A node with a DEF name that places what is in it, as the file has it, and the glTF node that it became."""
+
+    node: int
+    kind: str  # "Transform", "HAnimJoint", ...
+    translation: Floats  # (3,)
+    rotation: Floats  # (4,) xyzw
+    stretch: Floats  # (4,) xyzw, of `Placing`
+
+
+@dataclass(frozen=True, eq=False)
 class HanimFigure:
     """A humanoid, ready to be written as glTF; whoever reads it may still turn `top` or add nodes to the draft."""
 
@@ -66,6 +77,9 @@ class HanimFigure:
     loa: int | None  # level of articulation, where the file says it
     info: dict[str, str]  # of the humanoid and the header: authorName, copyright, license, ...
     notes: tuple[str, ...]
+    scene: X3dScene  # as it was written
+    placed: dict[str, Placed]  # by DEF name
+    centred: bool  # its joints stand in H-Anim's default pose, not as the file turns them
 
     def gltf(self) -> Gltf:
         """What the draft holds now."""
@@ -108,6 +122,7 @@ class _Maker:
         self._displacers: dict[int, tuple[Displacer, ...]] = {}  # by the Coordinate node whose points they move
         self._vertices = self._shapes = 0
         self._default_pose = default_pose
+        self._named: dict[str, Placed] = {}
 
     def figure(self) -> HanimFigure:
         top = self._draft.add_node("figure", scale=np.full(3, self._scene.metre))
@@ -129,6 +144,9 @@ class _Maker:
             loa=loa_of(humanoid),
             info=info_of(self._scene, humanoid),
             notes=tuple(self._notes.lines),
+            scene=self._scene,
+            placed=self._named,
+            centred=self._centred,
         )
 
     def scenery(self) -> Gltf:
@@ -179,6 +197,9 @@ class _Maker:
             rotation if placing.stretch is quaternion.IDENTITY else quaternion.multiply(rotation, placing.stretch),
             placing.scale,
         )
+        if node.name:
+            placed = Placed(made, node.kind, placing.translation, placing.rotation, placing.stretch)
+            self._named.setdefault(node.name, placed)
         if is_joint:
             self._joints.append((Joint(made, node.text("name"), node.name, placing.center), node))
         if placing.stretch is not quaternion.IDENTITY:

@@ -51,7 +51,8 @@ class _Writer:
         figure = f'<HAnimHumanoid DEF="{FIGURE}" name={quoteattr(self._take.name)} version="2.0"{fields}>'
         uses = [f'<HAnimJoint USE="{name}" containerField="joints"/>' for name in self._used]
         seconds = f"{max(len(self._take) - 1, 1) * self._take.frame_time:.9g}"
-        timer = f'<TimeSensor DEF="{TIMER}" cycleInterval="{seconds}" loop="true"/>'
+        said = quoteattr(self._take.name)
+        timer = f'<TimeSensor DEF="{TIMER}" description={said} cycleInterval="{seconds}" loop="true"/>'
         body = [figure, *skeleton, *uses, "</HAnimHumanoid>", timer, *self._moving]
         return "\n".join([_HEAD, *body, "</Scene>", "</X3D>", ""])
 
@@ -83,8 +84,11 @@ class _Writer:
         return f' translation="{_numbers(moved[0])}" rotation="{_numbers(turns[0])}"'
 
     def _interpolate(self, kind: str, used: str, field: str, values: Floats) -> None:
+        """Nothing for what stays at rest; two keys for what stays elsewhere, so that it is told from the rest pose."""
         if np.ptp(values, axis=0).max() <= _STILL:
-            return
+            if np.abs(values[0, -3 if field == "translation" else -1 :]).max() <= _STILL:
+                return
+            values = values[[0, 0]]
         name = f"{used}_{field}"
         keys = _numbers(np.linspace(0.0, 1.0, len(values)))
         self._moving += [

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from elbowroom.errors import InputError
-from elbowroom.formats.x3d.model import MAX_DEPTH, Interface, Is, Node, Nodes, Notes, Scope, Value, X3dScene
+from elbowroom.formats.x3d.model import MAX_DEPTH, Interface, Is, Node, Nodes, Notes, Route, Scope, Value, X3dScene
 from elbowroom.formats.x3d.tokens import Kind, Token, Tokens
 
 _EVENTS = {"eventIn", "eventOut", "inputOnly", "outputOnly"}
@@ -65,7 +65,7 @@ class _Parser:
         self._tokens = Tokens(text, file)
         self._file, self._notes = file, notes
         self._scope = Scope()
-        self._scene = X3dScene(file, [], self._scope.protos)
+        self._scene = X3dScene(file, [], self._scope.protos, named=self._scope.nodes)
         self._open: list[_Open] = [_Statements(self._scene.roots, self._scope, None)]
 
     def parse(self) -> X3dScene:
@@ -225,8 +225,10 @@ class _Parser:
     def _is_declaration(self, token: Token, scope: Scope) -> bool:
         """Whether a PROTO, EXTERNPROTO, ROUTE or the like begins at this token; if so, it is read."""
         if token.text in _LINKS:
-            for _ in range(_LINKS[token.text]):
-                self._tokens.word(f"the rest of the {token.text}")
+            words = [self._tokens.word(f"the rest of the {token.text}") for _ in range(_LINKS[token.text])]
+            if token.text == "ROUTE" and scope is self._scope:
+                (source, _, output), (target, _, into) = words[0].partition("."), words[2].partition(".")
+                self._scene.routes.append(Route(source, output, target, into))
             if token.text != "ROUTE" and self._next_is("AS"):
                 self._tokens.next()
                 self._tokens.word("a name")

@@ -161,6 +161,16 @@ class Notes:
             self.lines.append(line)
 
 
+@dataclass(frozen=True, slots=True)
+class Route:
+    """What one node says is told to another: DEF names and fields."""
+
+    source: str
+    output: str
+    target: str
+    input: str
+
+
 @dataclass(eq=False)
 class X3dScene:
     """A file as it was written: PROTOs not expanded, Inlines not read."""
@@ -171,6 +181,8 @@ class X3dScene:
     metre: float = 1.0  # metres per unit of length (the UNIT statement)
     radian: float = 1.0  # radians per unit of angle
     meta: dict[str, str] = field(default_factory=dict)  # of the header; the first of each name
+    named: dict[str, Node] = field(default_factory=dict)  # by DEF name, outside of PROTOs
+    routes: list[Route] = field(default_factory=list)  # outside of PROTOs
 
 
 @dataclass(eq=False)

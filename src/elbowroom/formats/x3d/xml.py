@@ -19,6 +19,7 @@ from elbowroom.formats.x3d.model import (
     Node,
     Nodes,
     Notes,
+    Route,
     Scope,
     Value,
     X3dScene,
@@ -27,7 +28,7 @@ from elbowroom.formats.x3d.numbers import NotNumbersError, parse_number, parse_s
 
 _MAX_ELEMENTS = 300_000
 _OUTER = {"X3D", "Scene", "head", "Header", "ProtoInterface", "IS"}
-_UNSEEN = {"ROUTE", "IMPORT", "EXPORT", "component"}
+_UNSEEN = {"IMPORT", "EXPORT", "component"}
 _NO_FIELDS = {"DEF", "USE", "containerField", "class", "id", "style"}
 _VALUED = {"initializeOnly", "inputOutput", "field", "exposedField", ""}
 
@@ -52,7 +53,7 @@ class _Builder:
     def __init__(self, file: str, notes: Notes) -> None:
         self._file, self._notes = file, notes
         scope = Scope()
-        self._scene = X3dScene(file, [], scope.protos)
+        self._scene = X3dScene(file, [], scope.protos, named=scope.nodes)
         self._open = [_Place(scope, self._scene.roots)]
         self._elements = 0
         self._parser = expat.ParserCreate()
@@ -122,6 +123,12 @@ class _Builder:
     def _meta(self, place: _Place, _tag: str, attributes: dict[str, str]) -> _Place:
         self._scene.meta.setdefault(attributes.get("name", "")[:100], attributes.get("content", "")[:1000])
         return place
+
+    def _route(self, place: _Place, _tag: str, attributes: dict[str, str]) -> _Place:
+        if place.scope.nodes is self._scene.named:
+            ends = ("fromNode", "fromField", "toNode", "toField")
+            self._scene.routes.append(Route(*(attributes.get(end, "") for end in ends)))
+        return _Place(place.scope, skipped=True)
 
     def _extern(self, place: _Place, _tag: str, attributes: dict[str, str]) -> _Place:
         name = attributes.get("name", "")
@@ -211,5 +218,6 @@ _READERS: dict[str, Callable[[_Builder, _Place, str, dict[str, str]], _Place]] =
     "fieldValue": _Builder._field,
     "connect": _Builder._connect,
     "meta": _Builder._meta,
+    "ROUTE": _Builder._route,
     "unit": _Builder._unit,
 }

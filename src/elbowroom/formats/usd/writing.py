@@ -42,7 +42,7 @@ def write_usda(take: Take, tips: Mapping[str, Floats], unit: float = 1.0, up: st
         f"    uniform matrix4d[] bindTransforms = [{_rows(world)}]",
         f"    uniform matrix4d[] restTransforms = [{_rows(local)}]",
         f"    rel skel:animationSource = </{AVATAR}/{SKELETON}/{ANIMATION}>",
-        f'    def SkelAnimation "{ANIMATION}"', "    {",
+        f'    def SkelAnimation "{ANIMATION}" (', f"        displayName = {_quoted(take.name)}", "    )", "    {",
         f"        uniform token[] joints = [{joints}]",
         f"        half3[] scales = [{', '.join(['(1, 1, 1)'] * len(tree))}]",
         *_samples("float3[] translations", take.translations),
@@ -50,6 +50,10 @@ def write_usda(take: Take, tips: Mapping[str, Floats], unit: float = 1.0, up: st
         "    }", "}", *_figure(take, tips, unit), "}", "",
     ]  # fmt: skip
     return "\n".join(lines).encode()
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def _paths(take: Take) -> list[str]:

@@ -1,0 +1,1 @@
+"""USD in text: what it says as prims, and the skeletons of UsdSkel that are animated in it."""
