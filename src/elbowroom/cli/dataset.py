@@ -61,6 +61,9 @@ def make(
 
     wanted = DatasetSpec.load(spec)
     wanted = wanted if walks is None else replace(wanted, walks=walks)
+    from elbowroom.dataset.drawn_from import check_drawn_from
+
+    check_drawn_from(wanted, spec)
     compile_first(quiet=quiet)
     from elbowroom.dataset.card import check_licences
     from elbowroom.dataset.make import make_dataset
@@ -98,13 +101,17 @@ def check(
     _check_installed()
     if sample < 0:
         raise InputError(f"sample: {sample} is less than 0")
-    from elbowroom.dataset.manifest import Manifest
+    from elbowroom.dataset.manifest import FILE, Manifest
 
     manifest = Manifest.load(folder)
     if manifest is None:
         raise InputError(f"{folder}: holds no dataset (no manifest.json)")
     if show is not None:
         return _show(manifest.spec, show)
+    if sample:
+        from elbowroom.dataset.drawn_from import check_drawn_from
+
+        check_drawn_from(manifest.spec, folder / FILE)
     compile_first(quiet=quiet)
     from elbowroom.dataset.check import check_dataset
 
