@@ -139,3 +139,58 @@ def test_all_of_it_can_be_reached_at_twice_the_size(open_page: Open) -> None:
         box = live.page.locator(name).bounding_box()
         assert box is not None
         assert box["y"] + box["height"] <= 360.5, name
+
+
+def test_in_forced_colours_buttons_have_edges_and_what_has_the_focus_hides_nothing(open_page: Open) -> None:
+    live = open_page("scene=doorway", viewport=(1280, 720), forced_colors="active", color_scheme="dark")
+    page = live.page
+    page.locator("#build-open").click()
+    live.wait("s.build && s.build.things.length > 0")
+    width = page.locator("#build .walk").evaluate("(button) => parseFloat(getComputedStyle(button).borderTopWidth)")
+    assert width >= 1
+    page.locator("#build .board").focus()
+    page.keyboard.press("Tab")
+    thing = "document.activeElement.closest('#build .board :not(svg)')"
+    assert page.evaluate(f"!!{thing} && {thing}.matches(':focus-visible')")
+    assert page.evaluate(f"getComputedStyle({thing}).outlineStyle") == "none"
+
+
+# Which controls of a scrolled panel are shown, wholly in its window, and yet have something else before their middle.
+HIDDEN_BEHIND = """
+(at) => {
+  const panel = document.querySelector(at), { left, top, width, height } = panel.getBoundingClientRect();
+  const x = left + panel.clientLeft, y = top + panel.clientTop;
+  return [...panel.querySelectorAll("button, select, input, label")].filter((control) => {
+    const box = control.getBoundingClientRect();
+    if (!control.checkVisibility() || box.width === 0) return false;
+    const inside = box.top >= y && box.bottom <= Math.min(y + panel.clientHeight, innerHeight);
+    if (!inside || box.left < x) return false;
+    const seen = document.elementFromPoint(box.left + box.width / 4, box.top + box.height / 2);
+    return !panel.contains(seen);
+  }).map(({ id, textContent }) => id || textContent);
+}
+"""
+
+
+def test_on_a_phone_nothing_lies_over_the_menu_however_far_it_is_scrolled(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(390, 844), has_touch=True, is_mobile=True)
+    live.page.tap("#menu-button")
+    live.page.wait_for_selector("#menu:not(.closed)")
+    live.settle()
+    menu = live.page.locator("#menu")
+    for part in (0.0, 0.13, 0.31, 0.5, 0.73, 1.0):
+        menu.evaluate("(menu, part) => menu.scrollTo({ top: part * menu.scrollHeight, behavior: 'instant' })", part)
+        assert live.page.evaluate(HIDDEN_BEHIND, "#menu") == [], part
+
+
+def test_what_the_page_says_stands_before_whatever_fills_it(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(1280, 720), permissions=["clipboard-read", "clipboard-write"])
+    live.page.locator("#build-open").click()
+    live.wait("s.build && s.build.things")
+    live.page.get_by_role("button", name="Link", exact=True).click()
+    live.said("copied")
+    box = live.page.locator("#notices .notice").bounding_box()
+    assert box is not None
+    for part in (0.1, 0.5, 0.9):
+        at = [box["x"] + part * box["width"], box["y"] + 0.5 * box["height"]]
+        assert live.page.evaluate("([x, y]) => !!document.elementFromPoint(x, y)?.closest('.notice')", at), part

@@ -136,10 +136,14 @@ def test_a_scene_travels_in_an_address_and_drafts_stay(open_page: Open) -> None:
     drafts = live.page.get_by_label("Drafts", exact=True)
     drafts.select_option(index=1)
     live.wait(f"s.build.things.length === {len(names) + 1}")
+    walked: list[str] = []
+    live.page.on("request", lambda request: walked.append(request.post_data or "") if "/walks" in request.url else None)
     live.page.goto("about:blank")  # an address that differs behind its # only loads no page
     live.page.goto(f"{server}/?quality=low&scene=empty{address}")
-    state = live.wait(f"s.build && s.build.things.length === {len(names) + 1}")
+    state = live.wait("s.build")
     assert state["build"]["things"][:-1] == names
+    live.wait("s.build && s.build.verdict === 'walking'")
+    assert [names[0] in plan for plan in walked] == [True]  # and no empty scene before it, on which it would wait
 
 
 @pytest.mark.parametrize("size", [(390, 844), pytest.param((844, 390), marks=pytest.mark.long)])

@@ -44,6 +44,8 @@ const ON_TOP = window.matchMedia("(max-width: 700px) and (orientation: portrait)
 
 export class Build implements BuildPanelListener {
   active = false;
+  /** What is on its way into the editor; null once it is there. */
+  private opening: symbol | null = null;
   private readonly editor: Editor;
   private readonly panel: BuildPanel;
   private readonly checker: Checker;
@@ -58,7 +60,7 @@ export class Build implements BuildPanelListener {
     this.panel.element.append(this.file);
     this.file.addEventListener("change", () => {
       const chosen = this.file.files?.[0];
-      if (chosen) void this.tried(async () => this.load(await chosen.text()));
+      if (chosen) void this.appear(async () => read(await chosen.text()));
       this.file.value = "";
     });
     new ResizeObserver(() => this.leaveRoom()).observe(this.panel.element);
@@ -66,7 +68,7 @@ export class Build implements BuildPanelListener {
   }
 
   get state(): BuildState | null {
-    if (!this.active) return null;
+    if (!this.active || this.opening) return null;
     const { plan, selected, tool } = this.editor;
     const { verdict } = this.checker;
     const walked = verdict.state === "walked" ? (verdict.walk.passed ? "feasible" : "infeasible") : verdict.state;
@@ -79,15 +81,12 @@ export class Build implements BuildPanelListener {
 
   /** Opens build mode with the scene that is shown, or with an empty one where that cannot be built upon. */
   async show(scene: SceneMessage | null): Promise<void> {
-    this.appear();
-    if (scene) await this.tried(async () => this.editor.open(inOwnWords(await fetchPlan(scene.name))));
-    this.panel.board.fit();
+    await this.appear(async () => (scene ? inOwnWords(await fetchPlan(scene.name)) : null));
   }
 
   /** Opens build mode with a scene as text. */
   async showText(scene: string): Promise<void> {
-    this.appear();
-    await this.tried(() => this.load(scene));
+    await this.appear(() => read(scene));
   }
 
   /** The server answers again. */
@@ -99,6 +98,7 @@ export class Build implements BuildPanelListener {
     if (!this.active) return;
     this.checker.end();
     this.active = false;
+    this.opening = null;
     this.previewed = null;
     this.panel.element.remove();
     document.body.classList.remove("building");
@@ -154,28 +154,33 @@ export class Build implements BuildPanelListener {
     this.draw();
   }
 
-  private appear(): void {
+  /** Comes up, and opens what is fetched (null: what was open before); nothing is drawn, edited or walked until it is there. */
+  private async appear(fetched: () => Promise<Plan | null>): Promise<void> {
     if (!this.active) {
       document.body.append(this.panel.element);
       document.body.classList.add("building");
     }
+    const opening = (this.opening = Symbol());
     this.active = true;
+    this.panel.element.inert = true;
     this.leaveRoom();
+    this.draw();
+    await this.tried(async () => {
+      const plan = await fetched();
+      if (plan && this.opening === opening) this.editor.open(plan);
+    });
+    if (this.opening !== opening) return;
+    this.opening = null;
+    this.panel.element.inert = false;
     this.panel.showDrafts(this.drafts.all().map(({ title }) => title));
     this.changed();
-    this.panel.board.element.focus({ preventScroll: true });
-  }
-
-  /** The server reads what comes from outside; what it hands back is a plan. */
-  private async load(scene: string): Promise<void> {
-    const { name } = await send(scene);
-    this.editor.open(await fetchPlan(name));
     this.panel.board.fit();
+    this.panel.board.element.focus({ preventScroll: true });
   }
 
   private changed(): void {
     const { plan } = this.editor;
-    if (!this.active) return;
+    if (!this.active || this.opening) return;
     if (plan !== this.previewed) {
       this.previewed = plan;
       this.host.picture.showScene(previewOf(plan));
@@ -186,13 +191,13 @@ export class Build implements BuildPanelListener {
   }
 
   private draw(): void {
-    if (this.active) this.panel.draw(this.checker.verdict, this.checker.isOn);
+    if (this.active) this.panel.draw(this.opening ? { state: "opening" } : this.checker.verdict, this.checker.isOn);
   }
 
   /** Keys that nothing else has are the board's. */
   private key(event: KeyboardEvent): void {
     const { activeElement } = document;
-    if (this.active && (activeElement === document.body || activeElement?.id === "view")) this.panel.board.key(event);
+    if (this.active && !this.opening && (activeElement === document.body || activeElement?.id === "view")) this.panel.board.key(event);
   }
 
   private leaveRoom(): void {
@@ -209,6 +214,11 @@ export class Build implements BuildPanelListener {
       this.host.say("error", words(error));
     }
   }
+}
+
+/** The server reads what comes from outside; what it hands back is a plan. */
+async function read(scene: string): Promise<Plan> {
+  return fetchPlan((await send(scene)).name);
 }
 
 /** A plan with the names of the scenes that come along in the page's language. */

@@ -7,7 +7,7 @@ import { walkUnseen } from "./wire";
 
 /** What is known of the present plan. */
 export type Verdict =
-  | { readonly state: "off" | "waiting" | "walking" }
+  | { readonly state: "opening" | "off" | "waiting" | "walking" }
   | { readonly state: "walked"; readonly walk: UnseenWalk }
   | { readonly state: "wrong"; readonly words: string };
 

@@ -7,6 +7,7 @@ import type { Tool } from "./editor";
 
 /** A tool in hand explains itself; else what the live check has found. */
 export function verdictWords(verdict: Verdict, tool: Tool): string {
+  if (verdict.state === "opening") return text("build.opening");
   if (tool === "track") return text("build.trackHow");
   if (tool === "stop") return text("build.stopHow");
   if (tool !== "select") return text("build.placeHow");

@@ -173,6 +173,7 @@ export const TABLE = {
   "build.placeHow": said("Click where it shall stand; Esc to leave it", "點選要放置的位置；按 Esc 取消"),
   "build.trackHow": said("Click the points that it goes to; Esc when done", "依序點選要經過的點；完成後按 Esc"),
   "build.checkOff": said("The check is off", "檢查已關閉"),
+  "build.opening": said("The scene is being opened …", "正在開啟場景…"),
   "build.walking": said("The avatar walks it unseen …", "角色正在背後試走…"),
   "build.undecided": said("No verdict: the walk took too long to compute", "沒有結論：試走計算時間過長"),
   "build.feasible": said("Feasible: through in {0} s, {1}", "可通過：{0} 秒，{1}"),
