@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 _RATES = (2.25, 4.0)  # m/s up and down: as feet go on stairs, and hastily
 _TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
 _SAME = 1e-9  # metres and radians
+_SKIN = 0.01  # metres: nearly all of the surface of a foot is within so much of its capsules (`body/coverage.py`)
 
 
 class RaisedFeet:
@@ -46,9 +47,18 @@ class RaisedFeet:
         return ((each, stance) for posed, stance in played for each in self.settling(moment, posed))
 
     def settling(self, moment: Moment, held: Playback) -> Iterator[Playback]:
-        """How a pose could be shown next, held or not: best first."""
-        roots = raised(moment.shown.root, self.standing(held.root), moment.dt)
-        return (held._replace(root=root) for root in roots)
+        """How a pose could be shown next, held or not: best first.
+
+        Skin may be a little outside the capsules, so legs that have less room than that come last.
+        """
+        close = []
+        for root in raised(moment.shown.root, self.standing(held.root), moment.dt):
+            pose = held._replace(root=root)
+            if moment.look(root, pose.upper).room < _SKIN:
+                close.append(pose)
+            else:
+                yield pose
+        yield from close
 
     def resting(self, moment: Moment) -> Playback:
         """What is shown: who rests here does not live yet."""
@@ -58,7 +68,7 @@ class RaisedFeet:
 def raised(before: Floats, stood: Floats, dt: float) -> Iterator[Floats]:
     """A root state that stands (ROOT_STATE,) as it may be shown `dt` seconds after the one `before`: best first.
 
-    Feet go slowly to what they stand on, or faster, or are there at once.
+    Feet go slowly to what they stand on, or faster, or are there at once; or stay as high as they are.
     """
     last = before
     for rate in _RATES:
@@ -67,6 +77,9 @@ def raised(before: Floats, stood: Floats, dt: float) -> Iterator[Floats]:
             yield root
         last = root
     yield stood
+    stays = _followed(before, stood, 0.0)
+    if np.abs(stays - stood).max() > _SAME:
+        yield stays
 
 
 def _followed(before: Floats, stood: Floats, most: float) -> Floats:

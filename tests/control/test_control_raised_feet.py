@@ -1,0 +1,53 @@
+"""Feet on ground that is not a plane, from frame to frame: where they have no room at once they take another way."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL
+from elbowroom.body.footholds import UNKNOWN
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.kinematics import body_model
+from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.control.feet.feet import Around, Moment
+from elbowroom.control.feet.raised import RaisedFeet, raised
+from elbowroom.control.key_frame_queue import Playback
+from elbowroom.planning.model.footing import Footing
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+DT = 1 / 60
+STEP = {"type": "box", "center": [0.0, 0.1, 2.0], "size": [3.0, 0.2, 2.0]}
+NOTHING = np.zeros((0, 6, 1), np.float32)
+
+
+def before(rise: float) -> Floats:
+    """A root state on the plane whose right foot is raised."""
+    root = np.zeros(ROOT_STATE)
+    root[RISES + 2] = rise
+    return root
+
+
+def test_feet_go_slowly_to_what_they_stand_on_or_at_once_or_stay() -> None:
+    ways = [float(root[RISES + 2]) for root in raised(before(0.2), before(0.0), DT)]
+    assert ways[0] > ways[1] > ways[2] == 0.0
+    assert np.allclose(ways, [0.2 - 2.25 * DT, 0.2 - 4.0 * DT, 0.0, 0.2])
+    assert [float(root[RISES + 2]) for root in raised(before(0.2), before(0.2), DT)] == [0.2]
+
+
+def test_ways_on_which_skin_could_touch_come_last() -> None:
+    humanoid, upper = Humanoid.default(), np.zeros(LOCAL)
+    feet = RaisedFeet(Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground))
+    shown = Playback(before(0.2), upper, upper)
+
+    def first(close_below: float) -> float:
+        def look(root: Floats, _: Floats) -> Around:
+            return Around(0.002 if root[RISES + 2] < close_below else 0.1, NOTHING)
+
+        moment = Moment(shown, DT, UNKNOWN, 0.1, look)
+        ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))
+        assert len(ways) == 4, "each of them may be shown, if no better one is free"
+        return float(ways[0].root[RISES + 2])
+
+    assert np.isclose(first(0.0), 0.2 - 2.25 * DT)
+    assert np.isclose(first(0.199), 0.2), "it stays where it has room"
+    assert np.isclose(first(1.0), 0.2 - 2.25 * DT), "nowhere is room: as ever"
