@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.jit import kernel
-from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.from_above import ball_radius, place_of
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import how_many, row_of
@@ -111,10 +111,11 @@ def _fill_window(near: Nearby, stance: Floats32, place: Floats, heights: Floats3
                 height = heights[first_a + i, first_l + j]
                 segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, height + stance[1], z
                 segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, height + stance[2], z
-        clearance_into(segments, stance[:1], row_of(near, b), least)
+                least[k] = out[first_a + i, first_l + j]
+        lower_clearance(segments, stance[:1], row_of(near, b), least)
         for i in range(rows):
             for j in range(columns):
-                out[first_a + i, first_l + j] = min(out[first_a + i, first_l + j], least[i * columns + j])
+                out[first_a + i, first_l + j] = least[i * columns + j]
 
 
 @kernel

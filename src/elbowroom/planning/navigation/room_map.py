@@ -10,7 +10,7 @@ from elbowroom.jit import kernel
 from elbowroom.kept_arrays import Arrays, kept
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.planning.navigation.surfaces import Surfaces, one_plane, over_ground, to_edges
-from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import how_many, row_of
@@ -186,10 +186,10 @@ def _lower(
                 owners[count] = n
                 count += 1
         if count > 0:
-            least = np.empty(count, np.float32)
-            clearance_into(np.ascontiguousarray(segments[:, :, :count]), thin, row_of(near, b), least)
+            least = out[owners[:count]]
+            lower_clearance(np.ascontiguousarray(segments[:, :, :count]), thin, row_of(near, b), least)
             for k in range(count):
-                out[owners[k]] = min(out[owners[k]], least[k])
+                out[owners[k]] = least[k]
 
 
 def _to_edge(scene: Scene, area: Rectangle, shape: tuple[int, int], cell: float) -> Floats32 | None:

@@ -1,5 +1,6 @@
 """How far a root path is free for legs and pelvis: at dense samples of its motion and of a stop from each key frame."""
 
+import math
 from functools import cached_property
 from itertools import pairwise
 
@@ -51,7 +52,7 @@ class FreeLegs:
         if self._near.empty:
             return False
         shown, _ = dense_states(states, self._interval, self._check.spacing, np.ones(len(states) - 1, np.bool_))
-        return bool(np.any(self.rooms(shown) < 0.0))
+        return bool(np.any(self.rooms(shown, self._check.skin) < 0.0))
 
     @property
     def close(self) -> bool:
@@ -72,12 +73,12 @@ class FreeLegs:
             return full
         return min(full, max(0.5 * float(self.rooms(standing[:1])[0]), 0.0))
 
-    def rooms(self, states: Floats) -> Floats32:
-        """The clearance (N,) of legs and pelvis from what stands, in states (N, 7)."""
+    def rooms(self, states: Floats, farthest: float = math.inf) -> Floats32:
+        """The clearance (N,) of legs and pelvis from what stands, in states (N, 7); no more than `farthest` metres."""
         if not len(states):
             return np.empty(0, np.float32)
         self.checks += len(states)
-        return self._check.body.clearance(self._near, states, self._check.skin)
+        return self._check.body.clearance(self._near, states, self._check.skin, farthest)
 
     def _to_check(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""
@@ -122,7 +123,7 @@ class FreeLegs:
             else:
                 shown, owner = dense_states(states, self._interval, spacing, fresh)
             near = states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground)
-            np.minimum.at(found, owner[near] - 1, self.rooms(shown[near]))
+            np.minimum.at(found, owner[near] - 1, self.rooms(shown[near], self._check.skin))
             self._check.known.learn(names, fresh, found)
         touching = np.flatnonzero(found < self._skin)
         return int(touching[0]) if len(touching) else len(wanted)

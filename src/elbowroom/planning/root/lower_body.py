@@ -112,20 +112,23 @@ class LowerBody:
             self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), some_ground(self.ground, near))
         return self._near[1]
 
-    def clearance(self, among: Neighbours, states: Floats, spare: float = 0.0) -> Floats32:
+    def clearance(
+        self, among: Neighbours, states: Floats, spare: float = 0.0, farthest: float = math.inf
+    ) -> Floats32:
         """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, ROOT_STATE); infinite where far.
 
         Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground.
+        More than `farthest` metres are not told apart.
         """
         near = among.around(states[:, :2], self.reach)
         if near.empty:
             return np.full(len(states), np.inf, np.float32)
         if self.footing.plain:
-            return clearance(leg_capsules(self.model, states), self.radii, near.obstacles)
+            return clearance(leg_capsules(self.model, states), self.radii, near.obstacles, farthest)
         rows, found = self.footing.stood(states)
         near = near.above(float(self.footing.floors(rows).min()))
         segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, rows, spare=spare)
-        clear = clearance(segments, self.radii, near.obstacles)
+        clear = clearance(segments, self.radii, near.obstacles, farthest)
         return np.where(found, clear, np.float32(-1.0))
 
     def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.turned_body import Discs, Turned, TurnedBody
-from elbowroom.world.obstacles.clearance import clearance_into
+from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
 from elbowroom.world.obstacles.from_above import away_of, ball_radius, heights_of, place_of
 from elbowroom.world.obstacles.layout import Nearby, Spans
@@ -187,14 +187,11 @@ def _measure(room: _Cells, cell: tuple[int, int, int], beside: float, standing: 
             for n in range(_PLACES):
                 segments[c, k, n] = capsules[c, k] + (beside + fine * (n - middle)) * along
     found = np.full((3, _PLACES), np.float32(comfort))
-    least = np.empty(_PLACES, np.float32)
     for g in range(3):
         part = slice(room.groups[g], room.groups[g + 1])
         for near in (standing, moving):
             if how_many(near) > 0:
-                clearance_into(segments[part], room.radii[part], near, least)
-                for n in range(_PLACES):
-                    found[g, n] = min(found[g, n], least[n])
+                lower_clearance(segments[part], room.radii[part], near, found[g])
     at = float(middle)
     for g in range(3):
         if found[g, middle] < comfort:

@@ -21,6 +21,8 @@ Bools = NDArray[np.bool_]
 STEP = 0.25  # metres: higher is climbed, not walked
 STEEPEST = math.radians(30.0)  # of a surface that one walks on
 PLACE = 0.1  # metres between places that a way over the ground is looked at
+LOWEST, HIGHEST = 9, 10  # columns of triangles
+_NEXT = np.uint64(1)
 _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
 _EVEN, _ABOUT = 2e-4, 0.1  # metres by which what is level may differ; and a body's height from the ground about it
@@ -40,7 +42,7 @@ class Ground(NamedTuple):
     shape: tuple[int, int]  # cells along x and z
     starts: Longs  # (cells + 1,) where the triangles over each cell, numbered ix * shape[1] + iz, begin
     members: Longs  # (M,) their numbers, the same several times
-    triangles: Floats  # (T, 9) x, z, height of a corner; x, z of the next two, all to the left; grade along x and z
+    triangles: Floats  # (T, 11), those that reach higher first, as `planes_of` has them
     level: Bools  # (cells,) where the plane at height 0 is ground
     beyond: bool  # whether it is, outside of the grid
     even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
@@ -56,21 +58,17 @@ class Sole(NamedTuple):
 
 
 PLAIN = Ground(
-    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 9)),
+    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 11)),
     np.zeros(0, np.bool_), True, np.zeros(1, np.int64), np.zeros(0),
 )  # fmt: skip
 
 
 @helper
-def _over(t: Floats, x: float, z: float) -> float:
-    """The height of a triangle's surface at a place; minus infinity beside it."""
-    px, pz = x - t[0], z - t[1]
+def _is_over(t: Floats, px: float, pz: float) -> bool:
+    """Whether a place, seen from a triangle's first corner, is over it."""
     bx, bz, cx, cz = t[3] - t[0], t[4] - t[1], t[5] - t[0], t[6] - t[1]
-    if bz * px - bx * pz < -_INSIDE or cx * pz - cz * px < -_INSIDE:
-        return _NONE
-    if (cz - bz) * (px - bx) - (cx - bx) * (pz - bz) < -_INSIDE:
-        return _NONE
-    return float(t[2] + t[7] * px + t[8] * pz)
+    third = (cz - bz) * (px - bx) - (cx - bx) * (pz - bz)
+    return bool(min(bz * px - bx * pz, cx * pz - cz * px, third) >= -_INSIDE)
 
 
 @exact_kernel
@@ -85,9 +83,10 @@ def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
     if ground.level[cell] if inside else ground.beyond:
         out[0], count = 0.0, 1
     for m in range(ground.starts[cell], ground.starts[cell + 1] if inside else ground.starts[cell]):
-        height = _over(ground.triangles[ground.members[m]], x, z)
-        if height > _NONE and count < out.shape[0]:
-            out[count] = height
+        t = ground.triangles[ground.members[m]]
+        px, pz = x - t[0], z - t[1]
+        if count < out.shape[0] and _is_over(t, px, pz):
+            out[count] = t[2] + t[7] * px + t[8] * pz
             count += 1
     out[:count].sort()
     kept = 0
@@ -100,20 +99,24 @@ def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
 
 @exact_kernel
 def height_at(ground: Ground, x: float, z: float, near: float) -> float:
-    """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any."""
-    if ground.plain:
-        return 0.0
+    """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any.
+
+    It has one way out: with more Numba counts who holds the arrays of `ground`, which takes longer than all else.
+    """
     ix, iz = math.floor((x - ground.corner[0]) / ground.cell), math.floor((z - ground.corner[1]) / ground.cell)
-    inside = 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]
-    cell = int(ix) * ground.shape[1] + int(iz)
-    there = ground.level[cell] if inside else ground.beyond
-    best = 0.0 if there and abs(near) <= ground.step else _NONE
-    if not inside:
-        return best
-    for m in range(ground.starts[cell], ground.starts[cell + 1]):
-        height = _over(ground.triangles[ground.members[m]], x, z)
-        if height > best and abs(height - near) <= ground.step:
-            best = height
+    inside = 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1] and not ground.plain
+    cell = np.uint64(int(ix) * ground.shape[1] + int(iz) if inside else 0)
+    there, low, high = ground.level[cell] if inside else ground.beyond, near - ground.step, near + ground.step
+    best = 0.0 if ground.plain or (there and low <= 0.0 <= high) else _NONE
+    m, last = np.uint64(ground.starts[cell]), np.uint64(ground.starts[cell + _NEXT] if inside else ground.starts[cell])
+    while m < last and ground.triangles[ground.members[m], HIGHEST] > max(best, low - _INSIDE):
+        t = np.uint64(ground.members[m])
+        m += _NEXT
+        if ground.triangles[t, LOWEST] <= high:
+            px, pz = x - ground.triangles[t, 0], z - ground.triangles[t, 1]
+            height = ground.triangles[t, 2] + ground.triangles[t, 7] * px + ground.triangles[t, 8] * pz
+            if best < height and low <= height <= high and _is_over(ground.triangles[t], px, pz):
+                best = height
     return best
 
 

@@ -79,6 +79,7 @@ def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
 
 
 def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
+    triangles = triangles[np.argsort(-triangles[:, :, 1].max(axis=1), kind="stable")]
     flat = triangles[:, :, [0, 2]]
     least, most = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
     if floor is not None:
@@ -95,7 +96,7 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
     starts, members = _members(spans, wide, deep, count)
     begins = (float(least[0]), float(least[1]))
     level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
-    planes = _planes(triangles)
+    planes = planes_of(triangles)
     even = np.zeros(wide * deep + 1, np.int64)
     args = planes, starts, members, level, (begins[0], begins[1], cell), deep
     _even(*args, even, np.empty(0))
@@ -105,8 +106,11 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
     return Ground(False, STEP, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
 
 
-def _planes(triangles: Floats) -> Floats:
-    """Triangles (T, 3, 3) as `Ground` has them, turned so that seen from above each corner has the next to its left."""
+def planes_of(triangles: Floats) -> Floats:
+    """Triangles (T, 3, 3) as `Ground` has them, turned so that seen from above each corner has the next to its left.
+
+    Columns (T, 11): x, z, height of a corner; x, z of the next two; grade along x and z; lowest and highest height.
+    """
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     u, v = b - a, c - a
     area = u[:, 2] * v[:, 0] - u[:, 0] * v[:, 2]
@@ -116,6 +120,7 @@ def _planes(triangles: Floats) -> Floats:
     along_x = (u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / area
     along_z = (v[:, 0] * u[:, 1] - u[:, 0] * v[:, 1]) / area
     columns = [a[:, 0], a[:, 2], a[:, 1], *(a + u)[:, [0, 2]].T, *(a + v)[:, [0, 2]].T, along_x, along_z]
+    columns += [triangles[:, :, 1].min(axis=1), triangles[:, :, 1].max(axis=1)]
     return np.ascontiguousarray(np.stack(columns, axis=1))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import kernel
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
-from elbowroom.world.obstacles.clearance import clearance_of_each
+from elbowroom.world.obstacles.clearance import lower_each
 from elbowroom.world.obstacles.layout import ROW, Nearby
 from elbowroom.world.obstacles.rows import shifted_into
 
@@ -52,17 +52,18 @@ def _within(
 
 @kernel
 def _lower_above(axes: Floats32, radii: Floats32, near: Nearby, tops: Floats, floors: Floats, out: Floats32) -> None:
-    """Set `out` (C,) to the clearances of `axes` (6, C) from what rises above the floor of each (C,)."""
+    """Lower `out` (C,) to the clearances of `axes` (6, C) from what rises above the floor of each (C,)."""
     highest, shared, found = floors.max(), 0, np.empty(len(out), np.float32)
     rows = np.empty(near.rows.shape)
     for b in range(len(tops)):
         if tops[b] > highest:
             rows[shared] = near.rows[b]
             shared += 1
-    clearance_of_each(axes, radii, Nearby(rows[:shared], near.packed), out)
+    lower_each(axes, radii, Nearby(rows[:shared], near.packed), out)
     for b in range(len(tops)):
         if tops[b] <= highest:
-            clearance_of_each(axes, radii, Nearby(near.rows[b : b + 1], near.packed), found)
+            found[:] = out
+            lower_each(axes, radii, Nearby(near.rows[b : b + 1], near.packed), found)
             for c in range(len(out)):
                 if tops[b] > floors[c]:
                     out[c] = min(out[c], found[c])
@@ -88,12 +89,9 @@ def clearances_around(
     reach = _NEAR
     while many > 0 and count > 0 and reach < _FAR:
         near, tops, everything = _within(standing, least - reach, most + reach, x, z, floors.min())
+        out[:] = _INFINITE if everything else reach
         _lower_above(axes, radii, near, tops, floors, out)
-        if everything:
-            break
-        if out.min() <= reach:
-            for c in range(count):
-                out[c] = min(out[c], reach)
+        if everything or out.min() < reach:
             break
         reach *= _WIDER
     return out

@@ -25,20 +25,23 @@ _TILES = 32  # tiles that are treated together: they stay in the first-level cac
 _PAIRS = 256  # pairs of a tile and an obstacle that are treated in one go
 _METRES: Any = np.float32(1.0 / PER_METRE)
 _INFINITE: Any = np.float32(np.inf)
+_ZERO: Any = np.float32(0.0)
+_MORE: Any = np.float32(PER_METRE * (1.0 + 1e-6))  # metres in units of tiles, and no less by rounding
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
 
-def clearance(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
+def clearance(segments: ArrayLike, radii: ArrayLike, near: Nearby, farthest: float = math.inf) -> Floats32:
     """The least clearance of every configuration, metres, shape (N,); infinite where there is nothing, or no capsule.
 
-    `segments` (C, 6, N), `radii` (C,), all in one frame with the obstacles.
+    `segments` (C, 6, N), `radii` (C,), all in one frame with the obstacles. Clearance above `farthest` metres is given
+    as `farthest`: the less, the sooner it is done among meshes.
     """
     capsules, sizes = _prepared(segments, radii)
-    out = np.empty(capsules.shape[2], np.float32)
-    clearance_into(capsules, sizes, near, out)
+    out = np.full(capsules.shape[2], farthest, np.float32)
+    lower_clearance(capsules, sizes, near, out)
     return out
 
 
@@ -119,6 +122,13 @@ def _infinitely_far(values: Floats32) -> None:
 @kernel
 def clearance_into(segments: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """`clearance` for other kernels: C-contiguous float32 arrays, the result written to `out` (N,)."""
+    _infinitely_far(out)
+    lower_clearance(segments, radii, near, out)
+
+
+@kernel
+def lower_clearance(segments: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
+    """Lower `out` (N,) to the clearances where these are less. Meshes are passed by that are farther than it says."""
     rows, pairs = np.empty(near.rows.shape[0] * ROW, np.float32), np.empty((_PAIRS, 2), np.int64)
     fill_tile_rows(near.rows, near.rows.shape[0], rows)
     scratch = np.empty(_TILES * (TILE + 2 * LANES), np.float32)
@@ -127,14 +137,23 @@ def clearance_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
         count = min(_TILES * LANES, out.shape[0] - start)
         used = (count + LANES - 1) // LANES
         squares, least = lanes[: used * LANES], lanes[used * LANES : 2 * used * LANES]
-        _infinitely_far(least)
+        for i in range(np.uint64(used * LANES)):
+            least[i] = out[min(start + i, out.shape[0] - 1)]
         for c in range(segments.shape[0]):
             _fill_tiles(segments[c], start, count, tiles)
-            _infinitely_far(squares)
+            _as_squares(least, radii[c], squares)
             _lower_all(tiles, used, rows, near.packed, pairs, squares)
             lower_to_squares(squares, radii[c], least)
         for i in range(np.uint64(count)):
             out[start + i] = least[i]
+
+
+@kernel
+def _as_squares(least: Floats32, radius: float, squares: Floats32) -> None:
+    """The squared distances of axes beyond which nothing lowers clearances (N,), or a little more than these."""
+    for i in range(np.uint64(squares.shape[0])):
+        away = max(least[i] + radius, _ZERO) * _MORE
+        squares[i] = away * away
 
 
 @kernel
@@ -158,18 +177,27 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
 @kernel
 def clearance_of_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """The clearance of each of `capsules` (6, C) from the nearest of the obstacles, to `out` (C,)."""
+    _infinitely_far(out)
+    lower_each(capsules, radii, near, out)
+
+
+@kernel
+def lower_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
+    """Lower `out` (C,) to the clearances of each of `capsules` (6, C) where these are less."""
     count = capsules.shape[1]
     if count == 0:
         return
     used = (count + LANES - 1) // LANES
     tiles, squares = np.empty(used * TILE, np.float32), np.empty(used * LANES, np.float32)
-    squares[:] = _INFINITE
+    for i in range(used * LANES):
+        away = max(out[min(i, count - 1)] + radii[min(i, count - 1)], _ZERO) * _MORE
+        squares[i] = away * away
     rows = np.empty(near.rows.shape[0] * ROW, np.float32)
     fill_tile_rows(near.rows, near.rows.shape[0], rows)
     _fill_tiles(capsules, _FIRST, count, tiles)
     _lower_all(tiles, used, rows, near.packed, np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):
-        out[i] = math.sqrt(squares[i]) * _METRES - radii[i]
+        out[i] = min(out[i], math.sqrt(squares[i]) * _METRES - radii[i])
 
 
 @kernel
