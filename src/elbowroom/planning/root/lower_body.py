@@ -112,9 +112,7 @@ class LowerBody:
             self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), some_ground(self.ground, near))
         return self._near[1]
 
-    def clearance(
-        self, among: Neighbours, states: Floats, spare: float = 0.0, farthest: float = math.inf
-    ) -> Floats32:
+    def clearance(self, among: Neighbours, states: Floats, spare: float = 0.0, farthest: float = math.inf) -> Floats32:
         """Clearance (N,) of legs and pelvis, posed by the gait, at root states (N, ROOT_STATE); infinite where far.
 
         Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground.
