@@ -163,23 +163,19 @@ class BodyCheck:
         proof = begun(gaps, ways[None], 1, 0.0, _HALVINGS)
         parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
         while (count := due(proof, parts, shares)) > 0:
-            found = np.array([self._gaps_at(frames, share, floors) for share in shares[:count]])
-            settle(proof, found, count)
+            settle(proof, self._gaps_at(frames, shares[:count], floors), count)
         return bool(proof.least.min() >= 0.0)
 
     def _turns_free(self, frames: Frames, floors: Floats) -> bool:
         """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
         legs, parts = turned_legs(self.model, frames.roots, frames.uppers), self.model.roots
         lifted = self._soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
-        axes = self._pose(frames.roots[0], frames.uppers[0]).axes.copy()
-        for n in range(len(legs.states)):
-            axes[parts.indices, :, 0] = lifted[:, :, n]
-            if self._soles.soles_above(axes, floors) < 0.0:
-                return False
-            gaps = self._soles.clearances(self._standing, axes, frames.roots[0][:2], floors)
-            if gaps[parts.indices].min() < 0.0:
-                return False
-        return True
+        axes = np.repeat(self._pose(frames.roots[0], frames.uppers[0]).axes, len(legs.states), axis=2)
+        axes[parts.indices] = lifted
+        if self._soles.soles_above(axes, floors) < 0.0:
+            return False
+        gaps = self._soles.clearances(self._standing, axes, frames.roots[0][:2], floors)
+        return bool(gaps[:, parts.indices].min() >= 0.0)
 
     @property
     def _accompanied(self) -> bool:
@@ -191,12 +187,19 @@ class BodyCheck:
         """The obstacles that can move: the scene's own, and what is loose."""
         return [each for each in (self._moving, self._loose) if len(each)]
 
-    def _gaps_at(self, frames: Frames, share: float, floors: Floats) -> Floats32:
-        """The gaps at a share of the time between two frames, above the `floors` (2,) of both."""
+    def _gaps_at(self, frames: Frames, shares: Floats, floors: Floats) -> Floats32:
+        """The gaps (k, P) at shares (k,) of the time between two frames, above the `floors` (2,) of both."""
         (first, last), (begin, end), (before, after) = frames
-        root, upper = first + share * (last - first), begin + share * (end - begin)
-        pose = _Pose(root, upper, self._posed(root, upper), floors, [])
-        return self._gaps(pose, before + share * (after - before))
+        part = shares[:, None]
+        roots, uppers = first + part * (last - first), begin + part * (end - begin)
+        roots[:, :2] -= first[:2]
+        axes = self._capsules(np.concatenate([roots[:, :3], uppers], axis=1), roots)
+        gaps = self._soles.clearances(self._standing, axes, first[:2], floors)
+        if not self._accompanied:
+            return gaps
+        times = before + shares * (after - before)
+        moving = [self._from_moving(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
+        return np.concatenate([gaps, np.array(moving, np.float32)], axis=1)
 
     def _gaps(self, pose: _Pose, time: float) -> Floats32:
         """The clearances of a pose at a time: of each capsule from what stands.
@@ -206,9 +209,12 @@ class BodyCheck:
         gaps = self._from_standing(pose)
         if not self._accompanied:
             return gaps
-        moving = [around.clearance(pose.axes, self._radii, pose.root[:2], time) for around in self._around]
-        moving += [other.clearance(pose.axes, self._radii, pose.root, time) for other in self.others]
-        return np.append(gaps, np.array(moving, np.float32))
+        return np.append(gaps, np.array(self._from_moving(pose.axes, pose.root, time), np.float32))
+
+    def _from_moving(self, axes: Floats32, root: Floats, time: float) -> list[float]:
+        """The clearances of the axes (C, 6, 1) about a root's place from all that can move, and from each other."""
+        moving = [around.clearance(axes, self._radii, root[:2], time) for around in self._around]
+        return moving + [other.clearance(axes, self._radii, root, time) for other in self.others]
 
     def _pose(self, root: Floats, upper: Floats) -> _Pose:
         """A pose, remembered."""
@@ -228,7 +234,7 @@ class BodyCheck:
     def _from_standing(self, pose: _Pose) -> Floats32:
         """How far each capsule is from what stands, (C,); of the nearest that, of others at least so much."""
         if not pose.standing:
-            pose.standing.append(self._soles.clearances(self._standing, pose.axes, pose.root[:2], pose.floors))
+            pose.standing.append(self._soles.clearances(self._standing, pose.axes, pose.root[:2], pose.floors)[0])
         return pose.standing[0]
 
     def standing(self, root: Floats) -> Floats:

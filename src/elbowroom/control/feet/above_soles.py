@@ -53,26 +53,29 @@ class AboveSoles:
         return not self.footing.plain and raised_between(one, other) > _RAISED
 
     def soles_above(self, axes: Floats32, floors: Floats) -> float:
-        """How far the capsules of the feet (C, 6, 1) keep above what is not looked at under both soles (2,), metres."""
+        """How far the capsules of the feet (C, 6, N) keep above what is not looked at under both soles (2,), metres."""
         feet = self.footing.each_foot(self._model.body)
-        lowest = np.minimum(axes[:, 1, 0], axes[:, 4, 0]) - self._radii
+        lowest = np.minimum(axes[:, 1], axes[:, 4]).min(axis=1) - self._radii
         return float(min(lowest[own].min(initial=np.inf) - floor for own, floor in zip(feet, floors, strict=True)))
 
     def clearances(self, obstacles: Obstacles, axes: Floats32, origin: Floats, floors: Floats) -> Floats32:
-        """The clearance (C,) of each of a posture's capsules (C, 6, 1) about a place from what stands, metres.
+        """The clearance (N, C) of each capsule of postures (C, 6, N) about a place from what stands, metres.
 
-        As `Obstacles.clearances`, with what both soles keep above (2,); what is no foot is held above that too.
+        As `Obstacles.clearances` of all of them together, with what both soles keep above (2,) in all postures; what is
+        no foot is held above that too.
         """
-        if self.footing.plain:
-            return obstacles.clearances(axes, self._radii, origin, 0.0, self._nowhere)
-        low = float(floors.min())
-        heights = np.full(len(axes), low)
-        if floors.max() > low + _EVEN:
-            heights[self._parts[0]], heights[self._parts[1]] = floors
-        found, others = obstacles.clearances(axes, self._radii, origin, 0.0, heights), self._parts[2]
+        count, low = axes.shape[2], float(floors.min())
+        lanes, heights = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1), self._nowhere
+        if not self.footing.plain:
+            heights = np.full(len(axes), low)
+            if floors.max() > low + _EVEN:
+                heights[self._parts[0]], heights[self._parts[1]] = floors
+        radii, heights = np.tile(self._radii, count), np.tile(heights, count)
+        found = obstacles.clearances(lanes, radii, origin, 0.0, heights).reshape(count, -1)
         if low > -np.inf:
-            lowest = np.minimum(axes[others, 1, 0], axes[others, 4, 0]) - self._radii[others]
-            found[others] = np.minimum(found[others], lowest - np.float32(low))
+            others = self._parts[2]
+            lowest = np.minimum(axes[others, 1], axes[others, 4]) - self._radii[others, None]
+            found[:, others] = np.minimum(found[:, others], lowest.T - np.float32(low))
         return found
 
 

@@ -25,7 +25,8 @@ LOWEST, HIGHEST = 9, 10  # columns of triangles
 _NEXT = np.uint64(1)
 _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
-_EVEN, _ABOUT = 2e-4, 0.1  # metres by which what is level may differ; and a body's height from the ground about it
+RELIEF = 1e-3  # metres: what lies no lower than this under the highest ground about it is level
+_ABOUT = 0.1  # metres by which a body's height may differ from the ground about it
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
@@ -46,7 +47,7 @@ class Ground(NamedTuple):
     level: Bools  # (cells,) where the plane at height 0 is ground
     beyond: bool  # whether it is, outside of the grid
     even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
-    evens: Floats  # (E,) heights at which the ground is level all over a cell, with nothing up to a step above
+    evens: Floats  # (E,) tops of ground that is level all over a cell, with nothing up to a step above
 
 
 class Sole(NamedTuple):
@@ -122,18 +123,19 @@ def height_at(ground: Ground, x: float, z: float, near: float) -> float:
 
 @exact_kernel
 def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -> float:
-    """The height of the ground if it is one level as far as `reach` metres from a place, about the height `near`.
+    """The top of the ground if it is level as far as `reach` metres from a place, about the height `near`.
 
-    Minus infinity where it is not, or that is not known.
+    It may lie lower by `RELIEF` in a cell, and by so much more from cell to cell. Minus infinity where it is not level,
+    or that is not known.
     """
     left, back = x - ground.corner[0], z - ground.corner[1]
     low_x, high_x = math.floor((left - reach) / ground.cell), math.floor((left + reach) / ground.cell)
     low_z, high_z = math.floor((back - reach) / ground.cell), math.floor((back + reach) / ground.cell)
-    found = _NONE
+    found, lowest = _NONE, math.inf
     for ix in range(int(low_x), int(high_x) + 1):
         for iz in range(int(low_z), int(high_z) + 1):
             here, about = _NONE, near if found == _NONE else found
-            within = _EVEN if found > _NONE else _ABOUT
+            within = RELIEF if found > _NONE else _ABOUT
             if 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]:
                 cell = ix * ground.shape[1] + iz
                 for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
@@ -141,9 +143,9 @@ def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -
                         here = ground.evens[e]
             elif ground.beyond and abs(about) <= within:
                 here = 0.0
-            if here == _NONE:
+            lowest, found = min(lowest, here), max(found, here)
+            if found - lowest > RELIEF:
                 return _NONE
-            found = here if found == _NONE else found
     return found
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel
 from elbowroom.world.clipping import clipped
-from elbowroom.world.ground.ground import PLAIN, STEEPEST, STEP, Ground
+from elbowroom.world.ground.ground import PLAIN, RELIEF, STEEPEST, STEP, Ground
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.triangles import triangles_of
@@ -21,7 +21,7 @@ Bools = NDArray[np.bool_]
 RISE = 0.005  # metres: what rises no higher from the plane is the plane
 _CELL = 0.08  # metres
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
-_LEVEL, _SAME, _WHOLE = 1e-4, 2e-4, 0.9999  # grade, metres, share of a cell: what is level, as high, and covered
+_SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
 
@@ -160,63 +160,57 @@ def _even(
 ) -> None:  # fmt: skip
     """Count the even heights of each cell (in `counts`, one further on), or write them in `out` from there."""
     x, z, side = grid
-    writes = len(out) > 0
+    writes, parts = len(out) > 0, np.empty((1 + int((starts[1:] - starts[:-1]).max()), 3))
     for cell in range(counts.shape[0] - 1):
-        found, corner = 0, (x + side * (cell // deep), z + side * (cell % deep))
-        own = members[starts[cell] : starts[cell + 1]]
-        if level[cell] and not _rises_above(planes, own, 0.0):
-            if writes:
-                out[counts[cell]] = 0.0
-            found += 1
-        for k in range(own.shape[0]):
-            height = planes[own[k], 2]
-            under = level[cell] and -STEP <= height <= _SAME  # the plane, or below it
-            if abs(planes[own[k], 7]) + abs(planes[own[k], 8]) > _LEVEL or under:
-                continue
-            first = True
-            for j in range(k):
-                first = first and abs(planes[own[j], 2] - height) > _SAME
-            if not first or _rises_above(planes, own, height):
-                continue
-            covered = 0.0
-            for m in own:
-                if abs(planes[m, 7]) + abs(planes[m, 8]) <= _LEVEL and abs(planes[m, 2] - height) <= _SAME:
-                    covered += _area_in(planes[m], corner, side)
-            if covered >= _WHOLE * side * side:
+        count, found, corner = 0, 0, (x + side * (cell // deep), z + side * (cell % deep))
+        if level[cell]:
+            parts[0], count = (side * side, 0.0, 0.0), 1
+        for m in range(starts[cell], starts[cell + 1]):
+            parts[count] = _part_in(planes[members[m]], corner, side)
+            count += parts[count, 0] > 0.0
+        for k in range(count):
+            if _is_even(parts[:count], k, side):
                 if writes:
-                    out[counts[cell] + found] = height
+                    out[counts[cell] + found] = parts[k, 2]
                 found += 1
         if not writes:
             counts[cell + 1] = found
 
 
 @exact_kernel
-def _rises_above(planes: Floats, own: Longs, height: float) -> bool:
-    """Whether any of the triangles is higher than a height somewhere, and not everywhere by more than a step."""
-    for m in own:
-        t = planes[m]
-        second = t[2] + t[7] * (t[3] - t[0]) + t[8] * (t[4] - t[1])
-        third = t[2] + t[7] * (t[5] - t[0]) + t[8] * (t[6] - t[1])
-        if max(t[2], second, third) > height + _SAME and min(t[2], second, third) <= height + STEP + _SAME:
-            return True
-    return False
+def _is_even(parts: Floats, k: int, side: float) -> bool:
+    """Whether parts of surfaces (n, 3), area, lowest and highest point, fill a square just below the top of part `k`.
+
+    And none rises above that by less than a step. Of parts with the same top the first answers for all.
+    """
+    top, covered = parts[k, 2], 0.0
+    for i in range(parts.shape[0]):
+        area, low, high = parts[i]
+        if (i < k and abs(high - top) <= _SAME) or (high > top + _SAME and low <= top + STEP + _SAME):
+            return False
+        if low >= top - RELIEF and high <= top + _SAME:
+            covered += area
+    return bool(covered >= _WHOLE * side * side)
 
 
 @exact_kernel
-def _area_in(triangle: Floats, corner: tuple[float, float], side: float) -> float:
-    """The area of a triangle within a square, seen from above."""
+def _part_in(triangle: Floats, corner: tuple[float, float], side: float) -> tuple[float, float, float]:
+    """The area of a triangle within a square, seen from above, and the lowest and the highest point of that part."""
     piece, other = np.zeros((8, 3)), np.zeros((8, 3))
     for i, at in enumerate((0, 3, 5)):
         piece[i, 0], piece[i, 2] = triangle[at], triangle[at + 1]
+        along, aside = triangle[at] - triangle[0], triangle[at + 1] - triangle[1]
+        piece[i, 1] = triangle[2] + triangle[7] * along + triangle[8] * aside
     count = clipped(piece, 3, 0, corner[0], 1.0, other)
     count = clipped(other, count, 2, corner[1], 1.0, piece)
     count = clipped(piece, count, 0, corner[0] + side, -1.0, other)
     count = clipped(other, count, 2, corner[1] + side, -1.0, piece)
-    area = 0.0
+    area, low, high = 0.0, np.inf, -np.inf
     for i in range(count):
         j = (i + 1) % count
         area += piece[i, 0] * piece[j, 2] - piece[j, 0] * piece[i, 2]
-    return 0.5 * abs(area)
+        low, high = min(low, piece[i, 1]), max(high, piece[i, 1])
+    return 0.5 * abs(area), low, high
 
 
 def _floor_cells(floor: FloorArea, corner: tuple[float, float], cell: float, shape: tuple[int, int]) -> Bools:
