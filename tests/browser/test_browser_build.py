@@ -197,3 +197,19 @@ def test_two_fingers_zoom_and_move_the_board_and_place_nothing(open_page: Open) 
     assert live.state()["build"]["things"] == []
     live.page.touchscreen.tap(x, y)
     live.wait("s.build.things.length === 1")
+
+
+def test_back_leaves_what_is_built_and_a_link_in_the_same_tab_opens_it(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=(1280, 720))
+    live.page.locator("#scene").select_option("a")
+    live.wait("s.scene === 'a'")
+    _build(live, "a")
+    live.page.keyboard.press("2")
+    things = live.wait("s.build && s.build.things.length > 3")["build"]["things"]
+    live.page.get_by_role("button", name="Link", exact=True).click()
+    live.wait("location.hash.startsWith('#scene=')")
+    link = live.page.evaluate("location.hash")
+    live.page.go_back()
+    live.wait("s.build === null && s.scene === 'empty' && location.hash === ''")
+    live.page.evaluate("(link) => { location.hash = link; }", link)
+    assert live.wait("s.build && s.build.things.length > 0")["build"]["things"] == things

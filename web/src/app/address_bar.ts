@@ -7,6 +7,7 @@ import type { Picture } from "../picture";
 import { readWishes } from "../preferences";
 import type { Notices } from "../ui/notices";
 import { shareAddress } from "../ui/share";
+import type { Modes } from "./modes";
 import type { Taste } from "./taste";
 
 export interface AddressBarParts {
@@ -14,6 +15,7 @@ export interface AddressBarParts {
   readonly picture: Picture;
   readonly taste: Taste;
   readonly notices: Notices;
+  readonly modes: Modes;
 }
 
 export class AddressBar {
@@ -46,7 +48,8 @@ export class AddressBar {
 
   /** Goes to the place that an address names: the back button leads there. */
   private goTo(query: URLSearchParams): void {
-    const { session, taste } = this.parts;
+    const { session, taste, modes } = this.parts;
+    modes.showLive();
     const { scene, avatar, planner, queueSize, walkSpeed, camera, assist } = readWishes(query);
     session.configure({ scene, avatar, planner, queueSize, walkSpeed, assist: assist ?? true });
     taste.showCamera(camera);

@@ -110,6 +110,7 @@ export class App {
     if (odd.length > 0) this.notices.show("warning", text("address.odd", odd.join(text("list.comma"))));
     if (query.has("replay")) this.arrivals.shownRun();
     void this.modes.buildAddress(location.hash);
+    window.addEventListener("hashchange", () => void this.modes.buildAddress(location.hash)); // a link opened in this very tab
   }
 
   /** The pose that is shown. */

@@ -108,6 +108,12 @@ export class Modes {
     if (await this.build.showAddress(hash)) this.beginBuilding();
   }
 
+  /** Leaves replay and build mode: the live walk is wanted. */
+  showLive(): void {
+    this.replay.close();
+    this.build.close();
+  }
+
   private beginBuilding(): void {
     if (!this.build.active) return;
     this.parts.menu.setOpen(false);

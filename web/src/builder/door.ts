@@ -24,7 +24,7 @@ export class BuildDoor {
 
   /** Opens the scene that is shown, or closes build mode. */
   async toggle(scene: SceneMessage | null): Promise<void> {
-    if (this.active) this.build?.close();
+    if (this.active) this.close();
     else await (await this.fetched()).show(scene);
   }
 
@@ -41,6 +41,10 @@ export class BuildDoor {
     await (await this.fetched()).showText(scene);
   }
 
+  close(): void {
+    this.build?.close();
+  }
+
   /** The server answers again. */
   serverBack(): void {
     this.build?.serverBack();
@@ -49,7 +53,7 @@ export class BuildDoor {
   /** Whether build mode has an answer of its own to an action, and gives it. */
   answers(action: Action): boolean {
     if (!this.active || KEPT.has(action) || action.startsWith("view:")) return false;
-    if (action === "escape" || action === "build") this.build?.close();
+    if (action === "escape" || action === "build") this.close();
     return true;
   }
 

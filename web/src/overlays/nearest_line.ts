@@ -2,6 +2,7 @@
 
 import { CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3, type PerspectiveCamera } from "three";
 import { nearestOnBox, type PreparedBox } from "../camera/spring_arm";
+import { lengthWords } from "../texts/length";
 import { worded } from "../texts/worded";
 import { nearestOnSegment } from "./touching";
 
@@ -49,7 +50,7 @@ export class NearestLine {
     this.bar.quaternion.setFromUnitVectors(UP, length > 1e-6 ? line.divideScalar(length) : UP);
     this.bar.scale.y = Math.max(length, 1e-4);
     this.group.visible = true;
-    this.label.textContent = gap < 0 ? worded("touching") : `${(100 * gap).toFixed(gap < 0.1 ? 1 : 0)} cm`;
+    this.label.textContent = gap < 0 ? worded("touching") : lengthWords(gap, gap < 0.1 ? 1 : 0);
     this.label.classList.toggle("touching", gap < 0);
   }
 

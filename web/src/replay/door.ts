@@ -53,13 +53,17 @@ export class ReplayDoor {
   /** Opens the last walk, or closes the replay. */
   async toggle(): Promise<void> {
     if (this.active) {
-      this.replay?.close();
+      this.close();
       return;
     }
     const takes = await this.every();
     const last = takes.at(-1);
     if (last) await this.open(takes, last);
     else this.host.say("info", text("replay.none"));
+  }
+
+  close(): void {
+    this.replay?.close();
   }
 
   /** Shows a recording: a file, or the one that the server was started with. @throws Error with one sentence for the user */

@@ -1,6 +1,7 @@
 /** The panel of the replay: transport, timeline with its curves, the choice of runs. */
 
 import { make } from "../ui/dom";
+import { lengthWords } from "../texts/length";
 import { text } from "../texts/texts";
 import { drawChart, JOINT_COLORS, MARK_COLORS, type ChartData } from "./chart";
 import { JOINT_NAMES } from "./curves";
@@ -90,7 +91,7 @@ export class ReplayPanel {
     this.slider.setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
     this.head.style.left = `${duration > 0 ? (100 * time) / duration : 0}%`;
     write(this.clock, `${time.toFixed(2)} / ${duration.toFixed(2)} s`);
-    write(this.gap, Number.isFinite(clearance) ? `${(100 * clearance).toFixed(1)} cm` : text("replay.near"));
+    write(this.gap, Number.isFinite(clearance) ? lengthWords(clearance) : text("replay.near"));
     this.gap.classList.toggle("bad", clearance < 0);
     if (playing === this.playing) return;
     this.playing = playing;

@@ -1,6 +1,7 @@
 /** The card after the finish: what the crossing came to, and what to do next. */
 
 import type { Crossed } from "../generated/messages";
+import { lengthWords } from "../texts/length";
 import { worded } from "../texts/worded";
 import { text } from "../texts/texts";
 import { byId, make } from "./dom";
@@ -50,7 +51,7 @@ export class FinishCard {
 /** The rows of the card. */
 export function factsOf({ crossed, clearance, assist, best }: Finish): [string, string][] {
   const stuck = crossed.stuckTimes === 0 ? worded("never") : crossed.stuckTimes === 1 ? worded("once") : text("times", crossed.stuckTimes);
-  const least = clearance < 0 ? worded("passed through things") : Number.isFinite(clearance) ? `${(100 * clearance).toFixed(1)} cm` : worded("nothing near");
+  const least = clearance < 0 ? worded("passed through things") : Number.isFinite(clearance) ? lengthWords(clearance) : worded("nothing near");
   const time = !assist ? worded("does not count without assist") : best === null ? worded("this is the first") : `${Math.min(best, crossed.seconds).toFixed(1)} s`;
   return [[worded("Stuck"), stuck], [worded("Least clearance"), least], [worded("Best here"), time]];
 }

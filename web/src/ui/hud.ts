@@ -1,6 +1,7 @@
 /** The small table of numbers in the corner. */
 
 import type { Status } from "../generated/messages";
+import { lengthWords } from "../texts/length";
 import { text } from "../texts/texts";
 import { worded } from "../texts/worded";
 import { byId, make } from "./dom";
@@ -115,7 +116,7 @@ function plansText({ plans, plansFailed, latePlans }: Status): string {
 
 function clearanceText(clearance: number): string {
   if (!Number.isFinite(clearance)) return worded("free");
-  return clearance < 0 ? worded("touching") : `${(100 * clearance).toFixed(1)} cm`;
+  return clearance < 0 ? worded("touching") : lengthWords(clearance);
 }
 
 function tone(status: string): string {
