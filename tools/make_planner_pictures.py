@@ -16,7 +16,7 @@ from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.report.svg import label, points, tag
-from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.exact.joint.step import PRODUCT, JointStep
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch
@@ -28,6 +28,7 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 INTERVAL, SPEED = 0.15, 1.1  # seconds, m/s
+OTHERWISE = 0.2  # radians between two waists that are not the same
 TRIES = 400  # random scenes in which the joint step is looked for
 CLOSED, FREE_NEAR, FREE_FAR, WAY, OTHER = "#3b3f46", (226, 240, 217), (88, 140, 96), "#c8511b", "#2c6f93"
 STYLE = "font: 13px sans-serif; fill: #333"
@@ -118,8 +119,13 @@ def random_scene(seed: int) -> Scene:
     return replace(Scene.load("empty"), obstacles=boxes)
 
 
+def _differs(waist: Floats, dressing: UpperBodySearch, depth: int) -> bool:
+    """Whether a waist (3,) is another than the one that the waist's own search has at a key time."""
+    return float(np.linalg.norm(waist - dressing.waist_at(depth))) > OTHERWISE
+
+
 def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArray[np.int64]]:
-    """The first random scene where an arm has no way under the waist's, and all together have one; and that way."""
+    """The first random scene where an arm has no way under the waist's, and under another waist has one; and that."""
     path = walk(12, 0.0)
     for seed in range(TRIES):
         dressing = dressing_of(UpperBodyPlanner(humanoid, random_scene(seed), ExactSettings()), path)
@@ -128,7 +134,8 @@ def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArra
             continue
         step = dressing.joint_step(alone.paths[0])
         answer = step.search()
-        if len(answer.nodes):
+        depth = dressing.blocked[1]
+        if len(answer.nodes) and _differs(step.configurations(0, depth)[answer.nodes[depth, 0]], dressing, depth):
             return dressing, step, answer.nodes
     raise SystemExit(f"no scene of {TRIES} needs the joint step")
 
@@ -149,8 +156,9 @@ def joint_picture(humanoid: Humanoid) -> str:
     parts, x = [], left
     for side, name in enumerate(("left arm", "right arm")):
         prices = step.costs[side][depth, rows]
-        columns = np.flatnonzero(np.isfinite(step.nodes[1 + side].costs_alone[depth]))
-        columns = columns[np.argsort(step.nodes[1 + side].costs_alone[depth, columns], kind="stable")]
+        alone_costs = step.nodes[PRODUCT[1 + side]].costs_alone[depth]
+        columns = np.flatnonzero(np.isfinite(alone_costs))
+        columns = columns[np.argsort(alone_costs[columns], kind="stable")]
         free = np.isfinite(prices[:, columns])
         cost = np.where(free, prices[:, columns], 0.0).astype(np.float64)
         parts += [cells(free, np.clip(cost / 3.0, 0.0, 1.0), x, top, (wide, high)), label(name, x, top - 10)]

@@ -11,7 +11,7 @@ from elbowroom.planning.root.cost import prices_of, seconds_lost
 from elbowroom.planning.root.leg_check import LegCheck
 from elbowroom.planning.root.line import new_line, wanted_speed
 from elbowroom.planning.root.lower_body import LowerBody
-from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked, RootQuery
@@ -41,7 +41,7 @@ class Paths:
             Stretch(HORIZON, INTERVAL, SIGHT, REACH),
             MovingAround(self.body, STILL, 0.0, HORIZON, INTERVAL),
         )
-        found = straight_walk(self.walker, start.as_array(), line, speed, pace, stretch)
+        found = straight_walk(self.walker, start.as_array(), line, speed, pace, stretch, NONE_SLOW)
         asked = Asked(start, command, HORIZON, INTERVAL, 0.0)
         query = RootQuery(SETTINGS, self.check, self.routes, asked, REACH, around)
         answer = query.travelled(line, pace * speed, SIGHT)

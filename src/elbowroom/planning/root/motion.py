@@ -29,6 +29,8 @@ _SIDLE = 0.6  # radians: the greatest angle between the path and the body's fron
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
 _GRADE_OVER = 0.12  # metres to either side between which the grade is taken
+SLOWED, SLOWED_FROM = 0.15, 0.75  # metres to a slow place: slowed down; and where that begins
+NONE_SLOW = np.empty((0, 3))  # slow places where none is
 _NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
 
 
@@ -64,6 +66,7 @@ class Travel(NamedTuple):
     facing: float  # heading to hold; used unless `turns`
     turns: bool  # whether the body turns to where it goes
     stops: bool  # whether it must stand at the route's end
+    slow: Floats  # (K, 3) places x, z on which it is walked at a share of the speed
 
 
 @exact_kernel
@@ -186,13 +189,27 @@ def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, f
 
 
 @exact_kernel
+def _share_at(slow: Floats, state: Floats, interval: float) -> float:
+    """The share of the wanted speed that slow places (K, 3) leave where a root state (7,) will be in a key interval."""
+    sine, cosine, share = np.sin(state[2]), np.cos(state[2]), 1.0
+    x = state[0] + interval * (state[3] * sine + state[4] * cosine)
+    z = state[1] + interval * (state[3] * cosine - state[4] * sine)
+    for n in range(slow.shape[0]):
+        away = np.hypot(slow[n, 0] - x, slow[n, 1] - z)
+        part = min(max((away - SLOWED) / (SLOWED_FROM - SLOWED), 0.0), 1.0)
+        least = slow[n, 2] * slow[n, 2]
+        share = min(share, np.sqrt(least + (1.0 - least) * part))  # slowing down evenly
+    return share
+
+
+@exact_kernel
 def follow(states: Floats, route: Floats, travel: Travel, interval: float, bounds: MotionBounds) -> None:
     """Fill the states by walking along `route` (m, 2), corner points x, z on the ground."""
     look_ahead = _AIM + _AIM_LATER * travel.speed
     for k in range(states.shape[0] - 1):
         x, z, heading = states[k, 0], states[k, 1], states[k, 2]
         aim_x, aim_z, left = _aim(route, x, z, look_ahead)
-        speed = travel.speed
+        speed = travel.speed * _share_at(travel.slow, states[k], interval)
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
             speed = min(speed, np.sqrt(bounds.acceleration * max(0.0, left - 0.5 * now * interval)))

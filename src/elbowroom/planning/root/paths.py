@@ -14,13 +14,17 @@ from elbowroom.body.gait import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.pace import slow_places
+from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.ahead import Above, RouteFinder
 from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
 from elbowroom.planning.root.evasion import EvasionFinder
+from elbowroom.planning.root.hull import route_is_open
 from elbowroom.planning.root.leg_check import LegCheck
-from elbowroom.planning.root.line import TravelLine, wanted_speed, wanted_velocities
+from elbowroom.planning.root.line import TravelLine, straight_route, wanted_speed, wanted_velocities
 from elbowroom.planning.root.lower_body import LowerBody
-from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
@@ -55,6 +59,7 @@ class RootPaths:
         )
         self.evasions = tuple(EvasionFinder(humanoid, scene, grid) for grid in (settings.evasion, settings.wide))
         self._figure = _figure(body.model)
+        self._narrow = NarrowPlaces(figure_of(humanoid, body.model), scene.free_map)
         self._scenes = scene.obstacles.moving
         self.others = Moving()
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
@@ -116,17 +121,27 @@ class RootPaths:
         """Along a line of travel."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
+        slow = self._slow(asked, line, sight)
         if not self._moving.tracks and self._routes.above is None:
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
-            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch)
+            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch, slow)
             if free:
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
                 return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, sight)
+        answer = query.travelled(line, pace * speed, sight, slow)
         return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
+
+    def _slow(self, asked: Asked, line: TravelLine, sight: float) -> Floats:
+        """Where it is narrow on a line of travel, and how slow one is there, (K, 3)."""
+        start, reach = asked.start, self._reach(asked.horizon * asked.interval)
+        near = self._check.body.near(start.x, start.z, reach, start.height)
+        route = straight_route(float(start.x), float(start.z), line, sight)
+        if near.empty or route_is_open(route, start.height, self._narrow.half, near.ground):
+            return NONE_SLOW
+        return slow_places(self._narrow, line, line.coordinates(start.x, start.z)[0], sight, start.height)
 
     def evaded(
         self, asked: Asked, line: TravelLine, finder: EvasionFinder, kept: Profile | None
@@ -178,9 +193,8 @@ class RootPaths:
 
     def _lost(self, asked: Asked, line: TravelLine, speed: float, answer: Answer) -> float:
         duration, around = asked.horizon * asked.interval, self._query(asked).around
-        return seconds_lost(
-            self.settings, line, speed, answer.states, duration, ends=answer.ends, around=around, figure=self._figure
-        )
+        states, ends = answer.states if answer.brisk is None else answer.brisk, answer.ends
+        return seconds_lost(self.settings, line, speed, states, duration, ends=ends, around=around, figure=self._figure)
 
 
 def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:

@@ -15,7 +15,7 @@ from elbowroom.planning.root.evasion import Evasion
 from elbowroom.planning.root.leg_check import FreeLegs, LegCheck
 from elbowroom.planning.root.line import TravelLine
 from elbowroom.planning.root.lower_body import Neighbours
-from elbowroom.planning.root.motion import Travel, brake, follow, gets_nowhere, steer
+from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, gets_nowhere, steer
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.profile import Course, follow_profile
@@ -45,6 +45,7 @@ class Answer(NamedTuple):
     goal: tuple[float, float]  # x, z
     ends: bool  # whether the route that was checked ends before something
     whole: bool = True  # whether it is walked as planned, to the end
+    brisk: Floats | None = None  # the same were nothing narrow: who is slower there loses nothing
 
 
 class RootQuery:
@@ -185,12 +186,18 @@ class RootQuery:
             states = self._crept(states, candidate)
         return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
-    def travelled(self, line: TravelLine, speed: float, sight: float) -> Answer:
-        """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it."""
+    def travelled(self, line: TravelLine, speed: float, sight: float, slow: Floats = NONE_SLOW) -> Answer:
+        """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it.
+
+        It is slower at `slow` places, as in `Travel`.
+        """
         route = self._route_along(line, sight)
 
-        def candidate(share: float) -> Floats:
-            return walked(Travel(share * speed, line.facing, line.turns, route.ends))
+        def candidate(share: float, slow: Floats = slow) -> Floats:
+            return walked(Travel(share * speed, line.facing, line.turns, route.ends, slow))
+
+        def creeping(share: float) -> Floats:
+            return walked(Travel(share * speed, self.start.heading, False, route.ends, slow))
 
         def walked(travel: Travel) -> Floats:
             states = self._blank()
@@ -198,9 +205,10 @@ class RootQuery:
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
-        states = self._crept(states, lambda share: walked(Travel(share * speed, self.start.heading, False, route.ends)))
+        states = self._crept(states, creeping)
         kind = self._kind(states, whole=number == 0, detour=route.detour)
-        return Answer(states, kind, _place(route.corners[-1]), route.ends)
+        brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
+        return Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk)
 
     def _route_along(self, line: TravelLine, sight: float) -> Route:
         """The route along a line of travel; the same at every pace."""

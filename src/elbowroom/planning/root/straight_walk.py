@@ -43,12 +43,12 @@ class Stretch(NamedTuple):
 
 @exact_kernel
 def straight_walk(
-    walker: Walker, start: Floats, line: TravelLine, speed: float, pace: float, stretch: Stretch
+    walker: Walker, start: Floats, line: TravelLine, speed: float, pace: float, stretch: Stretch, slow: Floats
 ) -> tuple[bool, Floats, bool, float, float, float]:
     """A walk from `start` (7,) along a line of travel, whose wanted speed it makes at a share `pace`.
 
     Returns whether nothing is near; if so, the states (n+1, 7), whether they get nowhere, the seconds that they lose,
-    and x and z of the end of the route.
+    and x and z of the end of the route. It is slower at `slow` places, as in `Travel`, and loses nothing by that.
     """
     who, x, z = walker, start[0], start[1]
     states = np.empty((stretch.horizon + 1, start.shape[0]))
@@ -58,10 +58,12 @@ def straight_walk(
         return False, states, False, 0.0, 0.0, 0.0
     for c in range(start.shape[0]):
         states[0, c] = start[c]
-    travel = Travel(pace * speed, line.facing, line.turns, ends)
+    travel = Travel(pace * speed, line.facing, line.turns, ends, slow[:0])
     follow(states, route, travel, stretch.interval, who.bounds)
+    lost = lost_on_line(who.prices, line, speed, states, stretch.horizon * stretch.interval, ends)
+    if slow.shape[0] > 0:
+        follow(states, route, Travel(pace * speed, line.facing, line.turns, ends, slow), stretch.interval, who.bounds)
     braking, swinging = who.bounds.braking, who.bounds.turn_acceleration
     moving, stopping = to_check(states, stretch.interval, braking, swinging, who.skin, who.hull, ground)
-    lost = lost_on_line(who.prices, line, speed, states, stretch.horizon * stretch.interval, ends)
     free = not (moving.any() or stopping.any())
     return free, states, gets_nowhere(states), lost, route[-1, 0], route[-1, 1]

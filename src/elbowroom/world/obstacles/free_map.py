@@ -53,6 +53,7 @@ class FreeMap:
         """
         self._near, self._ground = near, ground
         self._tiles: dict[tuple[int, int, int], Floats32] = {}
+        self._last: tuple[tuple[int, ...], Window] | None = None  # the tiles that were asked for last, on plain ground
 
     def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0)) -> Window:
         """The part between two corners (2,) on the ground, x and z; it may reach a little farther.
@@ -62,11 +63,18 @@ class FreeMap:
         side = CELL * TILE
         first = [int(np.floor(edge / side)) for edge in low]
         last = [int(np.floor(edge / side)) for edge in high]
+        ends = *first, *last
+        known = self._last
+        if known is not None and known[0] == ends:
+            return known[1]
         columns = [
             np.concatenate([self._tile(i, k, start) for k in range(first[1], last[1] + 1)], axis=2)
             for i in range(first[0], last[0] + 1)
         ]
-        return Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
+        found = Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
+        if self._ground.plain:
+            self._last = ends, found
+        return found
 
     def distances(self, places: Floats, height: float, floor: float = 0.0) -> Floats32:
         """How far what stands lower than `height` is from places (..., 2), x and z, to some centimetres.

@@ -25,10 +25,14 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
+from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.goals import goals_where_narrow
+from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath, ground_covered
 from elbowroom.world.obstacles.along import Along
 from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.rows import any_in
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -53,6 +57,7 @@ class UpperBodyPlanner:
         body = body_model(humanoid)
         self._legs = LoweredLegs(body, scene.obstacles, scene.ground)
         self._underfoot = Footing(body, scene.ground).underfoot
+        self._narrow = NarrowPlaces(figure_of(humanoid, body), scene.free_map)
         self.reset()
 
     @property
@@ -122,7 +127,10 @@ class UpperBodyPlanner:
         caches = self.memory.begin(path.horizon)
         roots = begin_root_sweeps(caches.groups[DofGroup.WAIST], path.states, path.interval, near.stamps)
         margins = self._required(path, begins.ahead)
-        problem = PathProblem.of(path, self.model.goals(path), previous, begins, roots, near, margins)
+        goals = self.model.goals(path)
+        if any_in(near.spans):
+            goals = goals_where_narrow(self._narrow, path, goals)
+        problem = PathProblem.of(path, goals, previous, begins, roots, near, margins)
         return UpperBodySearch(caches, weights, self.model, legs, problem, go_on)
 
     def _required(self, path: RootPath, ahead: int) -> RequiredMargins:

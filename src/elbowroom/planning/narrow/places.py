@@ -1,0 +1,85 @@
+"""Where a way is narrow: things stand to both sides of it. A wall ahead makes no way narrow, nor does one beside."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.narrow.figure import Figure
+from elbowroom.world.obstacles.free_map import CELL, FreeMap, Window
+
+Floats = NDArray[np.float64]
+Pair = tuple[float, float]  # x and z
+
+EVERY = 0.05  # metres between places that are looked at
+MARGIN = 0.075  # metres that people like to leave on either side
+_TOUCH = 0.03  # metres: what is nearer than this to a look is met
+_COARSE = 0.01  # metres that the map says too much hard by a wall
+_LOOKS = 24  # to a side
+_BODY = 0.5  # of the least half breadth: where what stands is nearer than that nobody goes
+
+
+class NarrowPlaces:
+    """Finds narrow places for one body among what stands."""
+
+    def __init__(self, figure: Figure, free_map: FreeMap) -> None:
+        self.figure, self._map = figure, free_map
+        self.half = figure.swinging + MARGIN  # metres: half the distance of two things between which nobody minds any
+
+    def on(self, ways: Floats, height: float) -> Floats:
+        """The narrow ones (K, 3) of ways (N, 4): places x, z and half the distance of what stands to both sides.
+
+        A way has a place and the direction in which one walks there, a unit vector. To the first one comes from a
+        `height`.
+        """
+        low, high = ways[:, :2].min(axis=0) - 2.0 * self.half, ways[:, :2].max(axis=0) + 2.0 * self.half
+        window = self._map.window(low, high, (float(ways[0, 0]), height, float(ways[0, 1])))
+        return _narrow_ones(window, self.figure, self.half, ways)
+
+
+@exact_kernel
+def _narrow_ones(window: Window, figure: Figure, half: float, ways: Floats) -> Floats:
+    out, count, far = np.empty((ways.shape[0], 3)), 0, 2.0 * half
+    for n in range(ways.shape[0]):
+        place, across = (ways[n, 0], ways[n, 1]), (ways[n, 3], -ways[n, 2])
+        inside = _free(window, figure, place[0], place[1]) < _BODY * figure.slim
+        left = far if inside else _beside(window, figure, place, across, far)
+        if left < far:
+            both = left + _beside(window, figure, place, (-across[0], -across[1]), far - left)
+            if both < far:
+                out[count, 0], out[count, 1], out[count, 2] = ways[n, 0], ways[n, 1], 0.5 * both
+                count += 1
+    return out[:count].copy()
+
+
+@exact_kernel
+def _beside(
+    window: Window, figure: Figure, place: tuple[float, float], aside: tuple[float, float], far: float
+) -> float:
+    """Metres from a place in the direction `aside` to what stands there; `far` if that is farther.
+
+    Each look leads as far on as nothing is near.
+    """
+    gone = 0.0
+    for _ in range(_LOOKS):
+        free = _free(window, figure, place[0] + gone * aside[0], place[1] + gone * aside[1])
+        if free < _TOUCH:
+            return float(min(gone + max(free - _COARSE, 0.0), far))
+        gone += free
+        if gone >= far:
+            break
+    return far
+
+
+@exact_kernel
+def _free(window: Window, figure: Figure, x: float, z: float) -> float:
+    """The free distance at a place, bilinear, at the levels of a figure; the window's edge holds outside."""
+    free, least = window.distances, np.inf
+    p = min(max((x - window.x) / CELL, 0.0), free.shape[1] - 1.0)
+    q = min(max((z - window.z) / CELL, 0.0), free.shape[2] - 1.0)
+    i, k = min(int(p), free.shape[1] - 2), min(int(q), free.shape[2] - 2)
+    u, v = p - i, q - k
+    for n in range(figure.low, figure.high):
+        low = free[n, i, k] * (1.0 - v) + free[n, i, k + 1] * v
+        high = free[n, i + 1, k] * (1.0 - v) + free[n, i + 1, k + 1] * v
+        least = min(least, low * (1.0 - u) + high * u)
+    return float(least)
