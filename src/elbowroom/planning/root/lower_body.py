@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.root.hull import Ground, ground_below, joined_ground, some_ground, stride_hull
 from elbowroom.world.ground import ground as walked
-from elbowroom.world.ground.ground import heights_along, heights_beside
+from elbowroom.world.ground.ground import STEP, heights_along, heights_beside
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
@@ -53,9 +53,9 @@ class Neighbours(NamedTuple):
             return self
         return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
 
-    def above(self, floor: float) -> "Neighbours":
-        """Those that rise above a height."""
-        rises = self.ground.heights[:, 1] > floor
+    def above(self, floor: float, top: float = math.inf) -> "Neighbours":
+        """Those that rise above a height and begin below another."""
+        rises = (self.ground.heights[:, 1] > floor) & (self.ground.heights[:, 0] < top)
         return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_ground(self.ground, rises))
 
     def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
@@ -84,6 +84,7 @@ class LowerBody:
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach = _measure(self.model)
         tall = height + _SPARE_HEIGHT
+        self._tall = tall + STEP  # metres above the ground: what begins higher is not met by legs, as on the plane
         corners, height = obstacles.corners, tall if ground.plain else math.inf
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
@@ -124,7 +125,7 @@ class LowerBody:
         if self.footing.plain:
             return clearance(leg_capsules(self.model, states), self.radii, near.obstacles, farthest)
         rows, found = self.footing.stood(states)
-        near = near.above(float(self.footing.floors(rows).min()))
+        near = near.above(float(self.footing.floors(rows).min()), float(rows[:, HEIGHT].max()) + self._tall)
         segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, rows, spare=spare)
         clear = clearance(segments, self.radii, near.obstacles, farthest)
         return np.where(found, clear, np.float32(-1.0))
@@ -143,7 +144,7 @@ class LowerBody:
         above = np.where(there, heights, height)
         raised = self.raised_stance
         segments[0, 1], segments[0, 4] = above + raised.low, above + raised.high
-        near = among.above(float(above.min()) + _FAR_BELOW)
+        near = among.above(float(above.min()) + _FAR_BELOW, float(above.max()) + self._tall)
         return np.where(there, clearance(segments.astype(np.float32), radii, near.obstacles), np.float32(-1.0))
 
     @property
@@ -163,7 +164,7 @@ class LowerBody:
         heights = heights_beside(self.footing.ground, grid.height, grid.first, places)
         there = np.isfinite(heights)
         above = np.where(there, heights, grid.height)
-        near = among.above(float(above.min()) + _FAR_BELOW).obstacles
+        near = among.above(float(above.min()) + _FAR_BELOW, float(above.max()) + self._tall).obstacles
         found = walkable_window(near, self.raised_stance, origin, heading, shape, cell, farthest, above)
         return replace(found, clearance=np.where(there, found.clearance, np.float32(-1.0)))
 

@@ -82,7 +82,7 @@ class Room:
         self._checked = 0
         self._cells = _Cells(
             self.clear, self.shift, known, places, floor, aside, grid, capsules, body.groups, body.radii,
-            turned.discs.reach,
+            turned.discs.reach, float((turned.capsules[:, :, [1, 4]].max(axis=2) + body.radii).max()),
         )  # fmt: skip
         discs = _shape(turned.discs, line.facing)
         _read(self.clear, window, discs, places, grid)
@@ -110,6 +110,7 @@ class _Cells(NamedTuple):
     groups: Indices  # (4,) where legs, trunk and arms begin among them; the end
     radii: Floats32  # (C,)
     reach: float  # of them
+    tall: float  # how high they reach, metres
 
 
 @exact_kernel
@@ -142,10 +143,15 @@ def _copy_near(own: Nearby, room: _Cells, i: int, j: int, out: Nearby) -> int:
     """Copy the obstacles that may come near a body in row i and column j to `out`, as seen from there; their number."""
     reach, count = room.reach + room.grid.comfort + 2.0 * room.grid.aside, 0
     place, height = room.places[i, j], room.floor.heights[i, j]
+    top = height + room.tall + room.grid.comfort
     for b in range(how_many(own)):
         x, z = place_of(own, b)
-        high = heights_of(own, b)[1] > height + room.floor.step
-        if high and np.hypot(x - place[0], z - place[1]) < ball_radius(own, b) + reach:
+        bottom, high = heights_of(own, b)
+        if (
+            bottom < top
+            and high > height + room.floor.step
+            and np.hypot(x - place[0], z - place[1]) < ball_radius(own, b) + reach
+        ):
             shifted_into(own, b, (place[0], height, place[1]), out, count)
             count += 1
     return count
