@@ -11,6 +11,7 @@ from pathlib import Path
 from PIL import Image
 
 from elbowroom.errors import InputError
+from elbowroom.film.gif import write_gif
 from elbowroom.film.page import FilmedPage
 from elbowroom.film.webm import Packet, write_webm
 
@@ -68,8 +69,7 @@ def _write_webm(page: FilmedPage, path: Path, fps: float, pictures: Pictures) ->
 
 
 def _write_gif(page: FilmedPage, path: Path, fps: float, pictures: Pictures) -> None:  # noqa: ARG001
-    frames = [_image(picture()).quantize(128, method=Image.Quantize.MEDIANCUT) for picture in pictures]
-    frames[0].save(path, save_all=True, append_images=frames[1:], duration=1000.0 / fps, loop=0, optimize=False)
+    write_gif(path, fps, [picture() for picture in pictures])
 
 
 def _write_mp4(page: FilmedPage, path: Path, fps: float, pictures: Pictures) -> None:  # noqa: ARG001
