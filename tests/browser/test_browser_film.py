@@ -53,3 +53,36 @@ def test_a_sheet_has_sixteen_moments_and_none_like_another(recording: Path, tmp_
     assert sheet.size == (128, 96)
     tiles = [sheet.crop((32 * (i % 4), 24 * (i // 4), 32 * (i % 4) + 32, 24 * (i // 4) + 24)) for i in range(16)]
     assert len({tile.tobytes() for tile in tiles}) > 8
+
+
+DEAF = """data:text/html,<script>
+let heard = 0;
+window.__app = { replay: { playing: true, duration: 2 }, avatarLoaded: true, framesDrawn: 9 };
+addEventListener("keydown", () => { heard += 1; if (heard === 3) window.__app.replay.playing = false; });
+</script>"""
+FILMED = """
+import sys
+from elbowroom.errors import InputError
+from elbowroom.film import page
+page._PATIENCE = 5.0
+try:
+    with page.filmed_page(sys.argv[1], page.Look((64, 48))) as filmed:
+        print(filmed.duration)
+except InputError as error:
+    print(error)
+"""
+
+
+@pytest.mark.usefixtures("chromium")
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        ("data:text/html,<title>nothing</title>", "the page was not drawn within 5 s: a smaller --size or"),
+        (DEAF, "2"),
+    ],
+    ids=["nothing comes up", "keys are missed"],
+)
+def test_a_page_that_does_not_come_up_is_told_and_one_that_misses_keys_is_asked_again(page: str, said: str) -> None:
+    ran = subprocess.run([sys.executable, "-c", FILMED, page], check=True, capture_output=True, text=True)
+    assert ran.stdout.startswith(said)
+    assert len(ran.stdout.splitlines()) == 1

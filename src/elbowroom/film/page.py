@@ -21,6 +21,7 @@ FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader
 CODECS = {"vp8": "V_VP8", "vp09.00.10.08": "V_VP9"}  # as browsers and as Matroska name them
 
 _PATIENCE = 600.0  # seconds: the pictures may be drawn without a graphics card
+_TIMES = 10  # that a key is pressed within it
 _SETTLED = 2  # pictures until what was asked for is drawn
 _KEY_EVERY = 60  # pictures
 _SEEK = """(time) => {
@@ -143,7 +144,7 @@ class FilmedPage:
 def filmed_page(url: str, look: Look) -> Iterator[FilmedPage]:
     """The page of a server in a headless browser; raises `InputError` where there is none."""
     try:
-        from playwright.sync_api import Error, sync_playwright
+        from playwright.sync_api import Error, TimeoutError, sync_playwright
     except ImportError:
         raise InputError("films need Playwright, which drives the browser: pip install 'elbowroom[film]'") from None
 
@@ -159,10 +160,25 @@ def filmed_page(url: str, look: Look) -> Iterator[FilmedPage]:
             viewport={"width": width, "height": height}, bypass_csp=True, reduced_motion="reduce", device_scale_factor=1
         )
         page.set_default_timeout(1000.0 * _PATIENCE)
-        page.goto(f"{url}/?{query}")
-        page.wait_for_function("window.__app?.replay && window.__app.avatarLoaded && window.__app.framesDrawn > 3")
-        if page.evaluate("window.__app.replay.playing"):
-            page.keyboard.press("Space")
-            page.wait_for_function("!window.__app.replay.playing")
-        yield FilmedPage(page, look)
+        try:
+            page.goto(f"{url}/?{query}")
+            page.wait_for_function("window.__app?.replay && window.__app.avatarLoaded && window.__app.framesDrawn > 3")
+            _pause(page, TimeoutError)
+            yield FilmedPage(page, look)
+        except TimeoutError:
+            late = f"the page was not drawn within {_PATIENCE:g} s"
+            raise InputError(f"{late}: a smaller --size or --quality low is drawn sooner") from None
         browser.close()
+
+
+def _pause(page: Any, late: type[Exception]) -> None:
+    """Press Space until the replay stands: a page that is busy may miss a key. Raises `late` if it never does."""
+    for left in reversed(range(_TIMES)):
+        if not page.evaluate("window.__app.replay.playing"):
+            return
+        page.keyboard.press("Space")
+        try:
+            page.wait_for_function("!window.__app.replay.playing", timeout=1000.0 * _PATIENCE / _TIMES)
+        except late:
+            if not left:
+                raise
