@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
@@ -104,3 +105,18 @@ def test_a_step_round_a_corner_turns_the_feet() -> None:
     yaws = frame.root[[ROOT_STATE + 2, ROOT_STATE + FOOT + 2]]
     assert np.abs(yaws).max() < 1.0
     assert abs(frame.root[2]) > math.pi
+
+
+@pytest.mark.parametrize("width", [0.42, 0.45, 0.48])
+def test_between_two_walls_it_does_not_move_where_legs_stay_clear(width: float) -> None:
+    """Legs are so near the walls that they used to glide where the planner has them."""
+    walls = [
+        {"type": "box", "center": [side * (0.5 * width + 0.5), 1.0, 2.0], "size": [1.0, 2.0, 0.8]} for side in (-1, 1)
+    ]
+    scene = Scene.of("between walls", walls, finish=(0.0, 5.0))
+    controller, check = Controller(HUMANOID, scene), BodyCheck(HUMANOID, scene)
+    rows = np.array([controller.step(Command(forward=float(k < 200)), FRAME).root for k in range(300)])
+    room = np.array([check.room_of_legs(row, np.zeros(LOCAL), 0.0) for row in rows])
+    assert slides(rows) < 1e-9
+    assert rows[-1, 1] > 2.6
+    assert 0.0 < room.min() < 0.1

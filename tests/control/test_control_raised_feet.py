@@ -41,7 +41,7 @@ def test_ways_on_which_skin_could_touch_come_last() -> None:
 
     def first(close_below: float) -> float:
         def look(root: Floats, _: Floats) -> Around:
-            return Around(0.002 if root[RISES + 2] < close_below else 0.1, NOTHING)
+            return Around(0.002 if root[RISES + 2] < close_below else 0.1, NOTHING, lasts=True)
 
         moment = Moment(shown, DT, UNKNOWN, 0.1, look)
         ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))

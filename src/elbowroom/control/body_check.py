@@ -146,7 +146,7 @@ class BodyCheck:
         if self.alone:
             return True
         ways, (first, last) = self._levers.travel(frames.roots, frames.uppers), frames.times
-        if self._accompanied:
+        if self.accompanied:
             farthest = float(ways.max())
             movers = [around.moving.fastest * (last - first) for around in self._around]
             movers += [other.travel(first, last) for other in self.others]
@@ -178,7 +178,7 @@ class BodyCheck:
         return bool(gaps[:, parts.indices].min() >= 0.0)
 
     @property
-    def _accompanied(self) -> bool:
+    def accompanied(self) -> bool:
         """Whether there is anything that can move."""
         return bool(self.others or self._around)
 
@@ -195,7 +195,7 @@ class BodyCheck:
         roots[:, :2] -= first[:2]
         axes = self._capsules(np.concatenate([roots[:, :3], uppers], axis=1), roots)
         gaps = self._soles.clearances(self._standing, axes, first[:2], floors)
-        if not self._accompanied:
+        if not self.accompanied:
             return gaps
         times = before + shares * (after - before)
         moving = [self._from_moving(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
@@ -207,7 +207,7 @@ class BodyCheck:
         Where anything can move, from that too, from what is loose, and from each of the others: one more for each.
         """
         gaps = self._from_standing(pose)
-        if not self._accompanied:
+        if not self.accompanied:
             return gaps
         return np.append(gaps, np.array(self._from_moving(pose.axes, pose.root, time), np.float32))
 
@@ -251,7 +251,7 @@ class BodyCheck:
         """The least clearance of a pose, or of some `parts` of it; from others as they are at a time of theirs."""
         some = slice(None) if parts is None else parts
         found, axes, radii = [float(self._from_standing(pose)[some].min())], pose.axes, self._radii
-        if self._accompanied:
+        if self.accompanied:
             axes, radii = np.ascontiguousarray(axes[some]), radii[some]
             found += [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]
             found += [other.clearance(axes, radii, pose.root, others_at) for other in self.others]

@@ -131,7 +131,7 @@ class Showing:
     def _look(self, root: Floats, upper: Floats) -> Around:
         """What stands and moves about a body."""
         check = self._around.check
-        return Around(check.room_of_legs(root, upper, self._now), check.axes(root, upper))
+        return Around(check.room_of_legs(root, upper, self._now), check.axes(root, upper), not check.accompanied)
 
     def _clearance_of(self, root: Floats, upper: Floats) -> float:
         """Of a pose, now."""

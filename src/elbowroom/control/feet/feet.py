@@ -17,6 +17,7 @@ class Around(NamedTuple):
 
     room: float  # metres from the legs to the nearest obstacle
     axes: Floats32  # (C, 6, 1) of its capsules
+    lasts: bool  # whether all of it stands and can only stand
 
 
 Look = Callable[[Floats, Floats], Around]  # for a root with feet and an upper body

@@ -24,6 +24,8 @@ from elbowroom.planning.shared import Shared
 Floats = NDArray[np.float64]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
+_CLEAR = 0.008  # metres about the legs that have to stay, where there are less, as far ahead as is known
+_PIECE, _FORESEEN = 0.05, 0.75  # seconds between looks ahead, and in all
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
@@ -73,7 +75,7 @@ class Stepping:
         """How a pose is shown next, if that is free: see `under`."""
         after = self._steps(moment, posed)
         around = moment.look(after.root, posed.upper)
-        if around.room < _ROOM:
+        if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
             after = self._glides(moment, posed)
             around = moment.look(after.root, posed.upper)
         return after._replace(upper=self._arms.apart(after.root, posed.upper, around.axes))
@@ -81,9 +83,9 @@ class Stepping:
     def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
 
-        Where legs have room feet step to where the root is to come, else they glide to where they were planned, and
-        arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go as planned; or
-        feet step, or wait.
+        Where legs have room, and will have some, feet step to where the root is to come, else they glide to where they
+        were planned, and arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go
+        as planned; or feet step, or wait.
         """
         still = moment._replace(room=_NOT_AT_ALL)
         for posed, stance in played:
@@ -98,6 +100,25 @@ class Stepping:
             root = onward(self._gait, moment.shown.root, posed.root, 0.0)
             if not self._is_strained(root, posed.upper):
                 yield self._alive(still, root, posed), stance
+
+    def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
+        """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
+        return all(moment.look(row, upper).room >= _CLEAR for row in self._foreseen(moment, root[:WITH_FEET]))
+
+    def _foreseen(self, moment: Moment, root: Floats) -> Iterator[Floats]:
+        """Root states with feet (WITH_FEET,) from `root` on, as the root goes on and feet step."""
+        yield root
+        since, ahead = 0.0, moment.ahead[moment.ahead[:, 0] > 0.0]
+        for n, (until, *_) in enumerate(ahead.tolist()):
+            span, begin, coming = until - since, root[:ROOT_STATE], ahead[n:].copy()
+            pieces = max(round(span / _PIECE), 1)
+            for share in np.arange(1.0, pieces + 1.0) / pieces:
+                coming[:, 0] = ahead[n:, 0] - since - share * span
+                root = onward(self._gait, root, begin + share * (ahead[n, 1:] - begin), span / pieces, coming)
+                yield root
+            since = until
+            if since >= _FORESEEN:
+                break
 
     def _steps(self, moment: Moment, posed: Playback) -> Playback:
         return self._alive(moment, onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead), posed)
