@@ -1,6 +1,6 @@
 """What can be said of a call's arguments before anything heavy is imported."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from elbowroom.errors import InputError
@@ -8,17 +8,24 @@ from elbowroom.errors import InputError
 
 def check_arguments(
     *,
-    scenes: Iterable[str] = (),
+    scenes: Collection[str] = (),
     planners: Iterable[str] = (),
     queues: Iterable[int] = (),
     level: int | None = None,
     files: Iterable[Path | None] = (),
+    clips: Iterable[str] = (),
+    written: Iterable[Path | None] = (),
 ) -> None:
-    """Raises `InputError` for names that nothing has, sizes out of range and files that are not there."""
+    """Raises `InputError` for names that nothing has, sizes out of range and files that are not there.
+
+    `clips` are references, FILE or FILE#CLIP; `written` are files to come, whose folders must be there.
+    """
+    from elbowroom.clips.reference import split_reference
     from elbowroom.control.settings import check_queue_size
     from elbowroom.experiment.gauntlet.levels import level_of
-    from elbowroom.experiment.gauntlet.names import check_name
+    from elbowroom.experiment.gauntlet.names import check_name, is_course
     from elbowroom.planning.names import check_planner
+    from elbowroom.world.stock_scenes import stock_names
 
     for planner in planners:
         check_planner(planner)
@@ -28,9 +35,13 @@ def check_arguments(
         level_of(level)
     for scene in scenes:
         check_name(scene)
-    for file in files:
+    named = [Path(scene) for scene in scenes if scene.lower() not in stock_names() and not is_course(scene)]
+    for file in (*named, *files, *(split_reference(clip)[0] for clip in clips)):
         if file is not None:
             _check_file(file)
+    for file in written:
+        if file is not None and not file.parent.is_dir():
+            raise InputError(f"{file}: cannot be written (there is no folder {file.parent})")
 
 
 def _check_file(file: Path) -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 
@@ -35,7 +35,7 @@ def motion(
     from elbowroom.experiment.motion.report import MotionSettings, amount, run
 
     settings = MotionSettings(tuple(case or ()), _speeds(speeds))
-    humanoid = chosen_avatar(avatar, bones, height, include_hair)
+    humanoid = chosen_avatar(avatar, settings_by(bones, height, include_hair))
     compile_first(quiet=quiet)
     if plots is not None:
         _write(plots, {})

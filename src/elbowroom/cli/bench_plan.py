@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 
@@ -29,6 +30,7 @@ def plan(
     from elbowroom.experiment.machine import machine_kind
 
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
+    check_arguments(scenes=[scene])
     compile_first(quiet=quiet)
     if plots is not None:
         _make_folder(plots)

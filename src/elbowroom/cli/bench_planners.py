@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 from elbowroom.cli.workers import Cluster, check_cluster, chosen_workers
@@ -42,6 +43,7 @@ def planners(
     if scene is not None or level is not None:
         chosen = PlannersSettings(tuple(scene or ()), tuple(level or ()), trials, limit)
     check_cluster(cluster)
+    check_arguments(scenes=scene or ())
     compile_first(quiet=quiet)
     with chosen_workers(cluster, jobs) as workers, progress_bar("Crossing", amount(chosen), quiet) as bar:
         report = run(chosen, bar.move, workers)

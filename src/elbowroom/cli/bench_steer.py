@@ -41,9 +41,11 @@ def steer(
     the one that was asked for.
     """
     from elbowroom.experiment.bench.steer import SteerSettings, amount, run
+    from elbowroom.experiment.bench.steer_scenes import check_steered
     from elbowroom.experiment.machine import machine_kind
 
     settings = SteerSettings(tuple(scene or (_LIVE if sessions else ())), seconds, rounds)
+    check_steered(settings.scenes)
     compile_first(quiet=quiet)
     with progress_bar("Steering", len(settings.scenes) if sessions else amount(settings), quiet) as bar:
         if sessions:

@@ -31,6 +31,11 @@ def told_by(unit: str | None, up: str | None, fps: float | None) -> "Told":
     return Told(unit, up, fps)
 
 
+def named_by(swing: str | None, dodge: list[str] | None) -> list[str]:
+    """All clips that the options name."""
+    return [*([] if swing is None else [swing]), *(dodge or ())]
+
+
 def motions_by(swing: str | None, dodge: list[str] | None, told: "Told") -> "MotionSet":
     """The motions that the options ask for; raises `InputError`."""
     from elbowroom.clips.clip import Clip, motions_of

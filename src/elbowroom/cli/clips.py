@@ -59,7 +59,8 @@ def clips(
 
 def _rows(references: list[str], told: "Told") -> tuple[list[dict[str, Any]], dict[str, str]]:
     """A row for every clip, and why files or clips were refused."""
-    from elbowroom.clips.files import open_motion, split_reference
+    from elbowroom.clips.files import open_motion
+    from elbowroom.clips.reference import split_reference
     from elbowroom.errors import InputError
 
     rows: list[dict[str, Any]] = []

@@ -1,5 +1,6 @@
 """`elbowroom gauntlet`: random courses that are feasible by construction."""
 
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.time_left import time_left_bar
@@ -67,13 +68,14 @@ def gauntlet(
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones])
     check_cluster(cluster)
-    compile_first(quiet=quiet)
     from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialSettings
 
     walker = _Walker(avatar, bones, height, include_hair)
-    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, walker.reference(), shapes)
+    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, shapes=shapes)
+    compile_first(quiet=quiet)
+    settings = replace(settings, avatar=walker.reference())
     if save is not None:
         return _save(_course(settings, walker, save[0], quiet), save[1])
     if show is not None:
@@ -114,7 +116,7 @@ class _Walker(NamedTuple):
     include_hair: bool
 
     def load(self) -> "Humanoid":
-        return chosen_avatar(self.avatar, self.bones, self.height, self.include_hair)
+        return chosen_avatar(self.avatar, settings_by(self.bones, self.height, self.include_hair))
 
     def reference(self) -> "AvatarReference | None":
         """How a process finds it; None for the stock avatar as it is."""

@@ -53,10 +53,10 @@ def table1(
         scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
     )
     check_cluster(cluster)
+    settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     compile_first(quiet=quiet)
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
 
-    settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     with chosen_workers(cluster, jobs) as workers:
         with progress_bar("Opening the avatar", None, quiet):
             about = _about(settings, workers.at_once)

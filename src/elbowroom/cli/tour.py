@@ -7,7 +7,7 @@ import typer
 
 from elbowroom.cli import clip_options
 from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.going import told_place
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
@@ -57,15 +57,24 @@ def tour(
     """
     if not 1 <= targets <= MOST_TARGETS:
         raise InputError(f"--targets: {targets} is not between 1 and {MOST_TARGETS}")
-    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
-    compile_first(quiet=quiet)
+    check_arguments(
+        scenes=[scene],
+        planners=[planner],
+        queues=[queue],
+        files=[avatar, bones],
+        clips=clip_options.named_by(swing, dodge),
+        written=[record, plan],
+    )
+    told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 
+    settings = CrossingSettings(planner, queue, seed)
+    compile_first(quiet=quiet)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None))
-    place = open_scene(scene, place_options(scale, up, ground, drop, passable), quiet)
+    place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
-        humanoid = chosen_avatar(avatar, bones, height, include_hair)
-        controller = controller_for(humanoid, place, CrossingSettings(planner, queue, seed), motions)
+        humanoid = chosen_avatar(avatar, reading)
+        controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     shown, result = _walked(controller, targets, record, quiet)
     verdict = _judged(shown, controller, result.seconds, mesh=mesh, quiet=quiet) if judge else None

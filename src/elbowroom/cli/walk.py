@@ -9,7 +9,7 @@ import typer
 
 from elbowroom.cli import clip_options, vmc_options
 from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar
+from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.going import TO_HELP, place_of, report_leg
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
@@ -70,18 +70,28 @@ def walk(
     """
     check_vmc(vmc, vmc_root)
     target = None if to is None else place_of(to, "--to")
-    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones])
-    compile_first(quiet=quiet)
-    from elbowroom.control.recording import Recorder
+    check_arguments(
+        scenes=[scene],
+        planners=[planner],
+        queues=[queue],
+        files=[avatar, bones],
+        clips=clip_options.named_by(swing, dodge),
+        written=[record],
+    )
+    of_place = is_model(scene)
+    of_clips = clip_options.told_by(unit, None if of_place else up, fps)
+    told = place_options(scale, up if of_place else None, ground, drop, passable)
+    reading = settings_by(bones, height, include_hair)
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 
     settings = CrossingSettings(planner, queue, seed, limit)
-    of_place = is_model(scene)
-    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
-    told = place_options(scale, up if of_place else None, ground, drop, passable)
+    compile_first(quiet=quiet)
+    from elbowroom.control.recording import Recorder
+
+    motions = clip_options.motions_by(swing, dodge, of_clips)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
-        humanoid = chosen_avatar(avatar, bones, height, include_hair)
+        humanoid = chosen_avatar(avatar, reading)
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     with (

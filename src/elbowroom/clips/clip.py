@@ -30,7 +30,8 @@ class Clip:
 
         Raises `InputError` if it cannot be read, or holds no motion of a humanoid.
         """
-        from elbowroom.clips.files import open_motion, split_reference
+        from elbowroom.clips.files import open_motion
+        from elbowroom.clips.reference import split_reference
 
         path, name = split_reference(reference)
         return open_motion(path, told).clip(name)

@@ -64,15 +64,6 @@ def open_motion(path: Path, told: Told | None = None) -> MotionFile:
     return parse_motion(data, path.name, told, path.parent, None if beside is None else read_override(beside))
 
 
-def split_reference(reference: str | Path) -> tuple[Path, str | None]:
-    """`FILE#CLIP` as file and clip; a file whose own name has a # in it goes first."""
-    text = str(reference)
-    file, mark, name = text.rpartition("#")
-    if not mark or not file or Path(text).is_file():
-        return Path(text), None
-    return Path(file), name
-
-
 def parse_motion(
     data: bytes, name: str, told: Told | None = None, folder: Path | None = None, bones: Field | None = None
 ) -> MotionFile:

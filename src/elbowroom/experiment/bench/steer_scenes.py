@@ -96,7 +96,21 @@ STRAFING = keys(
 
 def steered_scenes(names: Sequence[str] = ()) -> tuple[SteeredScene, ...]:
     """All scenes, or those named; raises `InputError` if there is no such name."""
-    made: dict[str, Callable[[], SteeredScene]] = {
+    check_steered(names)
+    return tuple(make()._replace(name=name) for name, make in _made().items() if not names or name in names)
+
+
+def check_steered(names: Sequence[str]) -> None:
+    """Raises `InputError` if there is no scene of such a name."""
+    made = _made()
+    for name in names:
+        if name not in made:
+            raise InputError(f"steered scene {name!r} is unknown; there are {', '.join(made)}")
+
+
+def _made() -> dict[str, Callable[[], SteeredScene]]:
+    """How each scene is made, by its name."""
+    return {
         "bends": lambda: corridor("bends", 1.0),
         "narrow bends": lambda: corridor("narrow bends", 0.8),
         "slalom": slalom,
@@ -109,10 +123,6 @@ def steered_scenes(names: Sequence[str] = ()) -> tuple[SteeredScene, ...]:
         "course 5": lambda: _course(5),
         "traffic": lambda: _stock("traffic", STOP_AND_GO),
     }
-    for name in names:
-        if name not in made:
-            raise InputError(f"steered scene {name!r} is unknown; there are {', '.join(made)}")
-    return tuple(make()._replace(name=name) for name, make in made.items() if not names or name in names)
 
 
 def corridor(name: str, width: float) -> SteeredScene:

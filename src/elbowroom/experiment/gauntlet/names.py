@@ -21,9 +21,14 @@ def parse_name(name: str) -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
+def is_course(name: str) -> bool:
+    """Whether a scene's name is, or is meant to be, that of a course."""
+    return name.lower().startswith(PREFIX)
+
+
 def check_name(name: str) -> None:
     """Raises `InputError` if this names neither a course nor a stock scene and is not like a file's name."""
-    if name.lower().startswith(PREFIX):
+    if is_course(name):
         parse_name(name.lower())
         return
     try:

@@ -44,6 +44,7 @@ class Table1Settings:
     def __post_init__(self) -> None:
         if not 1 <= self.seeds <= MAX_SEEDS:
             raise InputError(f"seeds: {self.seeds} is not between 1 and {MAX_SEEDS}")
+        CrossingSettings(limit=self.limit)
         for name in ("planners", "scenes", "queues"):
             values = getattr(self, name)
             if not values or len(set(values)) < len(values):
