@@ -8,6 +8,7 @@ from playwright.sync_api import TimeoutError as StillNotError
 
 LOAD_SECONDS = 60.0
 PATIENCE = 60.0  # seconds: much more than it takes, as other programs may keep both processors busy
+READ = 150.0  # seconds, likewise: files are read by processes that give way to all others, and end after 120 s
 REST = 12  # frames over which what is shown may not change, to be at rest
 # A few frames later: the panels that slide (what turns for ever is not waited for), the camera and the avatar.
 _SHOWN = """

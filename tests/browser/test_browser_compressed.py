@@ -11,7 +11,7 @@ from PIL import Image
 
 from compressed_vrm import with_draco, with_meshopt
 from elbowroom.body.stock import stock_avatar_path
-from live_page import LivePage
+from live_page import READ, LivePage
 
 Picture = NDArray[np.int16]
 Open = Callable[..., LivePage]
@@ -31,7 +31,7 @@ def shown(live: LivePage, file: Path) -> Picture:
     """The picture of an avatar that was dropped on the page."""
     before = live.state()["avatarRevision"]
     live.page.set_input_files("#file", str(file))
-    live.wait(f"s.avatarRevision > {before} && s.avatarRevision === s.poseRevision", 60)
+    live.wait(f"s.avatarRevision > {before} && s.avatarRevision === s.poseRevision", READ)
     return picture(live)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import elbowroom
 from avatar_builder import Recipe, build
-from live_page import LivePage
+from live_page import READ, LivePage
 from live_server import LiveServer
 from shared_data import SHARED
 
@@ -100,7 +100,7 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live = open_page("scene=empty", viewport=SMALL)
     live.drop(("newcomer" + path.suffix, path.read_bytes()))
     state = live.wait(
-        "s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60
+        "s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", READ
     )
     assert state["avatarLoaded"]
     live.page.keyboard.down("w")
@@ -112,7 +112,7 @@ def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     titles = "[...document.querySelectorAll('#avatar option')].map((option) => option.value)"
     mine = open_page("scene=empty", viewport=SMALL)
     mine.drop(("mine.vrm", STOCK.read_bytes()))
-    avatar = mine.wait("s.settings.avatar !== 'stock'", 60)["settings"]["avatar"]
+    avatar = mine.wait("s.settings.avatar !== 'stock'", READ)["settings"]["avatar"]
     assert avatar not in open_page("scene=empty", viewport=SMALL).page.evaluate(titles)
     open_page(f"scene=empty&avatar={avatar}", viewport=SMALL).wait(
         f"s.settings.avatar === '{avatar}'"
@@ -127,7 +127,7 @@ def test_the_page_says_what_a_file_permits_and_what_was_made_of_it(open_page: Op
     file = tmp_path / "mine.vrm"
     file.write_bytes(build(Recipe(vrm="1", mesh=False)))
     live.page.set_input_files("#file", str(file))
-    live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", 60)
+    live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision && s.avatarRevision > 0", READ)
     live.page.click("#avatar-about summary")
     facts = live.page.inner_text("#avatar-about ul")
     assert "redistribution: forbidden" in facts
@@ -147,14 +147,14 @@ def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) ->
         live = open_page("scene=c", viewport=SMALL, server=server)
         live.wait("s.scene === 'c'")
         live.drop(("mine.vrm", STOCK.read_bytes()))
-        live.wait("s.settings.avatar !== 'stock'", 60)
+        live.wait("s.settings.avatar !== 'stock'", READ)
         server.stop()
         live.wait("!s.connected && s.connection === 'lost'")
         live.page.wait_for_selector("#veil:not([hidden])")
         server.start()
         count = live.wait("s.connected")["framesReceived"]
         live.wait(f"s.framesReceived > {count + 10} && s.settings.scene === 'c'")
-        live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision", 60)
+        live.wait("s.settings.avatar !== 'stock' && s.avatarRevision === s.poseRevision", READ)
         live.page.wait_for_selector("#veil", state="hidden")
         live.page.goto("about:blank")  # before the server ends: a page that is left open would try to connect again
         live.excuse_lost_server()

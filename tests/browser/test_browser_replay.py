@@ -12,7 +12,7 @@ from elbowroom.control.recording import Recorder
 from elbowroom.formats.bvh import parse_bvh
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
-from live_page import LivePage
+from live_page import READ, LivePage
 
 Open = Callable[..., LivePage]
 
@@ -98,7 +98,7 @@ def test_a_walk_is_saved_for_other_programs(open_page: Open) -> None:
 def test_a_recording_that_is_dropped_is_replayed(open_page: Open, recorded_walk: Path) -> None:
     live = open_page("scene=empty", viewport=(1000, 640))
     live.page.set_input_files("#file", recorded_walk)
-    state = live.wait("s.replay && s.replay.time > 0.1")
+    state = live.wait("s.replay && s.replay.time > 0.1", READ)
     assert state["replay"]["frames"] > 50
     live.page.keyboard.press("Space")
     live.page.locator("#replay input[type=range]").fill("1.0")
