@@ -65,12 +65,14 @@ class AboveSoles:
         no foot is held above that too.
         """
         count, low = axes.shape[2], float(floors.min())
-        lanes, heights = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1), self._nowhere
+        lanes, radii, heights = axes, self._radii, self._nowhere
         if not self.footing.plain:
             heights = np.full(len(axes), low)
             if floors.max() > low + _EVEN:
                 heights[self._parts[0]], heights[self._parts[1]] = floors
-        radii, heights = np.tile(self._radii, count), np.tile(heights, count)
+        if count > 1:
+            lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
+            radii, heights = np.tile(radii, count), np.tile(heights, count)
         found = obstacles.clearances(lanes, radii, origin, 0.0, heights).reshape(count, -1)
         if low > -np.inf:
             others = self._parts[2]
