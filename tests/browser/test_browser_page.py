@@ -17,9 +17,13 @@ STOCK = Path(elbowroom.__file__).parent / "body" / "data" / "stock.vrm"
 FILES = [pytest.param(STOCK, id="stock")]
 if SHARED is not None:
     FILES.append(pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt"))
-    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired"))
+    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired", marks=pytest.mark.long))
     FILES.append(pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D"))
-    FILES.append(pytest.param(SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments"))
+    FILES.append(
+        pytest.param(
+            SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments", marks=pytest.mark.long
+        )
+    )
 
 SMALL = (480, 320)  # drawn soon; for tests that look at no panel
 
@@ -108,6 +112,7 @@ def test_a_dropped_file_becomes_the_avatar(open_page: Open, path: Path) -> None:
     live.page.keyboard.up("w")
 
 
+@pytest.mark.long
 def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     titles = "[...document.querySelectorAll('#avatar option')].map((option) => option.value)"
     mine = open_page("scene=empty", viewport=SMALL)

@@ -77,7 +77,9 @@ def test_it_is_crossed_straight_and_in_time(name: str) -> None:
     assert np.abs(roots[:, 0]).max() < (0.3 if "stair" in name else 0.02)
 
 
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long) if "long" in name else name for name in PLACES]
+)
 def test_another_library_finds_nothing_touched_but_the_ground_under_soles(name: str) -> None:
     motion = ShownMotion.at_rate(np.stack([frame.q for frame in walked(name)]), roots_of(name))
     verdict = judge(motion, AVATAR, scene_of(name))
