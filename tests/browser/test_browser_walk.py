@@ -71,6 +71,11 @@ def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer
     live.page.keyboard.press("Enter")
     live.wait("s.scene === 'gauntlet:1:7' && s.crossed === 0")
     assert live.page.input_value("#scene") == "gauntlet:1:7"
+    live.page.fill("#course-seed", "8")
+    live.page.click("#course-new")
+    live.wait("s.scene === 'gauntlet:1:8'")
+    live.page.click("#course-new")
+    live.wait("s.scene.startsWith('gauntlet:1:') && s.scene !== 'gauntlet:1:8'")
 
 
 def test_keys_are_released_on_blur(open_page: Open) -> None:

@@ -10,13 +10,21 @@ export class CoursePanel {
   private readonly section = byId("course", HTMLElement);
   private readonly level = byId("course-level", HTMLSelectElement);
   private readonly seed = byId("course-seed", HTMLInputElement);
+  private shown = this.seed.value;
+  private typed = false;
 
   /** @param go called with the name of a course that the user asks for */
   constructor(private readonly go: (scene: string) => void) {
     this.level.addEventListener("change", () => this.ask());
     this.seed.addEventListener("change", () => this.ask());
-    byId("course-new", HTMLButtonElement).addEventListener("click", () => {
-      this.seed.value = String(Math.floor(Math.random() * MOST_SEEDS));
+    const another = byId("course-new", HTMLButtonElement);
+    // Who types a seed and then presses the button wants that one.
+    another.addEventListener("pointerdown", () => {
+      this.typed = this.seed.value !== this.shown;
+    });
+    another.addEventListener("click", () => {
+      if (!this.typed) this.seed.value = String(Math.floor(Math.random() * MOST_SEEDS));
+      this.typed = false;
       this.ask();
     });
   }
@@ -33,7 +41,8 @@ export class CoursePanel {
     const course = courseOf(scene);
     if (!course) return;
     this.level.value = String(course.level);
-    showValue(this.seed, String(course.seed));
+    this.shown = String(course.seed);
+    showValue(this.seed, this.shown);
   }
 
   private ask(): void {
