@@ -74,6 +74,9 @@ def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer
     live.page.fill("#course-seed", "8")
     live.page.click("#course-new")
     live.wait("s.scene === 'gauntlet:1:8'")
+    live.page.keyboard.down("w")
+    live.wait("s.heldKeys === 1")
+    live.page.keyboard.up("w")
     live.page.click("#course-new")
     live.wait("s.scene.startsWith('gauntlet:1:') && s.scene !== 'gauntlet:1:8'")
 

@@ -85,7 +85,8 @@ function takesKey(focused: Element | null, code: string): boolean {
   return (code === "Space" || code === "Enter") && (focused?.closest("button, a, summary, input") ?? null) !== null;
 }
 
-function takesText(target: EventTarget | null): boolean {
+/** Whether one writes in an element. */
+export function takesText(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.isContentEditable || target instanceof HTMLTextAreaElement) return true;
   return target instanceof HTMLInputElement && !["range", "checkbox", "radio", "button", "file"].includes(target.type);

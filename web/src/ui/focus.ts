@@ -4,7 +4,7 @@
  * A control that was reached with the Tab key keeps the focus, as anyone who works without a pointer expects.
  */
 
-import { isOpen } from "../input/keyboard";
+import { isOpen, takesText } from "../input/keyboard";
 
 const PRESSED = "button, summary, label, input[type=checkbox], input[type=radio]";
 const CHOSEN = "select, input[type=range]";
@@ -14,10 +14,13 @@ export function keepKeysOnView(view: HTMLElement): void {
   let byPointer = false;
   const isChosen = (target: EventTarget | null): target is HTMLElement => target instanceof HTMLElement && target.matches(CHOSEN);
   window.addEventListener("pointerdown", () => (byPointer = true), true);
-  // What is only pressed need not be focused for it.
+  // What is only pressed need not be focused for it; who presses it has done with writing elsewhere.
   document.addEventListener("mousedown", (event) => {
-    const { target } = event;
-    if (target instanceof Element && target.closest(PRESSED) && !target.closest(CHOSEN)) event.preventDefault();
+    const { target } = event, { activeElement } = document;
+    const pressed = target instanceof Element && !target.closest(CHOSEN) ? target.closest(PRESSED) : null;
+    if (!pressed) return;
+    event.preventDefault();
+    if (activeElement instanceof HTMLElement && takesText(activeElement) && !pressed.contains(activeElement)) activeElement.blur();
   });
   document.addEventListener("change", (event) => {
     if (byPointer && event.target instanceof HTMLElement) view.focus();
