@@ -67,11 +67,13 @@ class FreeMap:
         known = self._last
         if known is not None and known[0] == ends:
             return known[1]
-        columns = [
-            np.concatenate([self._tile(i, k, start) for k in range(first[1], last[1] + 1)], axis=2)
-            for i in range(first[0], last[0] + 1)
-        ]
-        found = Window(np.concatenate(columns, axis=1), first[0] * side, first[1] * side)
+        wide, deep = last[0] - first[0] + 1, last[1] - first[1] + 1
+        distances = np.empty((len(LEVELS), wide * TILE, deep * TILE), np.float32)
+        for i in range(wide):
+            for k in range(deep):
+                tile = self._tile(first[0] + i, first[1] + k, start)
+                distances[:, i * TILE : (i + 1) * TILE, k * TILE : (k + 1) * TILE] = tile
+        found = Window(distances, first[0] * side, first[1] * side)
         if self._ground.plain:
             self._last = ends, found
         return found
@@ -91,12 +93,10 @@ class FreeMap:
 
     def _tile(self, i: int, k: int, start: Start) -> Floats32:
         """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z."""
-        half = 0.5 * CELL * TILE
-        middle = half * np.array([2.0 * i + 1.0, 2.0 * k + 1.0])
-        floor = 0 if self._ground.plain else self._floor(start, middle)
+        floor = 0 if self._ground.plain else self._floor(start, _middle(i, k))
         tile = self._tiles.get((i, k, floor))
         if tile is None:
-            tile = self._filled(middle, floor * _SAME)
+            tile = self._filled(_middle(i, k), floor * _SAME)
             if len(self._tiles) >= _MOST:
                 self._tiles.clear()
             self._tiles[i, k, floor] = tile
@@ -116,6 +116,12 @@ class FreeMap:
             return _OPEN
         found = clearance(_POINTS, _THIN, about(near, float(middle[0]), float(middle[1]), floor))
         return np.minimum(found, np.float32(FARTHEST)).reshape(_OPEN.shape)
+
+
+def _middle(i: int, k: int) -> Floats:
+    """The middle (2,) of the tile in row `i` along x and row `k` along z."""
+    middle: Floats = 0.5 * CELL * TILE * np.array([2.0 * i + 1.0, 2.0 * k + 1.0])
+    return middle
 
 
 def _points() -> Floats32:
