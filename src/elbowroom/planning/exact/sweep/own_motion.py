@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-_ROOM = 384
+_ROOM = 320
 _PARTS = plain(6)  # of a key interval, between first looks
 _HALVINGS = plain(7)  # of these
 _LOOKS = 32  # at once
