@@ -81,8 +81,7 @@ def gauntlet(
     if show is not None:
         return _show(_course(settings, walker, show, quiet), settings, walker)
     with chosen_workers(cluster, jobs, courses) as workers, time_left_bar("Courses", quiet) as move:
-        results, without = run_gauntlet(settings, workers, out, move)
-        processes = workers.at_once
+        (results, without), processes = run_gauntlet(settings, workers, out, move), workers.at_once
     if not results:
         raise InputError(f"level {level}: {_NO_COURSE.format(_listed(without))}; try another level or other seeds")
     summary = GauntletSummary.of(results)

@@ -57,14 +57,8 @@ def tour(
     """
     if not 1 <= targets <= MOST_TARGETS:
         raise InputError(f"--targets: {targets} is not between 1 and {MOST_TARGETS}")
-    check_arguments(
-        scenes=[scene],
-        planners=[planner],
-        queues=[queue],
-        files=[avatar, bones],
-        clips=clip_options.named_by(swing, dodge),
-        written=[record, plan],
-    )
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record, plan])
+    check_arguments(clips=clip_options.named_by(swing, dodge))
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 

@@ -70,24 +70,17 @@ def walk(
     """
     check_vmc(vmc, vmc_root)
     target = None if to is None else place_of(to, "--to")
-    check_arguments(
-        scenes=[scene],
-        planners=[planner],
-        queues=[queue],
-        files=[avatar, bones],
-        clips=clip_options.named_by(swing, dodge),
-        written=[record],
-    )
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record])
+    check_arguments(clips=clip_options.named_by(swing, dodge))
     of_place = is_model(scene)
     of_clips = clip_options.told_by(unit, None if of_place else up, fps)
     told = place_options(scale, up if of_place else None, ground, drop, passable)
     reading = settings_by(bones, height, include_hair)
+    from elbowroom.control.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 
     settings = CrossingSettings(planner, queue, seed, limit)
     compile_first(quiet=quiet)
-    from elbowroom.control.recording import Recorder
-
     motions = clip_options.motions_by(swing, dodge, of_clips)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
