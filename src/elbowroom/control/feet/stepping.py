@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 _CLEAR = 0.008  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _PIECE, _FORESEEN = 0.05, 0.75  # seconds between looks ahead, and in all
+_SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
@@ -51,8 +52,8 @@ class Stepping:
 
         They are where they were and stand, so that no step can be shown or none is needed; or none is left to make.
         """
-        same = np.array_equal(before[ROOT_STATE:WITH_FEET], shown[ROOT_STATE:WITH_FEET])
-        return bool(standing(shown).all() and same) or settled(self._gait, shown)
+        moved = np.abs(shown[ROOT_STATE:WITH_FEET] - before[ROOT_STATE:WITH_FEET]).max()
+        return bool(standing(shown).all() and moved < _SAME) or settled(self._gait, shown)
 
     def resting(self, moment: Moment) -> Playback:
         """What who rests shows next: it breathes, and shifts its weight."""
