@@ -1,6 +1,5 @@
 """The last word before a pose is shown: how far the whole body is from every obstacle, and from every other avatar."""
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -58,7 +57,7 @@ class BodyCheck:
     """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then.
 
     The same pose is asked about several times in a frame and in the next: the last few are remembered, and known by
-    their arrays, which nobody may change.
+    their arrays, which nobody may change. Playback and planning may ask at once, each in its thread.
     """
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
@@ -70,7 +69,7 @@ class BodyCheck:
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
         self._empty = not len(scene.obstacles)
-        self._poses: deque[_Pose] = deque(maxlen=_REMEMBERED)
+        self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
 
     @property
@@ -222,7 +221,7 @@ class BodyCheck:
             if pose.root is root and pose.upper is upper:
                 return pose
         pose = _Pose(root, upper, self._posed(root, upper), self._soles.floors(root), [])
-        self._poses.appendleft(pose)
+        self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 
     def _posed(self, root: Floats, upper: Floats) -> Floats32:
