@@ -42,6 +42,22 @@ def test_who_stops_comes_to_stand_with_the_feet_beside_each_other(wanted: Callab
 
 
 @pytest.mark.parametrize("wanted", EVERY)
+def test_who_stops_without_room_for_steps_comes_to_stand_too(wanted: Callable[[float], Velocities]) -> None:
+    roots = path(wanted, 300)
+    row = walked(roots)[-1]
+    for phase in np.linspace(0.0, 1.0, 12):
+        swung = row.copy()
+        swung[6] = phase
+        rows = [swung]
+        for _ in range(90):
+            rows.append(gliding(GAIT, rows[-1], swung, DT))
+        assert standing(rows[-1]).all()
+        assert settled(GAIT, rows[-1])
+        feet, _ = posed_feet(GAIT.legs, GAIT.scale, GAIT.half_leg, np.array(rows), np.zeros(len(rows)))
+        assert np.abs(np.diff(feet[-30:], axis=0)).max() < 1e-9
+
+
+@pytest.mark.parametrize("wanted", EVERY)
 def test_feet_and_hips_move_without_a_jump(wanted: Callable[[float], Velocities]) -> None:
     rows = walked(path(wanted))
     feet, sinks = posed_feet(GAIT.legs, GAIT.scale, GAIT.half_leg, rows, np.zeros(len(rows)))

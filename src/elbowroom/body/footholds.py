@@ -39,6 +39,7 @@ _X, _Z, _YAW, _PITCH, _LIFT, _SWING, _VELOCITY = 0, 1, 2, 3, 4, 5, 6
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 _HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
 _STILL = 1e-3  # m/s: below, the root rests
+_FLAT = 1e-9  # radians, metres
 _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
 _STRETCH = 0.9985  # of a leg: no foot is farther from its hip
 _FAR, _TWISTED = 0.75, 0.9  # of a leg, radians: a standing foot farther off has to follow soon
@@ -207,6 +208,12 @@ def _goal(
 
 
 @helper
+def _is_flat(foot: Floats) -> bool:
+    """Whether a foot lies flat on the ground."""
+    return bool(abs(foot[_PITCH]) < _FLAT and foot[_LIFT] < _FLAT)
+
+
+@helper
 def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> tuple[float, float]:
     """A place (x, z) from the standing twin, moved to the own side if need be, in axes `turned` to the left."""
     c, s, outward = np.cos(turned), np.sin(turned), 1.0 if side == 0 else -1.0
@@ -334,7 +341,8 @@ def step_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: floa
 def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, out: Floats) -> None:
     """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
 
-    They go as the walking cycle has them, and what they are beside it becomes less.
+    They go as the walking cycle has them, and what they are beside it becomes less. Under a root that rests they end up
+    flat on the ground and stand, wherever in the cycle that is.
     """
     for i in range(ROOT_STATE):
         out[i] = root[i]
@@ -352,7 +360,10 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
         foot[_LIFT] = was[_LIFT] + min(max(lift - was[_LIFT], -_LIFT_RATE * dt), _LIFT_RATE * dt)
         foot[_PITCH] = was[_PITCH]
         _tilt(foot, pitch, dt)
-        foot[_SWING] = max(swung, _AT_LEAST) if max(left, twisted) > 0.0 else swung
+        if max(left, twisted) > 0.0:
+            foot[_SWING] = max(swung, _AT_LEAST)
+        else:
+            foot[_SWING] = 0.0 if _rests(root) and _is_flat(foot) else swung
         for i in range(3):
             foot[_VELOCITY + i] = 0.0
 
@@ -386,7 +397,7 @@ def _settled(legs: Floats, scale: float, row: Floats) -> bool:
     for side in range(2):
         foot = row[ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
         x, z = home_of(legs, stride, side)
-        still = foot[_SWING] <= 0.0 and abs(foot[_PITCH]) < 1e-9
+        still = foot[_SWING] <= 0.0 and _is_flat(foot)
         near = near and still and _away(foot, (x, z, 0.0), scale) <= 1.0
     return near
 
