@@ -20,7 +20,9 @@ def columns_at(heights: Floats, *more: Floats) -> Columns:
     rows = [(cell, level.flat[cell]) for cell in range(heights.size) for level in (heights, *more)]
     rows = sorted(row for row in rows if np.isfinite(row[1]))
     cells, low = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-    return Columns((0.0, 0.0), CELL, (shape[0], shape[1]), cells, low, low, np.ones(len(rows), bool))
+    return Columns(
+        (0.0, 0.0), CELL, (shape[0], shape[1]), cells, low, low, np.ones(len(rows), bool), np.zeros(len(rows), bool)
+    )
 
 
 def two_floors(profile: Floats, width: int = 24) -> Layers:

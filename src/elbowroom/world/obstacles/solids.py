@@ -54,6 +54,12 @@ def inner_boxes(mesh: Mesh) -> InnerBoxes:
     return InnerBoxes(centers[largest], turns[largest], halves[largest])
 
 
+def enclosing_triangles(mesh: Mesh) -> Floats:
+    """The triangles (T, 3, 3) of the closed parts of a mesh, with the rooms in them: they wind round what is inside."""
+    points, faces = _welded(mesh)
+    return np.concatenate([np.empty((0, 3, 3)), *(points[own] for own in _closed_parts(points, faces))])
+
+
 def _welded(mesh: Mesh) -> tuple[Floats, Longs]:
     """Corners that are no two in one place, and triangles (F, 3) that are no two the same and have three corners."""
     rounded = np.round((mesh.vertices - mesh.middle) / _SAME).astype(np.int64)

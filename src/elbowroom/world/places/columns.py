@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.jit import exact_kernel
 from elbowroom.world.clipping import clipped
+from elbowroom.world.places.enclosed import enclosed, solid_triangles
 from elbowroom.world.places.place import Place
 
 Floats = NDArray[np.float64]
@@ -36,6 +37,7 @@ class Columns:
     low: Floats  # (S,) metres: from here
     high: Floats  # (S,) to here; the same where one could stand on it
     level: Flags  # (S,) whether one could
+    inside: Flags  # (S,) whether a closed solid goes on over it: nobody is there
 
     def grid(self, chosen: Flags) -> Flags:
         """The cells (nx, nz) that any of the chosen surfaces (S,) lies over."""
@@ -66,16 +68,18 @@ def columns_of(place: Place, progress: Callable[[float], None] = lambda _share: 
             raise InputError(f"{place.name}: has too much surface to be looked over; is its unit right (--scale)?")
         found.append(keys)
     keys = _distinct(np.concatenate(found))
-    low, above = (keys >> _HEIGHT_BITS + 1) & _HEIGHTS, (keys >> 1) & _HEIGHTS
+    cells, low, above = keys >> 2 * _HEIGHT_BITS + 1, (keys >> _HEIGHT_BITS + 1) & _HEIGHTS, (keys >> 1) & _HEIGHTS
     base = float(least[1])
+    inside = enclosed(cells, low * _STEP, solid_triangles(place) - least, cell, shape)
     return Columns(
         origin=(float(least[0]), float(least[2])),
         cell=cell,
         shape=shape,
-        cells=keys >> 2 * _HEIGHT_BITS + 1,
+        cells=cells,
         low=base + low * _STEP,
         high=base + (low + above) * _STEP,
         level=(keys & 1) > 0,
+        inside=inside,
     )
 
 

@@ -68,7 +68,8 @@ def floor_at(columns: Columns, height: float) -> Floor:
     from scipy import ndimage  # slow to import, and not needed on a plain
 
     there = columns.grid(columns.level & (np.abs(columns.low - height) <= _TREAD))
-    blocked = columns.grid((columns.high > height + _TREAD) & (columns.low < height + HEADROOM))
+    stands = (columns.high > height + _TREAD) & (columns.low < height + HEADROOM)
+    blocked = columns.grid(stands | (columns.inside & (np.abs(columns.low - height) <= _TREAD)))
     free = np.pad(there & ~blocked, 1)
     distance = ndimage.distance_transform_edt(free)[1:-1, 1:-1] - 0.5
     return Floor(height, there, blocked, np.maximum(distance, 0.0) * columns.cell, columns)
@@ -113,11 +114,11 @@ def _uncovered(columns: Columns) -> Flags:
 
 
 def standing_surfaces(columns: Columns, headroom: float = HEADROOM) -> Flags:
-    """The level surfaces with so much room above, metres: nothing from a little above them up to that."""
+    """The level surfaces with so much room above, metres: nothing from a little above them up to that, nor a solid."""
     cells, low, high = columns.cells, columns.low, columns.high
     tall = float(np.max(high, initial=0.0) - np.min(low, initial=0.0)) + 1.0
     reached = np.maximum.accumulate(np.append(-np.inf, high + cells * tall))[:-1] - cells * tall  # from below, by now
-    free: Flags = columns.level & (reached <= low + _SAME)
+    free: Flags = columns.level & ~columns.inside & (reached <= low + _SAME)
     for ahead in range(1, len(cells)):
         near = (cells[ahead:] == cells[:-ahead]) & (low[ahead:] - low[:-ahead] < headroom)
         if not near.any():
