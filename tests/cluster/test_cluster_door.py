@@ -44,8 +44,10 @@ def thread_of(server: Server, opened: socket.socket) -> Iterator[None]:
 
 
 @contextmanager
-def opened_door(*servers: Address) -> Iterator[tuple[Door, str]]:
+def opened_door(*servers: Address, buffer: int = 65536) -> Iterator[tuple[Door, str]]:
+    """A door with a send buffer of so many bytes, and its address."""
     with listen("127.0.0.1", 0) as opened:
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, buffer)
         door, loop = Door(THE_WORD, servers), asyncio.new_event_loop()
         serving = loop.create_task(door.serve(opened))
 
@@ -133,6 +135,22 @@ def test_who_loses_the_server_is_back_in_the_same_place(two: tuple[Door, str, di
         assert again.wait_for(Settings).scene == "a"
         back = again.frame()
         assert (back.x, back.z) == pytest.approx((last.x, last.z), abs=0.05)
+
+
+def test_who_reads_slowly_gets_all_of_a_file(two: tuple[Door, str, dict[Address, Server]]) -> None:
+    with opened_door(*two[2], buffer=4096) as (_, url), socket.socket() as slow:
+        host, port = url.removeprefix("http://").rstrip("/").split(":")
+        slow.settimeout(LONG)
+        slow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        slow.connect((host, int(port)))
+        slow.sendall(f"GET /avatars/stock.glb HTTP/1.1\r\nHost: {host}:{port}\r\n\r\n".encode())
+        answer = b""
+        while data := slow.recv(4096):
+            answer += data
+            time.sleep(0.002)  # the server has sent all and gone before that is read
+    head, _, body = answer.partition(b"\r\n\r\n")
+    length = next(line for line in head.lower().split(b"\r\n") if line.startswith(b"content-length:"))
+    assert len(body) == int(length.partition(b":")[2])
 
 
 def test_without_a_server_it_is_said_so() -> None:

@@ -260,6 +260,9 @@ async def _pour(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
             writer.write(data)
             async with asyncio.timeout(_STALLED):
                 await writer.drain()
+        writer.transport.set_write_buffer_limits(0)  # the end is handed on, too, before the connection goes
+        async with asyncio.timeout(_STALLED):
+            await writer.drain()
 
 
 async def _answer(writer: asyncio.StreamWriter, status: str, body: bytes, kind: str = "text/plain") -> None:
