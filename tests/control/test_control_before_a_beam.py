@@ -1,5 +1,8 @@
 """Who has come to a stand with the face at a beam takes a step back, bends, and passes."""
 
+import math
+import random
+
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
@@ -21,3 +24,14 @@ def test_who_stands_at_a_beam_passes_under_it(z: float, phase: float) -> None:
         assert frame.clearance >= 0.0
         time += 1 / 60
         assert time < PATIENCE, f"still at z {controller.root.z:.3f}: {frame.plan and frame.plan.local.blockade}"
+
+
+@pytest.mark.parametrize("z", [1.72, 1.81])
+def test_so_does_one_whose_hand_is_not_still(z: float) -> None:
+    controller = Controller(Humanoid.default(), Scene.load("beam"), start=RootState(0.0, z, phase=0.0))
+    chance, time = random.Random(1), 0.0
+    while controller.root.z < BEYOND:
+        frame = controller.step(Command(forward=1.0, direction=math.radians(chance.uniform(-4.0, 4.0))), 1 / 60)
+        assert frame.clearance >= 0.0
+        time += 1 / 60
+        assert time < 2.0 * PATIENCE, f"still at z {controller.root.z:.3f}"

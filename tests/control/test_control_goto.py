@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
@@ -15,6 +14,7 @@ from elbowroom.control.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError
+from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.scene import Scene
 
 DT = 1 / 60
@@ -79,7 +79,9 @@ def test_what_is_recorded_of_it_replays(humanoid: Humanoid, tmp_path: Path) -> N
         for _ in range(300):
             frame = controller.step(Command(), DT)
             recorder.append(frame.command, DT, frame)
-    assert replay(Recording(path), humanoid).identical
+    recording = Recording(path)
+    assert replay(recording, humanoid).identical
+    assert len(recording.ways) > 1, "the way was not kept"
 
 
 def test_a_walled_in_place_is_refused_and_nothing_changes(humanoid: Humanoid) -> None:
@@ -110,9 +112,37 @@ def test_what_is_blocked_for_long_is_given_up_with_the_place(humanoid: Humanoid)
     assert told[-1].idle
 
 
-def test_directions_are_held_until_the_aim_has_moved_aside(humanoid: Humanoid) -> None:
-    controller = Controller(humanoid, Scene.load("d"))
-    controller.goto((0.0, 8.0))
-    directions = [controller.step(Command(), DT).command.direction for _ in range(600)]
-    changes = np.count_nonzero(np.diff([d for d in directions if d is not None]))
-    assert 1 <= changes < 60
+def bend() -> Scene:
+    """A wall across, which ends on the left; one has to go round its end, and back."""
+    return Scene.of("bend", [{"type": "box", "center": [-1.5, 1.2, 2.5], "size": [6.0, 2.4, 0.2]}], finish=(0.0, 5.0))
+
+
+def test_one_way_is_walked_along_round_its_corners_and_planned_on(humanoid: Humanoid) -> None:
+    """At a corner there is no other command, and so no other plan: what is left of the last one is gone on with."""
+    controller, ways, anew = Controller(humanoid, bend()), set(), 0
+    journey = controller.goto((-2.0, 4.5))
+    number, plans = -1, 0
+    while journey.walking:
+        frame = controller.step(Command(), DT)
+        assert frame.clearance >= 0.0
+        assert frame.time < LONG
+        if frame.command.way:
+            ways.add(frame.command.way)
+        if frame.plan is not None and frame.plan.number != number:
+            number, plans = frame.plan.number, plans + 1
+            anew += frame.plan.local.velocities is None or frame.plan.root.kind is not RootPlanKind.STRAIGHT
+    assert journey.state is JourneyState.ARRIVED
+    assert len(ways) == 1
+    assert max(map(len, ways)) > 2
+    assert anew < plans / 10
+
+
+def test_who_was_led_off_the_way_looks_for_it_again(humanoid: Humanoid) -> None:
+    controller = Controller(humanoid, bend())
+    journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (-2.0, 4.5)), FORWARD)
+    way = journey.command(RootState(), DT, stuck=False).way
+    assert journey.command(RootState(0.1, 0.2), DT, stuck=False).way == way
+    other = journey.command(RootState(-2.0, 1.0), DT, stuck=False).way
+    assert other != way
+    assert math.dist(other[0], (-2.0, 1.0)) < 0.1
+    assert math.dist(other[-1], (-2.0, 4.5)) < 0.1

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.control import steering
 from elbowroom.control.controller import Controller
 from elbowroom.control.desk import Job
 from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.frame import Frame
 from elbowroom.control.lookahead import Lookahead
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, changed
 from elbowroom.world.scene import Scene
 from late_desk import LateDesk
 
@@ -162,7 +161,7 @@ class HiccupDesk(LateDesk):
 
     def submit(self, job: Job) -> None:
         super().submit(job)
-        if self._answer is not None and steering.changed(WALK, self._answer_to(job)):
+        if self._answer is not None and changed(WALK, self._answer_to(job)):
             self._due, self.long = self._due + self.long, 0
 
     def _answer_to(self, job: Job) -> Command:

@@ -56,7 +56,9 @@ def meeting(width: float, left: tuple[float, float], second: Command = FORWARD, 
     return Meeting(False, touched, back)
 
 
-@pytest.mark.parametrize(("width", "left"), [(1.2, (0.0, 0.0)), (0.95, (0.0, 0.0)), (1.4, (0.02, 0.0))])
+@pytest.mark.parametrize(
+    ("width", "left"), [(1.2, (0.0, 0.0)), (0.95, (0.0, 0.0)), (1.4, (0.02, 0.0)), (0.95, (0.121, 0.02))]
+)
 def test_two_who_meet_head_on_share_the_way(width: float, left: tuple[float, float]) -> None:
     met = meeting(width, left)
     assert met.passed

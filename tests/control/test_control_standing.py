@@ -48,3 +48,15 @@ def test_after_a_turn_in_place_the_avatar_comes_to_a_stand(turn: float, humanoid
         frames = [controller.step(Command(), DT) for _ in range(90)]
         assert is_still(frames[-1].root[3:6]), held
         assert np.array_equal(frames[-1].q, frames[-2].q)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (-0.3, -0.4)])
+def test_who_stands_hard_by_a_thing_that_was_pushed_stops_planning(place: tuple[float, float]) -> None:
+    """The thing has come as near as things may, so there is no room for steps: legs glide to their stand."""
+    crate = {"type": "box", "center": [2.0, 0.8, 2.5], "size": [0.5, 1.6, 0.5], "yaw": 0.4}
+    controller = Controller(Humanoid.default(), Scene.of("push", [crate], finish=(0.0, 6.0)))
+    controller.push(0, place)
+    frames = [controller.step(Command(), DT) for _ in range(420)]
+    plans = [frame.plan.number for frame in frames[-120:] if frame.plan]
+    assert plans[-1] - plans[0] <= 1
+    assert 0.0 < frames[-1].clearance < 0.05

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from elbowroom.control.steering import changed, checked, overturned, steady
+from elbowroom.control.steering import checked, overturned, steady
 from elbowroom.errors import InputError
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, changed
 
 WALK = Command(forward=1.0)
 IDLE = Command()

@@ -29,7 +29,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.control.showing import Showing
 from elbowroom.control.wayfinder import Answer, Question
 from elbowroom.errors import InputError
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, changed
 from elbowroom.planning.model.fitted_swing import fitted
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -213,7 +213,7 @@ class Controller:
         if self._stands_by:
             return Walker(self._shown.root[:2], np.zeros(2))
         wanted = steering.direction(command or self._command, self._shown.root[2])
-        if self._travel is not None and not (command and steering.changed(self._command, command)):
+        if self._travel is not None and not (command and changed(self._command, command)):
             wanted = np.array([math.sin(self._travel), math.cos(self._travel)])
         return Walker(self._shown.root[:2], wanted)
 
@@ -282,7 +282,7 @@ class Controller:
         if flow is Phase.RESET:
             self._reset_queue()
         if flow is not Phase.PLAY:
-            self._plan(command, at_once=flow is Phase.RESET or steering.changed(self._command, command))
+            self._plan(command, at_once=flow is Phase.RESET or changed(self._command, command))
         self._play(dt)
         return flow
 
@@ -300,13 +300,13 @@ class Controller:
             return Phase.RESET
         if self._next is Phase.RESET:
             return Phase.PLAY if self._waits(command) else Phase.RESET
-        if self._next is Phase.PLAN or self._queue.consumed > 1.0 or steering.changed(self._command, command):
+        if self._next is Phase.PLAN or self._queue.consumed > 1.0 or changed(self._command, command):
             return Phase.PLAN
         return Phase.PLAY
 
     def _waits(self, command: Command) -> bool:
         """Whether a plan for the same wish found no way on less than an interval ago."""
-        if not self._blocked or self._plan_report is None or steering.changed(self._command, command):
+        if not self._blocked or self._plan_report is None or changed(self._command, command):
             return False
         return self._queue.time - self._plan_report.time < self.settings.interval
 
@@ -314,7 +314,7 @@ class Controller:
 
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
-        hurry = not self._errands.immediate and steering.changed(self._command, command)
+        hurry = not self._errands.immediate and changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState.of(start.root), self.settings
         others = self._others_beside(start, time, command)

@@ -5,12 +5,11 @@ from functools import partial
 from threading import Event
 from typing import NamedTuple
 
-from elbowroom.control import steering
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.control.wayfinder import Answer, Question
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, changed
 
 _SAME_TIME = 1e-9  # seconds
 
@@ -101,7 +100,7 @@ class Errands:
         """Call off a plan in the making for what is not wanted any more; one that is in a hurry is soon there."""
         if self._asked is not None:
             query = self._asked.question.query
-            if not query.hurry and steering.changed(query.command, command):
+            if not query.hurry and changed(query.command, command):
                 self._asked.superseded.set()
 
     def drop_continued(self) -> None:

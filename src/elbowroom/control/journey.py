@@ -8,12 +8,10 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, apart, said
+from elbowroom.planning.root.way_ahead import Corners, leg_at
 
 _FAR = 6.0  # metres along the way that are looked ahead
-_CORNER = 0.5  # metres before a place that one walks to at which the next one is looked for
-_STRAYED = math.radians(4.0)  # by which the aim moves aside before another direction is asked for
 _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who gets no nearer
-_SLOWS, _SLOWEST = 0.8, 0.25  # metres before the goal from which on one goes slower; share of the pace
 _NEARER = 0.15  # metres that count as progress
 _PATIENCE, _STUCK_PATIENCE = 4.0, 1.2  # seconds without progress; the same where no way on is found
 _BACKS = 0.7  # seconds of stepping back
@@ -41,8 +39,9 @@ class Journey:
         self.way = way
         self._navigator, self._pace = navigator, pace
         self._closed: list[tuple[Spot, float]] = []
-        self._aim: Place | None = None
-        self._direction: float | None = None
+        self._corners: list[Place] = []  # of the way that is walked along
+        self._along: Corners = ()  # the same without heights
+        self._leg = 0  # the number of the leg that was reached
         self._nearest, self._waited, self._back = math.inf, 0.0, 0.0
         self._tries, self._blocked_at = 0, way.goal
 
@@ -74,27 +73,31 @@ class Journey:
             self._watch(here, away, dt, stuck)
         if not self.walking:
             return Command()
-        return self._onward(here, away)
+        return self._onward(here)
 
-    def _onward(self, here: Place, away: float) -> Command:
-        aim = self._next_aim(here)
-        if aim is None:
+    def _onward(self, here: Place) -> Command:
+        """Along the same corners, until the next one has gone out of sight."""
+        if not self._keeps_to_it(here):
+            self._corners, self._leg = self._found(here), 0
+            self._along = tuple((x, z) for x, _, z in self._corners)
+        if len(self._corners) < 2:
             return Command()
-        wanted = math.atan2(aim[0] - here[0], aim[2] - here[2])
-        if self._direction is None or abs(math.remainder(wanted - self._direction, math.tau)) > _STRAYED:
-            self._direction = wanted
-        share = min(max(away / _SLOWS, _SLOWEST), 1.0) if apart(aim, self.goal) < _THERE else 1.0
-        return replace(self._pace, forward=share * self._pace.forward, direction=self._direction)
+        (x, z), (next_x, next_z) = self._along[:2]
+        return replace(self._pace, direction=math.atan2(next_x - x, next_z - z), way=self._along)
 
-    def _next_aim(self, here: Place) -> Place | None:
-        """Where to walk straight to: the same place until one is near it, or it has gone out of sight."""
-        if self._aim is not None and apart(here, self._aim) > _CORNER and self.way.sees(here, self._aim):
-            return self._aim
-        self._aim = self.way.aim(here, _FAR)
-        if self._aim is None:
+    def _keeps_to_it(self, here: Place) -> bool:
+        if len(self._corners) < 2:
+            return False
+        self._leg = leg_at(self._along, here[0], here[2], self._leg)
+        return self.way.sees(here, self._corners[self._leg + 1])
+
+    def _found(self, here: Place) -> list[Place]:
+        """The corners of the way from here, which is searched for where it is not known."""
+        corners = self.way.corners(here, _FAR)
+        if len(corners) < 2:
             self._search(here)
-            self._aim = self.way.aim(here, _FAR) if self.walking else None
-        return self._aim
+            corners = self.way.corners(here, _FAR) if self.walking else corners
+        return [(x, height, z) for x, height, z in corners.tolist()]
 
     def _watch(self, here: Place, away: float, dt: float, stuck: bool) -> None:
         """Notice progress, or that there is none for long."""
@@ -114,8 +117,7 @@ class Journey:
 
     def _get_past(self, here: Place) -> None:
         """Step back and try again, or, the next time, go round what blocks the way."""
-        self._waited, self._tries, self._direction = 0.0, self._tries + 1, None
-        self._aim = None
+        self._waited, self._tries, self._corners = 0.0, self._tries + 1, []
         self._blocked_at = here
         if self._tries > _TRIES:
             self._give_up(f"the way is blocked at {said(here)}")

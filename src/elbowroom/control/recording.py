@@ -3,8 +3,9 @@
 A `.elbow` file is the line `ELBOWROOM RECORDING 8`, a header, chunks and an end. Header: its length (uint32), UTF-8
 JSON of a `RecordingHeader`, CRC-32 of the JSON. Chunk: `CHNK`, number of steps, length of the zlib data, CRC-32 of that
 data (uint32 each), the data: `STEP` records. Where things were pushed, a chunk `HAND` of `THING` records stands before
-that of their steps. End: `DONE`, number of all steps, 0, CRC-32 of all chunks' data. All numbers are little-endian. A
-file is only ever appended to, so one that was cut off is good up to its last whole chunk.
+that of their steps; where a way was walked along, a chunk `WAYS` of `WAY` records. End: `DONE`, number of all steps, 0,
+CRC-32 of all chunks' data. All numbers are little-endian. A file is only ever appended to, so one that was cut off is
+good up to its last whole chunk.
 
 Older files are read too: in those of the format 7, hips were carried as they were planned; in those of the format 6,
 feet followed from the root; in those of the format 5, with 7
@@ -36,10 +37,12 @@ from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.recorded_things import THING, ThingLog, Things
+from elbowroom.control.recorded_ways import WAY, WayLog, Ways
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.walked_scene import SceneClock, walked_scene
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.root.way_ahead import Corners
 from elbowroom.world.scene import Scene
 
 MAGIC = b"ELBOWROOM RECORDING 8\n"
@@ -53,8 +56,9 @@ _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
-MAX_CHUNK_THINGS = 65_536
-_CHUNK_MARK, _HAND_MARK, _END_MARK = b"CHNK", b"HAND", b"DONE"
+MAX_CHUNK_ROWS = 65_536  # of what is told beside the steps
+_CHUNK_MARK, _HAND_MARK, _WAYS_MARK, _END_MARK = b"CHNK", b"HAND", b"WAYS", b"DONE"
+_BESIDE = {_HAND_MARK: THING, _WAYS_MARK: WAY}
 _CHUNK_HEAD = struct.Struct("<4sIII")
 _COUNT = struct.Struct("<I")
 
@@ -157,7 +161,7 @@ class StepWriter:
         self._file = file
         self._pending: list[tuple[Any, ...]] = []
         self._written, self._crc = 0, 0  # steps in all chunks, and of their data
-        self._things = ThingLog(controller)
+        self._things, self._ways = ThingLog(controller), WayLog()
         header = (told or RecordingHeader.of(controller)).to_json()
         self._file.write(MAGIC + _COUNT.pack(len(header)) + header + _COUNT.pack(zlib.crc32(header)))
         self._file.flush()
@@ -176,6 +180,7 @@ class StepWriter:
         wish = (command.forward, command.strafe, command.turn, direction, dt)
         root = np.pad(frame.root, (0, SHOWN - len(frame.root)))  # none on uneven ground
         self._things.note(self.steps)
+        self._ways.note(self.steps, command)
         self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
@@ -184,9 +189,10 @@ class StepWriter:
         """Write what is pending as a chunk, so that it survives whatever comes."""
         if not self._pending:
             return
-        steps, things = np.array(self._pending, dtype=STEP), self._things.taken()
-        if len(things):
-            self._write_chunk(_HAND_MARK, things)
+        steps = np.array(self._pending, dtype=STEP)
+        for mark, rows in ((_HAND_MARK, self._things.taken()), (_WAYS_MARK, self._ways.taken())):
+            if len(rows):
+                self._write_chunk(mark, rows)
         self._write_chunk(_CHUNK_MARK, steps)
         self._file.flush()
         self._written += len(steps)
@@ -247,6 +253,7 @@ class Recording:
         self.path = Path(path)
         self.note: str | None = None  # after reading the steps: why they end before the file does
         self.things: Things = np.empty(0, THING)  # what was pushed in the steps that are read
+        self.ways: Ways = np.empty(0, WAY)  # that were walked along in them
         try:
             with self.path.open("rb") as file:
                 self.header = self._read_header(file)
@@ -276,7 +283,7 @@ class Recording:
 
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
-        self.note, self.things = None, np.empty(0, THING)
+        self.note, self.things, self.ways = None, np.empty(0, THING), np.empty(0, WAY)
         stored = _stored(len(self._places), self.root_size)
         count, crc = 0, 0
         with self.path.open("rb") as file:
@@ -285,15 +292,17 @@ class Recording:
                 if self._has_end and head[:4] == _END_MARK:
                     self.note = _end_note(head, file, count, crc)
                     return
-                pushed = head[:4] == _HAND_MARK
-                found = _read_chunk(head, file, THING if pushed else stored)
+                found = _read_chunk(head, file, _BESIDE.get(head[:4], stored))
                 if found is None:
                     self.note = f"the file was cut off or is damaged: what follows step {count} is missing"
                     return
                 steps, data = found
                 crc = zlib.crc32(data, crc)
-                if pushed:
+                if head[:4] == _HAND_MARK:
                     self.things = np.concatenate([self.things, steps])
+                    continue
+                if head[:4] == _WAYS_MARK:
+                    self.ways = np.concatenate([self.ways, steps])
                     continue
                 count += len(steps)
                 yield steps if stored == STEP else _completed(steps, self._places)
@@ -366,8 +375,8 @@ def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> tuple
     if len(head) < _CHUNK_HEAD.size:
         return None
     mark, count, length, crc = _CHUNK_HEAD.unpack(head)
-    expected, most = count * stored.itemsize, MAX_CHUNK_THINGS if mark == _HAND_MARK else MAX_CHUNK_STEPS
-    if mark not in (_CHUNK_MARK, _HAND_MARK) or not 0 < count <= most or length > expected + 1024:
+    expected, most = count * stored.itemsize, MAX_CHUNK_ROWS if mark in _BESIDE else MAX_CHUNK_STEPS
+    if mark not in (_CHUNK_MARK, *_BESIDE) or not 0 < count <= most or length > expected + 1024:
         return None
     data = file.read(length)
     if len(data) < length or zlib.crc32(data) != crc:
@@ -380,8 +389,8 @@ def _read_chunk(head: bytes, file: BinaryIO, stored: np.dtype[np.void]) -> tuple
     return (np.frombuffer(raw, stored), data) if len(raw) == expected and inflater.eof else None
 
 
-def command_of(step: Any) -> Command:
-    """The command of one `STEP` record."""
+def command_of(step: Any, way: Corners = ()) -> Command:
+    """The command of one `STEP` record, and of the way that it names."""
     direction = None if np.isnan(step["direction"]) else float(step["direction"])
     forward, strafe, turn = float(step["forward"]), float(step["strafe"]), float(step["turn"])
-    return Command(forward, strafe, turn, direction, bool(step["flags"] & RUN))
+    return Command(forward, strafe, turn, direction, bool(step["flags"] & RUN), way)

@@ -11,7 +11,9 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.recorded_things import obey, same_places
+from elbowroom.control.recorded_ways import way_from
 from elbowroom.control.recording import ASSIST, RESTART, Recording, command_of
+from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
 _PHASES = tuple(Phase)
@@ -67,7 +69,7 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
     Raises `InputError` where the recorded scene or a recorded step is not valid.
     """
     controller = controller_for(recording, humanoid)
-    count, time = 0, 0.0
+    count, time, way = 0, 0.0, Command().way
     for chunk in recording.chunks():
         for step in chunk:
             if step["flags"] & RESTART:
@@ -75,7 +77,8 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
             controller.assist = bool(step["flags"] & ASSIST)
             pushed = recording.things[recording.things["step"] == count]
             obey(controller, pushed)
-            frame = controller.step(command_of(step), float(step["dt"]))
+            way = way_from(recording.ways, count, way)
+            frame = controller.step(command_of(step, way), float(step["dt"]))
             time = frame.time
             if not (_same(step, frame, recording.root_size) and same_places(controller, pushed)):
                 return ReplayResult(count + 1, time, _difference(count, step, frame))

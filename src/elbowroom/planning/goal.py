@@ -74,8 +74,8 @@ def side_by_side(goals: Mapping[DofGroup, GoalFunction]) -> GoalFunction:
 
 def natural_walk(motions: MotionSet = STOCK) -> GoalFunction:
     """The goals of all local groups (n+1, LOCAL) as in the paper: waist upright, arms swinging, the head ahead;
-    or as a recorded walk has them."""
-    if motions.swing is not None:
+    or as a recorded walk or a style has them."""
+    if not motions.is_stock_walk:
         return side_by_side({group: periodic_goal(group, motions) for group in LOCAL_GROUPS})
     starts, cubics = arm_swing(DofGroup.LEFT_ARM).cubics
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.control import steering
 from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
@@ -15,7 +14,7 @@ from elbowroom.control.lookahead import Lookahead
 from elbowroom.control.loose import Thing
 from elbowroom.control.settings import check_queue_size
 from elbowroom.errors import InputError
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, changed
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Way
@@ -132,7 +131,7 @@ class Walk:
         plan = self.frame.plan
         if plan is None or self.frame.time < plan.root.path.start_time:
             return False
-        return not steering.changed(plan.command, at_speed(command, self.settings.walk_speed))
+        return not changed(plan.command, at_speed(command, self.settings.walk_speed))
 
     def node_pose(self) -> NodePose:
         """What the avatar's nodes get now."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.planning.command import changed
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.extension import prolonged
 from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
@@ -67,6 +68,7 @@ class ExactPlanner:
         Who stands as before gets the same answer, who walks as planned goes on; for everybody else all is planned anew.
         """
         self._use(query.interval)
+        query = self._begun(query)
         alone = not len(root_planner.moving) and not query.hurry
         whole = self._as_before(query) if alone else None
         if whole is None:
@@ -75,6 +77,17 @@ class ExactPlanner:
             whole = whole or self._anew(left, root_planner, query, alone=alone)
         self.memory.recent.take(whole)
         return first_part(whole, query.horizon)
+
+    def _begun(self, query: MotionQuery) -> MotionQuery:
+        """The query; for who stands with the command that paths are being thought through for, while it is much alike.
+
+        Whoever steers with a mouse or a stick asks for something a little different every time: nothing would have its
+        turn.
+        """
+        stand = self.memory.standing
+        if stand is None or stand.left == 0 or changed(stand.query.command, query.command):
+            return query
+        return query._replace(command=stand.query.command)
 
     def _as_before(self, query: MotionQuery) -> FullPlan | None:
         """The answer to the same query, where the avatar has stood since and nothing is left to be tried."""
@@ -96,7 +109,7 @@ class ExactPlanner:
         hurry = query.hurry or (moves and memory.command != query.command)
         memory.command = query.command
         at_last = again and stand is not None and stand.left == 1
-        whole = NewPlan(self._body, root_planner, query, self._horizon(query), hurry, at_last).made(left)
+        whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry, at_last).made(left)
         turns = stand.left - 1 if again and stand is not None else memory.attempts.left
         known = alone and not hurry and stands(whole, query)
         memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None
@@ -104,8 +117,9 @@ class ExactPlanner:
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole
 
-    def _horizon(self, query: MotionQuery) -> int:
-        return max(query.horizon, round(self.settings.look_ahead / query.interval))
+    def _horizon(self, query: MotionQuery, *, hurry: bool = False) -> int:
+        ahead = self.settings.hurried_ahead if hurry else self.settings.look_ahead
+        return max(query.horizon, round(ahead / query.interval))
 
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.

@@ -47,9 +47,14 @@ class RouteFinder:
         self._settings, self._body, self.above = settings, body, above
         self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
-    def ahead(self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float) -> Route:
-        """The route from a start along a line of travel among `obstacles`, `sight` metres of it."""
-        straight = straight_route(float(start.x), float(start.z), line, sight)
+    def ahead(
+        self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float, way: Floats | None = None
+    ) -> Route:
+        """The route from a start along a line of travel among `obstacles`, `sight` metres of it.
+
+        Or along a `way` (m, 2), corner points x and z, that leads along the line and then elsewhere.
+        """
+        straight = straight_route(float(start.x), float(start.z), line, sight) if way is None else way
         if self.above is None and route_is_open(straight, start.height, self.half, obstacles.ground):
             return Route(straight, detour=False, ends=False, checks=0)
         free, checks = self._free_length(straight, line, obstacles, start.height)

@@ -48,7 +48,14 @@ def seconds_lost(
     `ends` says that its route ends before something.
     """
     lost = lost_on_line(prices_of(settings), line, speed, states, duration, ends)
-    if speed < SLOW or not around:
+    return lost if speed < SLOW else crowded(settings, lost, line, states, around, figure)
+
+
+def crowded(
+    settings: RootPlannerSettings, lost: float, line: TravelLine, states: Floats, around: MovingAround, figure: Figure
+) -> float:
+    """What a path, states (n+1, 7), costs that loses so many seconds, with what moves beside it."""
+    if not around:
         return lost
     crowd = settings.crowded * max(settings.polite - around.gap(states, *figure), 0.0)
     return lost + settings.wrong_side * _leftward(line, states) + crowd

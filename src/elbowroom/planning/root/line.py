@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import BENT, Command
 from elbowroom.planning.root.motion import RootMotionSettings
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", float, Floats)
 
+_BESIDE = 1.0  # metres: lines that begin no farther apart may be alike
 _SOON, _SLANT = 0.6, 1.5  # metres ahead, and for each metre beside it, after which a route comes to the line
+ON_THE_LINE = 0.0  # metres beside it
 
 
 class TravelLine(NamedTuple):
@@ -26,6 +28,11 @@ class TravelLine(NamedTuple):
     heading: float  # direction of travel
     facing: float  # heading of the body
     turns: bool  # whether the body turns to where it goes
+
+    def is_like(self, other: "TravelLine") -> bool:
+        """Whether another leads in much the same direction, from much the same place."""
+        bent = abs(math.remainder(other.heading - self.heading, math.tau))
+        return self.turns == other.turns and bent < BENT and math.dist((self.x, self.z), (other.x, other.z)) < _BESIDE
 
     def coordinates(self, x: Number, z: Number) -> tuple[Number, Number]:
         """Metres ahead and to the left of the line's first point, of one place or of many."""
@@ -58,6 +65,12 @@ def asked_direction(command: Command) -> tuple[float, float]:
 
 
 @exact_kernel
+def joining(left: float) -> float:
+    """Metres along a line after which a route comes to it from a place so many metres to its left."""
+    return max(_SOON, _SLANT * abs(left))
+
+
+@exact_kernel
 def straight_route(x: float, z: float, line: TravelLine, sight: float) -> Floats:
     """The corner points (3, 2), x and z, of a route from a place to a line of travel and along it, to the end of sight.
 
@@ -66,7 +79,7 @@ def straight_route(x: float, z: float, line: TravelLine, sight: float) -> Floats
     sine, cosine = np.sin(line.heading), np.cos(line.heading)
     dx, dz = x - line.x, z - line.z
     ahead, left = dx * sine + dz * cosine, dx * cosine - dz * sine
-    back = ahead + max(_SOON, _SLANT * abs(left))
+    back = ahead + joining(left)
     end = max(ahead + sight, back + 0.1)
     route = np.empty((3, 2))
     route[0, 0], route[0, 1] = x, z

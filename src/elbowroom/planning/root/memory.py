@@ -11,6 +11,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.line import TravelLine, asked_direction, new_line
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.profile import Profile
+from elbowroom.planning.root.way_ahead import Corners, leg_at
 from elbowroom.planning.root.way_out import WayOut
 
 Floats = NDArray[np.float64]
@@ -28,6 +29,12 @@ class RootMemory(NamedTuple):
     last: Floats | None = None  # (n+1, 7) states of the last path
     evading: Evading = None
     way_out: WayOut | None = None  # the last one along the line
+    way: Corners = ()  # that the command which is being held leads along
+    leg: int = 0  # the number of the leg that was reached
+
+    def leg_of(self, way: Corners, start: RootState) -> int:
+        """The number of the leg of a way on which a start is."""
+        return leg_at(way, start.x, start.z, self.leg if way == self.way else 0)
 
     def travel_line(self, start: RootState, command: Command, motion: RootMotionSettings, widest: float) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed.

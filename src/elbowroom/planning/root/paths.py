@@ -3,6 +3,7 @@
 Which of them are wanted, and in which order, is the root planner's business.
 """
 
+import math
 from collections.abc import Iterator
 from time import perf_counter_ns
 
@@ -18,7 +19,7 @@ from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.pace import slow_places
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.ahead import Above, RouteFinder
-from elbowroom.planning.root.cost import Figure, prices_of, seconds_lost
+from elbowroom.planning.root.cost import SLOW, Figure, crowded, prices_of, seconds_lost
 from elbowroom.planning.root.evasion import EvasionFinder
 from elbowroom.planning.root.hull import route_is_open
 from elbowroom.planning.root.leg_check import LegCheck
@@ -31,6 +32,7 @@ from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSett
 from elbowroom.planning.root.profile import Profile
 from elbowroom.planning.root.query import Answer, Asked, RootQuery
 from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.planning.root.way_ahead import Corners, line_of, way_ahead
 from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
@@ -38,6 +40,7 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _NEAR = 1.0  # metres
+_AIMED = 0.5  # metres beyond what is checked to which a way is known: the last steps are aimed there
 
 
 class RootPaths:
@@ -62,6 +65,7 @@ class RootPaths:
         self._narrow = NarrowPlaces(figure_of(humanoid, body.model), scene.free_map)
         self._scenes = scene.obstacles.moving
         self.others = Moving()
+        self._slow_legs: tuple[Corners, dict[int, Floats]] = (), {}
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
 
     @property
@@ -134,6 +138,29 @@ class RootPaths:
         answer = query.travelled(line, pace * speed, sight, slow)
         return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
 
+    def along(self, asked: Asked, leg: int, pace: float) -> RootPlan:
+        """Along the way that the command names, from its leg of this number on."""
+        began, way, speed = perf_counter_ns(), asked.command.way, wanted_speed(asked.command, self.settings.motion)
+        ahead = way_ahead(way, leg, asked.start.x, asked.start.z, self._sight(asked, speed) + _AIMED)
+        slow = np.concatenate([self._slow_on(way, number, asked.start.height) for number in ahead.legs])
+        query = self._query(asked)
+        before = query.checks
+        answer = query.travelled(line_of(way, leg), pace * speed, self._sight(asked, speed), slow, ahead)
+        lost = self._lost(asked, line_of(way, leg), speed, answer)
+        if answer.likewise is not None:
+            lost = max(_walked(answer.likewise) - _walked(answer.states), 0.0) / max(speed, SLOW)
+            lost = crowded(self.settings, lost, line_of(way, leg), answer.states, query.around, self._figure)
+        return _plan(asked, answer, query.checks - before, began, lost)
+
+    def _slow_on(self, way: Corners, leg: int, height: float) -> Floats:
+        """Where it is narrow on a leg of a way, and how slow one is there, (K, 3); looked up once for each way."""
+        if self._slow_legs[0] != way:
+            self._slow_legs = way, {}
+        known = self._slow_legs[1]
+        if leg not in known:
+            known[leg] = slow_places(self._narrow, line_of(way, leg), 0.0, math.dist(way[leg], way[leg + 1]), height)
+        return known[leg]
+
     def _slow(self, asked: Asked, line: TravelLine, sight: float) -> Floats:
         """Where it is narrow on a line of travel, and how slow one is there, (K, 3)."""
         start, reach = asked.start, self._reach(asked.horizon * asked.interval)
@@ -200,6 +227,11 @@ class RootPaths:
 def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
     path = RootPath(asked.start_time, asked.interval, answer.states)
     return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost)
+
+
+def _walked(states: Floats) -> float:
+    """Metres along a path (n+1, 7)."""
+    return float(np.hypot(*np.diff(states[:, :2], axis=0).T).sum())
 
 
 def _figure(model: BodyModel) -> Figure:

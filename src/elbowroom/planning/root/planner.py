@@ -24,6 +24,7 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked
+from elbowroom.planning.root.way_ahead import line_of
 from elbowroom.planning.root.way_out import WayOut, WayOutFinder, WayOutSettings
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.scene import Scene
@@ -31,6 +32,7 @@ from elbowroom.world.scene import Scene
 _SLOW = 0.1  # m/s: who walks faster has somewhere to go
 _TRIES = 2  # ways out that are taken one after the other, without getting farther
 _FARTHER = 0.15  # metres along a line that are worth another
+_BACK = 0.05  # metres along a line: less is no way back
 
 
 class _Candidate(NamedTuple):
@@ -110,15 +112,20 @@ class RootPlanner:
     def _commanded(self, asked: Asked, pace: float) -> RootPlan:
         command, memory, evading = asked.command, self.memory, self.memory.evading
         line: TravelLine | None = None
+        leg = memory.leg_of(command.way, asked.start)
         if command.idle:
             plan = self._paths.stopped(asked)
         elif _turns(command):
             plan, evading = self._paths.steered(asked, pace), None
+        elif command.way:
+            line, plan = line_of(command.way, leg), self._paths.along(asked, leg, pace)
         else:
             line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
             plan = self._paths.travelled(asked, line, pace)
-        out = memory.way_out if memory.way_out is not None and memory.way_out.line == line else None
-        self.memory = RootMemory(line, plan.path.states, evading, out)
+        out = memory.way_out
+        if out is not None and (line is None or not out.line.is_like(line)):
+            out = None
+        self.memory = RootMemory(line, plan.path.states, evading, out, command.way, leg)
         return plan
 
     def candidates(
@@ -179,7 +186,7 @@ class RootPlanner:
             line = None  # who is in no hurry leaves no line
         grids = [] if line is None else list(self._paths.evasions)
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
-            yield from self._steps_aside(asked, direct)
+            yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
         while offers or grids:
             offers.sort(key=lambda offer: offer.lost)
             if line is not None and grids and _dearer(offers, self.settings.wide_from if len(grids) == 1 else 0.0):
@@ -223,7 +230,7 @@ class RootPlanner:
 
     def _taken(self, candidate: _Candidate) -> _Candidate:
         plan, evading, way_out = candidate
-        self.memory = RootMemory(self.memory.line, plan.path.states, evading, way_out)
+        self.memory = self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out)
         return candidate
 
     def _evaded(self, asked: Asked, line: TravelLine, known: Evading, finder: EvasionFinder) -> list[_Offer]:
@@ -237,6 +244,12 @@ class RootPlanner:
 def _dearer(offers: list[_Offer], lost: float) -> bool:
     """Whether all offers, in order, cost at least so many seconds."""
     return not offers or offers[0].lost >= lost
+
+
+def _leads_back(plan: RootPlan, line: TravelLine) -> bool:
+    """Whether a path ends behind its start, along a line: nobody goes back for what only stands there."""
+    (first, _), (last, _) = (line.coordinates(x, z) for x, z in plan.path.states[[0, -1], :2].tolist())
+    return bool(last < first - _BACK)
 
 
 def _turns(command: Command) -> bool:

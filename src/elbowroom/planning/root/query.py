@@ -19,6 +19,7 @@ from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, get
 from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.profile import Course, follow_profile
+from elbowroom.planning.root.way_ahead import WayAhead
 from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,7 @@ class Answer(NamedTuple):
     ends: bool  # whether the route that was checked ends before something
     whole: bool = True  # whether it is walked as planned, to the end
     brisk: Floats | None = None  # the same were nothing narrow: who is slower there loses nothing
+    likewise: Floats | None = None  # the same were nothing in the way, of who walks along a way
 
 
 class RootQuery:
@@ -65,7 +67,7 @@ class RootQuery:
         self.start, _, self.horizon, self.interval, _ = asked
         self._near = check.body.near(self.start.x, self.start.z, reach, self.start.height)
         self._legs, self._routes = FreeLegs(check, self._near, around, self.start, self.interval), routes
-        self._route: tuple[TravelLine, float, Route] | None = None
+        self._route: tuple[tuple[object, ...], Route] | None = None
         self._places = 0
 
     @property
@@ -186,36 +188,48 @@ class RootQuery:
             states = self._crept(states, candidate)
         return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
 
-    def travelled(self, line: TravelLine, speed: float, sight: float, slow: Floats = NONE_SLOW) -> Answer:
+    def travelled(
+        self,
+        line: TravelLine,
+        speed: float,
+        sight: float,
+        slow: Floats = NONE_SLOW,
+        way: WayAhead | None = None,
+    ) -> Answer:
         """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it.
 
-        It is slower at `slow` places, as in `Travel`.
+        It is slower at `slow` places, as in `Travel`. Or it is walked along a `way` whose first leg is the line.
         """
-        route = self._route_along(line, sight)
+        route = self._route_along(line, sight, None if way is None else way.seen)
+        stops, corners = route.ends, route.corners
+        if way is not None and not (route.ends or route.detour):
+            stops, corners = way.ends, way.walked
 
         def candidate(share: float, slow: Floats = slow) -> Floats:
-            return walked(Travel(share * speed, line.facing, line.turns, route.ends, slow))
+            return walked(Travel(share * speed, line.facing, line.turns, stops, slow))
 
         def creeping(share: float) -> Floats:
-            return walked(Travel(share * speed, self.start.heading, False, route.ends, slow))
+            return walked(Travel(share * speed, self.start.heading, False, stops, slow))
 
         def walked(travel: Travel) -> Floats:
             states = self._blank()
-            follow(states, route.corners, travel, self.interval, self.bounds)
+            follow(states, corners, travel, self.interval, self.bounds)
             return states
 
         states, number = self._best(candidate(share) for share in self.settings.slower)
         states = self._crept(states, creeping)
         kind = self._kind(states, whole=number == 0, detour=route.detour)
         brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
-        return Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk)
+        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk)
+        return answer._replace(likewise=candidate(1.0)) if corners is not route.corners else answer
 
-    def _route_along(self, line: TravelLine, sight: float) -> Route:
-        """The route along a line of travel; the same at every pace."""
-        if self._route is None or self._route[:2] != (line, sight):
-            self._route = line, sight, self._routes.ahead(self.start, line, self._mapped, sight)
-            self._places += self._route[2].checks
-        return self._route[2]
+    def _route_along(self, line: TravelLine, sight: float, way: Floats | None) -> Route:
+        """The route along a line of travel, or along a way; the same at every pace."""
+        asked = line, sight, None if way is None else way.tobytes()
+        if self._route is None or self._route[0] != asked:
+            self._route = asked, self._routes.ahead(self.start, line, self._mapped, sight, way)
+            self._places += self._route[1].checks
+        return self._route[1]
 
     def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
         """Walk along an evasion from the line of travel, or as much of it as is free."""

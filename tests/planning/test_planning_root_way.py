@@ -1,0 +1,61 @@
+"""Walking along a way with corners: which leg one is on, what lies ahead, and that a path goes on as it was."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.planning.command import Command
+from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.way_ahead import leg_at, way_ahead
+from elbowroom.world.scene import Scene
+
+WAY = ((0.0, 0.0), (0.0, 3.0), (2.0, 3.0), (2.0, 9.0))
+INTERVAL = 0.15
+
+
+def test_the_next_leg_is_reached_where_it_is_nearer_and_none_is_left_out() -> None:
+    assert leg_at(WAY, 0.1, 1.0, 0) == 0
+    assert leg_at(WAY, 0.5, 2.9, 0) == 1
+    assert leg_at(WAY, 2.0, 8.0, 1) == 2
+    assert leg_at(WAY, 0.0, 0.0, 2) == 2  # nobody goes back
+
+
+def test_along_a_thin_wall_one_stays_on_ones_side() -> None:
+    """The way back is nearer to who walks a little aside, but it is not the next leg."""
+    there_and_back = ((0.0, 0.0), (0.0, 5.0), (0.3, 5.0), (0.3, 0.0))
+    assert leg_at(there_and_back, 0.25, 2.0, 0) == 0
+
+
+@pytest.mark.parametrize("sight", [1.0, 3.5, 6.0, 30.0])
+def test_what_lies_ahead_is_as_long_as_sight_and_on_the_way(sight: float) -> None:
+    ahead = way_ahead(WAY, 0, 0.2, 1.0, sight)
+    assert ahead.seen[0].tolist() == [0.2, 1.0]
+    assert ahead.walked[0].tolist() == list(WAY[0])
+    length = float(np.hypot(*np.diff(ahead.walked, axis=0).T).sum())
+    whole = sum(math.dist(a, b) for a, b in itertools.pairwise(WAY))
+    assert length == pytest.approx(min(1.0 + sight, whole))
+    assert ahead.ends == (1.0 + sight > whole)
+    np.testing.assert_allclose(ahead.seen[-1], ahead.walked[-1])
+
+
+def test_a_path_along_a_way_goes_on_as_it_was_round_the_corner_and_stands_at_the_end() -> None:
+    """Planned again from any of its states, it is the same to the end of the first one."""
+    planner, state = RootPlanner(Humanoid.default(), Scene.load("empty")), RootState()
+    command, apart, walked = Command(forward=1.0, direction=0.0, way=WAY), 0.0, []
+    before = planner.plan(state, command, 18, INTERVAL).path.states
+    for number in range(1, 90):
+        state = RootState(*before[1].tolist())
+        plan = planner.plan(state, command, 18, INTERVAL, number * INTERVAL)
+        apart = max(apart, float(np.abs(plan.path.states[:-1] - before[1:]).max()))
+        assert plan.lost < planner.settings.untroubled
+        before = plan.path.states
+        walked.append((state.x, state.z))
+    assert apart < 1e-9
+    assert math.dist(walked[-1], WAY[-1]) < 0.05
+    assert math.hypot(state.forward, state.lateral) < 0.1
+    corner = min(math.dist(place, WAY[1]) for place in walked)
+    assert corner < 0.4
