@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.kinematics import body_model
-from elbowroom.body.living import living
+from elbowroom.body.living import body_of, living
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 
@@ -18,6 +18,7 @@ Velocities = tuple[float, float, float]
 DT = 1 / 60
 KEY = 9  # frames of a key interval: five are known ahead
 GAIT = body_model(proportional_humanoid()).gait
+BODY = body_of(GAIT)
 FASTEST = np.array([2.0, 2.0, 14.0]) * DT  # changes of velocity in a frame
 WANTED: dict[str, Callable[[float], Velocities]] = {
     "start and stop": lambda t: (1.1 if 0.3 < t < 2.2 else 0.0, 0.0, 0.0),
@@ -85,5 +86,5 @@ def alive(rows: Floats, room: Callable[[int], float] = lambda _: np.inf) -> Floa
     """Rows (frames, WITH_FEET) as they live (frames, SHOWN), with so much room in each frame, metres."""
     shown = [np.concatenate([rows[0], np.zeros(CARRIAGE)])]
     for k, row in enumerate(rows[1:], 1):
-        shown.append(living(GAIT, shown[-1], row, DT, room(k), UNKNOWN))
+        shown.append(living(BODY, shown[-1], row, DT, room(k), UNKNOWN))
     return np.array(shown)

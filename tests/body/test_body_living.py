@@ -13,7 +13,7 @@ from elbowroom.body.kinematics import body_model, hips_position, posture_capsule
 from elbowroom.body.living import SHARE, lively, living
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import CARRIAGE, WITH_FEET
-from feet_walks import DT, GAIT, WANTED, Velocities, alive, path, random_wish, walked
+from feet_walks import BODY, DT, WANTED, Velocities, alive, path, random_wish, walked
 
 Floats = NDArray[np.float64]
 
@@ -82,10 +82,10 @@ def test_where_there_is_no_room_hips_are_where_they_were_planned() -> None:
     assert not carried(alive(rows, lambda _: 0.02)).any()
     free = alive(rows)
     assert lively(free[-1])
-    assert not lively(living(GAIT, free[-1], rows[-1], DT, -1.0, UNKNOWN))  # at once
+    assert not lively(living(BODY, free[-1], rows[-1], DT, -1.0, UNKNOWN))  # at once
     shrinking = [free[-1]]
     while lively(shrinking[-1]):
-        shrinking.append(living(GAIT, shrinking[-1], rows[-1], DT, 0.0, UNKNOWN))
+        shrinking.append(living(BODY, shrinking[-1], rows[-1], DT, 0.0, UNKNOWN))
     assert len(shrinking) < 14
     assert (np.diff(np.array(shrinking)[:, SHARE]) < 0.0).all()
 
@@ -96,7 +96,7 @@ def test_the_head_turns_before_the_root() -> None:
     soon[1, 3] += 0.5
     shown = np.concatenate([row, np.zeros(CARRIAGE)])
     for _ in range(40):
-        shown = living(GAIT, shown, row, DT, np.inf, soon)
+        shown = living(BODY, shown, row, DT, np.inf, soon)
     assert 0.2 < shown[HEAD_TURN] < 0.5
 
 

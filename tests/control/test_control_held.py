@@ -8,7 +8,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.gauntlet.scenes import course_scene
 from elbowroom.planning.command import Command
-from elbowroom.server.walk import at_speed
+from elbowroom.planning.root.pace import at_speed
 from elbowroom.world.scene import Scene
 
 ONE_TURN = 1 / 60  # seconds

@@ -39,7 +39,8 @@ def test_both_rooms_are_visited_and_nothing_is_touched(humanoid: Humanoid, rooms
     heard = []
     result = run_tour(controller, [(0.0, 6.0), (-1.2, 1.0)], shown.append, lambda number, leg: heard.append(number))
     assert (result.targets, result.arrived, heard) == (2, 2, [0, 1])
-    assert result.plan_ms.count > 10
+    assert result.plan_ms.count == result.plan_cpu_ms.count > 10
+    assert result.frame_ms.count == result.plan_cpu_ms.count + result.frame_cpu_ms.count
     verdict = judged(shown, controller, mesh=False, progress=lambda _time: None)
     assert verdict.clean
     assert verdict.poses > 4 * 60 * result.seconds - 10
@@ -49,7 +50,7 @@ def test_a_closed_door_is_no_way_and_the_floor_ends_at_the_walls(humanoid: Human
     controller = Controller(humanoid, Scene.load(write_place(tmp_path / "rooms.glb")))
     other = (0.0, 6.0) if controller.root.z < 4.0 else (0.0, 2.0)
     leg, cost = walk_to(controller, other, 10.0)
-    assert (leg.outcome, leg.seconds, len(cost.plan_ms)) == (NO_WAY, 0.0, 0)
+    assert (leg.outcome, leg.seconds, len(cost.frame_ms)) == (NO_WAY, 0.0, 0)
     assert "no way leads" in leg.reason
     with pytest.raises(NoWayError, match="nobody can stand at 4"):
         controller.goto((4.0, controller.root.z))
@@ -80,7 +81,7 @@ def test_the_command_tells_it_as_json() -> None:
     done = CliRunner().invoke(app, ["tour", "a", "--targets", "2", "--seed", "3", "--json", "-q"])
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)
-    assert {"targets", "arrived", "stuck", "touching_frames", "plan_ms", "given_up"} <= set(told)
+    assert {"targets", "arrived", "stuck", "touching_frames", "plan_ms", "plan_cpu_ms", "given_up"} <= set(told)
     assert (told["targets"], told["arrived"], told["touching_frames"], told["given_up"]) == (2, 2, 0, [])
 
 

@@ -21,7 +21,7 @@ def test_what_stands_is_dark_and_lies_where_one_who_looks_along_z_sees_it() -> N
     room = np.full((50, 40), 0.6, np.float32)  # rows along z, columns along x
     room[40:, :10] = 0.0  # far ahead, to the right: +X points left
     leg = Leg((2.0, 1.0), "arrived", "", (2.0, 0.0, 1.0), 1.0, 1.0, 0, 0.0, 0.1)
-    result = TourResult("made", 0, 1, 1, 0, 0.0, 1.0, NONE, NONE, NONE, (leg,))
+    result = TourResult("made", 0, 1, 1, 0, 0.0, 1.0, NONE, NONE, NONE, NONE, NONE, (leg,))
     area = Rectangle(0.0, 0.0, 3.9, 4.9)
     known = RoomMap(area, one_plane((50, 40), 0.1), room.reshape(-1), room.reshape(-1))
     picture = tour_picture(known, 0.2, np.array([[2.0, 0.0, 0, 0, 0, 0, 0]] * 2), result)

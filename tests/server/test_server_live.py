@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from elbowroom.clips.style import STYLES
 from elbowroom.control.recording import Recording
 from elbowroom.server import admission, changes, session
 from elbowroom.server.clip_walk import ClipWalk
@@ -27,7 +28,7 @@ from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Overlays, Ping, Reset
 from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, SceneMessage
-from elbowroom.server.schema.progress import Crossed, Going, Loading, Plan, Status
+from elbowroom.server.schema.progress import Crossed, Going, Loading, Notice, Plan, Status
 from elbowroom.server.walk import Walk
 from live_session import LONG, Client, client_at, client_of, running
 
@@ -170,6 +171,15 @@ def test_a_new_queue_size_keeps_the_place(client: Client) -> None:
     client.wait_for(Settings, lambda settings: settings.queue_size == 3)
     after = client.frame()
     assert math.hypot(after.x - start.x, after.z - start.z) > 0.9
+
+
+def test_a_style_of_walking_is_taken_and_an_unknown_one_told(client: Client) -> None:
+    client.send(Configure(style="old"))
+    settings = client.wait_for(Settings, lambda settings: settings.style == "old")
+    assert settings.walk_speed == STYLES["old"].speed
+    client.send(Configure(style="olde"))
+    assert "none of plain" in client.wait_for(Notice, lambda notice: notice.level == "error").message
+    assert client.wait_for(Settings).style == "old"
 
 
 def test_crossing_the_finish_is_told(client: Client) -> None:

@@ -15,6 +15,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.rehearsal import rehearse_detour
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.pace import at_speed
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.server.library import Library
 from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
@@ -23,7 +24,7 @@ from elbowroom.server.rate_limit import TokenBucket
 from elbowroom.server.schema.commands import ClockMessage, Input, Overlays, Push
 from elbowroom.server.schema.progress import Notice, Plan, Pong
 from elbowroom.server.stage import STEP, Stage
-from elbowroom.server.walk import Walk, WalkSettings, at_speed
+from elbowroom.server.walk import Walk, WalkSettings
 from elbowroom.server.warmup import warm_up
 from sent_files import add_avatar
 

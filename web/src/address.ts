@@ -11,6 +11,8 @@ export interface Place {
   readonly overlays: ReadonlySet<OverlayName>;
 }
 
+/** The style of walking of who asks for none: the address does not speak of it. */
+export const PLAIN = "plain";
 /** A change of one of these is a step that the browser's back button undoes. */
 const STEPS = ["scene", "avatar", "planner"] as const;
 /** The server calls what was dropped on a page by a number like this; it is nobody else's. */
@@ -19,7 +21,7 @@ const DROPPED = /^[0-9a-f]{16}$/;
 /** The query of the address line for a place; what it does not speak of stays as it was. */
 export function queryOf({ settings, camera, overlays }: Place, before: string): string {
   const query = new URLSearchParams(before);
-  const { scene, avatar, planner, queueSize, walkSpeed, assist } = settings;
+  const { scene, avatar, planner, queueSize, walkSpeed, style, assist } = settings;
   query.set("scene", scene);
   if (isPrivate(avatar)) query.delete("avatar");
   else query.set("avatar", avatar);
@@ -27,6 +29,8 @@ export function queryOf({ settings, camera, overlays }: Place, before: string): 
   query.set("planner", planner);
   query.set("queue", String(queueSize));
   query.set("speed", String(Number(walkSpeed.toFixed(2))));
+  if (style === PLAIN) query.delete("style");
+  else query.set("style", style);
   query.set("overlays", OVERLAYS.filter((name) => overlays.has(name)).join() || "none");
   if (assist) query.delete("assist");
   else query.set("assist", "0");

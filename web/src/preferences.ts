@@ -31,6 +31,7 @@ export interface SessionWishes {
   readonly queueSize: number | null;
   readonly assist: boolean | null;
   readonly walkSpeed: number | null;
+  readonly style: string | null;
   readonly camera: ViewName;
   readonly showUi: boolean;
 }
@@ -93,6 +94,7 @@ export function readWishes(query: URLSearchParams): SessionWishes {
     planner: query.get("planner"),
     queueSize: Number.isInteger(queue) ? queue : null,
     walkSpeed: Number.isFinite(speed) ? speed : null,
+    style: query.get("style"),
     camera: viewNamed(query.get("camera")),
     assist: assist === null ? null : assist !== "0" && assist !== "off",
     showUi: query.get("ui") !== "0",

@@ -4,7 +4,8 @@ import type { Settings } from "../src/generated/messages";
 import { oddities, readWishes } from "../src/preferences";
 
 const settings = {
-  scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1000000001, assist: true,
+  scene: "gauntlet:3:17", avatar: "alice", planner: "exact", queueSize: 5, walkSpeed: 1.1000000001, style: "plain",
+  assist: true,
 } as Settings;
 const place = { settings, camera: "side" as const, overlays: new Set(["path", "ghosts"] as const) };
 
@@ -16,6 +17,8 @@ describe("the address line", () => {
     expect(queryOf({ ...place, overlays: new Set() }, "")).toContain("overlays=none");
     expect(queryOf({ ...place, settings: { ...settings, assist: false } }, "")).toContain("assist=0");
     expect(queryOf(place, "?assist=0")).not.toContain("assist");
+    expect(queryOf({ ...place, settings: { ...settings, style: "old" } }, "")).toContain("style=old");
+    expect(queryOf(place, "?style=old")).not.toContain("style");
   });
 
   it("is read as it was written", () => {

@@ -7,6 +7,7 @@ turns to where the way will lead.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from elbowroom.body.carriage import (
     UP,
 )
 from elbowroom.body.gait import GaitShape, Stride, stride_of
+from elbowroom.body.manner import PLAIN, Manner
 from elbowroom.body.root import SHOWN, WITH_FEET
 from elbowroom.jit import exact_kernel, helper
 
@@ -145,8 +147,15 @@ def _approached(value: float, goal: float, up: float, down: float) -> float:
     return value + min(max(goal - value, -down), up)
 
 
+class Body(NamedTuple):
+    """Who lives: what `living` needs to know of it."""
+
+    scale: float  # of its legs, see `GaitShape`
+    amounts: Floats  # (POSING + 1,) of its manner
+
+
 @exact_kernel
-def live(scale: float, before: Floats, dt: float, room: float, coming: Floats, faces: float, out: Floats) -> None:
+def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, faces: float, out: Floats) -> None:
     """Write to a row (SHOWN,) with root and feet how it is carried `dt` seconds after the row `before` (SHOWN,).
 
     `room` metres are about the body; below 0 it is carried as planned at once. `coming` (m, 8) is as in `step_feet`.
@@ -161,21 +170,27 @@ def live(scale: float, before: Floats, dt: float, room: float, coming: Floats, f
         out[WITH_FEET + i] = 0.0
     share = _smooth(out[SHARE])
     if share > 0.0:
-        _walk(stride_of(scale, out[3], out[4], out[5]), out[6], out)
-        _idle(scale, _smooth(out[REST]), out[CLOCK], out)
+        _walk(stride_of(body.scale, out[3], out[4], out[5]), out[6], out)
+        _idle(body.scale, _smooth(out[REST]), out[CLOCK], out)
         for i in range(POSING):
-            out[WITH_FEET + i] *= share
+            out[WITH_FEET + i] *= share * body.amounts[i]
+        out[CHEST_BEND] += share * body.amounts[POSING]
     if room >= 0.0:
         out[HEAD_TURN] = _eased(before[HEAD_TURN], share * (_looks_to(out, coming) - faces), dt)
 
 
+def body_of(gait: GaitShape, manner: Manner = PLAIN) -> Body:
+    """A body that walks in a manner."""
+    return Body(gait.scale, manner.amounts())
+
+
 def living(
-    gait: GaitShape, before: Floats, row: Floats, dt: float, room: float, coming: Floats, faces: float = 0.0
+    body: Body, before: Floats, row: Floats, dt: float, room: float, coming: Floats, faces: float = 0.0
 ) -> Floats:
     """A row (WITH_FEET,) as it is carried (SHOWN,), see `live`."""
     out = np.empty(SHOWN)
     out[:WITH_FEET] = row
-    live(gait.scale, before, dt, room, coming, faces, out)
+    live(body, before, dt, room, coming, faces, out)
     return out
 
 

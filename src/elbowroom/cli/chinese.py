@@ -63,7 +63,9 @@ CHINESE = {
     "not judged": "未檢驗",
     "{0} of {1} poses": "{1} 個姿勢中的 {0} 個",
     "planning": "規劃",
+    "in processor time": "規劃之處理器時間",
     "a frame": "每個畫面",
+    "without planning": "不規劃時之處理器時間",
     "finding the way": "尋路",
     "Not reached": "未到達",
     # exports, films, replays

@@ -8,9 +8,32 @@ if TYPE_CHECKING:
     from elbowroom.clips.motion_set import MotionSet
     from elbowroom.clips.told import Told
 
+PLAIN = "plain"  # the style of who asks for none
+
+
+def _known_style(text: str) -> str:
+    """The style's name as given; raises `InputError`, before anything heavy is done."""
+    if text != PLAIN:
+        from elbowroom.clips.style import style_named
+
+        style_named(text)
+    return text
+
+
 Swing = Annotated[
     str | None,
     typer.Option("--swing", help="Walk as in this clip: FILE or FILE#CLIP (BVH, GLB, VRMA, X3D, USD).", metavar="CLIP"),
+]
+Style = Annotated[
+    str,
+    typer.Option(
+        "--style",
+        callback=_known_style,
+        help="How to walk: plain, relaxed, brisk, careful, old or child; so much of it by NAME:SHARE, as old:0.5.",
+    ),
+]
+StyleName = Annotated[
+    str, typer.Option("--style", help="How to walk: plain, relaxed, brisk, careful, old or child; the page has a menu.")
 ]
 Dodge = Annotated[
     list[str] | None,
@@ -36,9 +59,11 @@ def named_by(swing: str | None, dodge: list[str] | None) -> list[str]:
     return [*([] if swing is None else [swing]), *(dodge or ())]
 
 
-def motions_by(swing: str | None, dodge: list[str] | None, told: "Told") -> "MotionSet":
+def motions_by(swing: str | None, dodge: list[str] | None, told: "Told", style: str = PLAIN) -> "MotionSet":
     """The motions that the options ask for; raises `InputError`."""
     from elbowroom.clips.clip import Clip, motions_of
+    from elbowroom.clips.style import style_named
 
+    manner = style_named(style)
     clips = tuple(Clip.load(reference, told) for reference in dodge or ())
-    return motions_of(None if swing is None else Clip.load(swing, told), clips)
+    return motions_of(None if swing is None else Clip.load(swing, told), clips, manner)

@@ -51,6 +51,7 @@ def play(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
+    style: clip_options.StyleName = clip_options.PLAIN,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -65,7 +66,7 @@ def play(
     from elbowroom.server.library import Library
     from elbowroom.server.walk import WalkSettings
 
-    settings = WalkSettings(planner=planner, queue_size=queue)
+    settings = WalkSettings(planner=planner, queue_size=queue).in_style(style)
     of_place = is_model(scene)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
     told = place_options(scale, up if of_place else None, ground, drop, passable)

@@ -46,6 +46,7 @@ def tour(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
+    style: clip_options.Style = clip_options.PLAIN,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -64,7 +65,7 @@ def tour(
 
     settings = CrossingSettings(planner, queue, seed)
     compile_first(quiet=quiet)
-    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None))
+    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, reading)
@@ -133,7 +134,9 @@ def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None
         "stuck": said("{0} times, {1} s of {2} s", result.stuck, f"{result.stuck_s:.1f}", f"{result.seconds:.0f}"),
         "touching": "not judged" if verdict is None else said("{0} of {1} poses", touching, verdict.poses),
         "planning": _costs(result.plan_ms),
+        "in processor time": _costs(result.plan_cpu_ms),
         "a frame": _costs(result.frame_ms),
+        "without planning": _costs(result.frame_cpu_ms),
         "finding the way": _costs(result.find_ms),
     }
     print_row(said("Tour of {0}, seed {1}", result.scene, result.seed), rows)

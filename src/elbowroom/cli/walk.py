@@ -1,6 +1,5 @@
 """`elbowroom walk`: the paper's crossing test, without a screen."""
 
-from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,6 +18,7 @@ from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
+    from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.controller import Controller
     from elbowroom.control.frame import Frame
     from elbowroom.control.recording import Recorder
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.command import Command
     from elbowroom.planning.navigation.way import Place, Spot
+    from elbowroom.server.vmc_stream import VmcStream
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
 FELL_SHORT = 1
@@ -52,6 +53,7 @@ def walk(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
+    style: clip_options.Style = clip_options.PLAIN,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -81,7 +83,7 @@ def walk(
 
     settings = CrossingSettings(planner, queue, seed, limit)
     compile_first(quiet=quiet)
-    motions = clip_options.motions_by(swing, dodge, of_clips)
+    motions = clip_options.motions_by(swing, dodge, of_clips, style)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, reading)
@@ -92,8 +94,7 @@ def walk(
         nullcontext() if record is None else Recorder(record, controller) as recorder,
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
-        send = None if stream is None else in_time(stream, humanoid)
-        outcome = _walked(controller, settings, target, _listener(bar, recorder, send))
+        outcome = _walked(controller, settings, target, _listener(bar, recorder, stream, humanoid))
     raise typer.Exit(0 if _told(outcome, place.name, record, json) else FELL_SHORT)
 
 
@@ -120,9 +121,9 @@ def _told(outcome: "Leg | CrossingResult", scene: str, record: Path | None, json
     return outcome.passed
 
 
-def _listener(bar: Bar, recorder: "Recorder | None", send: "Callable[[Frame], None] | None") -> "Listener":
+def _listener(bar: Bar, recorder: "Recorder | None", stream: "VmcStream | None", humanoid: "Humanoid") -> "Listener":
     """What every step is told to: the recording, a receiver, and now and then the progress bar."""
-    count = 0
+    count, send = 0, None if stream is None else in_time(stream, humanoid)
 
     def listen(command: "Command", dt: float, frame: "Frame") -> None:
         nonlocal count

@@ -9,6 +9,7 @@ from elbowroom.clips.dodge import dodge_clips
 from elbowroom.clips.figure import Figure
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.planning_motion import PlanningMotion, planning_motion
+from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import Swing, swing_of
 from elbowroom.clips.told import Told
 
@@ -57,14 +58,15 @@ class Clip:
         return swing_of(self.planning, self.place)
 
 
-def motions_of(swing: Clip | None = None, dodge: tuple[Clip, ...] = ()) -> MotionSet:
-    """The motions of an avatar that walks like one clip and has learnt to do what others show.
+def motions_of(swing: Clip | None = None, dodge: tuple[Clip, ...] = (), style: Style = PLAIN_STYLE) -> MotionSet:
+    """The motions of an avatar that walks like one clip, or in a style, and has learnt to do what others show.
 
     Raises `InputError` if nobody walks in the clip for the swing.
     """
-    if swing is None and not dodge:
+    if swing is None and not dodge and style is PLAIN_STYLE:
         return STOCK
     return MotionSet(
         None if swing is None else swing.swing,
         tuple(part for clip in dodge for part in dodge_clips(clip.planning)),
+        style,
     )

@@ -1,7 +1,7 @@
 """What an avatar has learnt beside the stock clips: a swing of its own, and motions for the activity graphs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of, followed, side_by_side
 from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
+from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.errors import InputError
 
@@ -26,9 +27,19 @@ class MotionSet:
 
     swing: Swing | None = None  # None: the stock arm swing, the waist upright
     dodges: tuple[MotionClip, ...] = ()  # of any local group, beside the stock clips
+    style: Style = PLAIN_STYLE  # in which it walks
+
+    @property
+    def is_stock_walk(self) -> bool:
+        """Whether head and arms go as in the stock walk, and the waist is upright."""
+        return self.swing is None and self.style.posture is None
 
     def goal(self, group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
         """What a local group would like to do at gait phases (n,) and forward speeds (n,): (n, size)."""
+        goals = self._walk(group, phases, speeds)
+        return goals if self.style.posture is None else self.style.posture.of(group, goals)
+
+    def _walk(self, group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
         if self.swing is not None:
             return self.swing.goal(group, phases, speeds)
         if not group.is_arm:
@@ -42,7 +53,7 @@ class MotionSet:
         own = tuple(clip for clip in self.dodges if clip.group is group)
         if self.swing is not None:
             own = (self.swing.clips[group], *own)
-        elif not group.is_arm:
+        elif not group.is_arm and self.style.posture is None:
             return stock_clips(group) + own
         return (
             stock_clips(group) + tuple(MotionClip("swing", group, phases, swing, loop=True) for swing in swings) + own
@@ -58,7 +69,7 @@ class MotionSet:
             replace(clip, configurations=_raised(clip.configurations)) if clip.group is DofGroup.WAIST else clip
             for clip in self.dodges
         )
-        return MotionSet(swing, tuple(dodges))
+        return MotionSet(swing, tuple(dodges), self.style)
 
     def to_dict(self) -> dict[str, Any]:
         """All of it as JSON-ready values; numbers come back to the last bit."""
@@ -75,16 +86,21 @@ class MotionSet:
                 {"name": c.name, "group": c.group.name, "times": c.times.tolist(), "keys": c.configurations.tolist()}
                 for c in self.dodges
             ],
+            "style": asdict(self.style),
         }
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], place: str) -> "MotionSet":
         """Read what `to_dict` wrote; raises `InputError`."""
         try:
-            swing, dodges = data["swing"], data["dodges"]
+            swing, dodges, style = data["swing"], data["dodges"], data.get("style")
             if len(dodges) > _MOST_CLIPS:
                 raise InputError(f"{place}: {len(dodges)} clips, at most {_MOST_CLIPS} are read")
-            return cls(None if swing is None else _swing(swing), tuple(_clip(dodge) for dodge in dodges))
+            return cls(
+                None if swing is None else _swing(swing),
+                tuple(_clip(dodge) for dodge in dodges),
+                PLAIN_STYLE if style is None else Style.from_dict(style),
+            )
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise InputError(f"{place}: the motions are not as they were written ({error!r:.80})") from None
 

@@ -35,7 +35,7 @@ COLUMNS = (
     Column("walk", pa.int64(), "number of the walk; it and the seed of the dataset decide all else"),
     Column("place", pa.string(), "random courses of a level, a stock scene, or the name of a file"),
     Column("avatar", pa.string(), "`stock` or the name of a file"),
-    Column("swing", pa.string(), "`stock`, or the clip that is walked as"),
+    Column("swing", pa.string(), "`stock`, the style, or the clip that is walked as"),
     Column("steering", pa.string(), "how the user steers"),
     Column("seed", pa.int64(), "of the course, or of the start in the scene"),
     Column("fps", pa.int32(), "frames a second"),

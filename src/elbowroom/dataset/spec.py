@@ -14,6 +14,7 @@ from elbowroom.world.json_place import read_json
 
 COURSES = "gauntlet:"
 STOCK = "stock"
+STYLE = "style:"
 RATES = (60, 30, 20)  # frames a second: every frame, every second, every third
 MOST_WALKS = 10_000_000
 _MOST_BYTES = 1_000_000  # of a file
@@ -33,7 +34,7 @@ class DatasetSpec:
     fps: int = 30  # frames a second: 60, 30 or 20
     places: tuple[str, ...] = ("gauntlet:3",)  # random courses of a level, stock scenes by name, files of scenes
     avatars: tuple[str, ...] = (STOCK,)  # or files
-    swings: tuple[str, ...] = (STOCK,)  # or motions that are walked as, FILE or FILE#CLIP
+    swings: tuple[str, ...] = (STOCK,)  # or style:NAME, or motions that are walked as, FILE or FILE#CLIP
     steering: tuple[str, ...] = ("straight",)  # see `hands`
     seconds: float = 20.0  # at most, of each walk
     planner: str = DEFAULT_PLANNER
@@ -90,7 +91,8 @@ class DatasetSpec:
         """The same with files found from a folder."""
 
         def found(name: str) -> str:
-            return str(folder / name) if "." in name and not Path(name).is_absolute() else name
+            of_file = "." in name and not name.startswith(STYLE) and not Path(name).is_absolute()
+            return str(folder / name) if of_file else name
 
         lists = {name: tuple(map(found, getattr(self, name))) for name in ("places", "avatars", "swings")}
         return type(self)(**asdict(self) | lists)

@@ -11,11 +11,12 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.clip import Clip, motions_of
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.style import style_named
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.dataset.hands import HANDS, TOUR, Way
 from elbowroom.dataset.row import Row, row_of
-from elbowroom.dataset.spec import STOCK, DatasetSpec, level
+from elbowroom.dataset.spec import STOCK, STYLE, DatasetSpec, level
 from elbowroom.experiment.crossing import DT, start_for
 from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
 from elbowroom.experiment.judge.motion import ShownMotion
@@ -57,12 +58,14 @@ def draw(spec: DatasetSpec, number: int) -> Draw:
 
 @dataclass(frozen=True)
 class SwingFile:
-    """The motions of who walks as in a clip, FILE or FILE#CLIP; `stock` are the stock ones."""
+    """The motions of who walks as in a clip (FILE, FILE#CLIP) or a style (style:NAME); `stock` are the stock ones."""
 
     name: str
 
     def open(self) -> MotionSet:
         """Read it."""
+        if self.name.startswith(STYLE):
+            return motions_of(style=style_named(self.name.removeprefix(STYLE)))
         return motions_of(None if self.name == STOCK else Clip.load(self.name))
 
 

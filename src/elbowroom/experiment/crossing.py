@@ -21,6 +21,7 @@ from elbowroom.experiment.replans import Replans
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import DEFAULT_PLANNER, EXACT
+from elbowroom.planning.root.pace import at_speed
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -139,10 +140,10 @@ def run_timed_crossing(
 ) -> tuple[CrossingResult, CrossingTimes]:
     """`run_crossing`, and the cost of every single frame; plans that were made at `desk` cost none."""
     user = ScriptedUser(np.random.default_rng([settings.seed, 2]))
-    ledger = _Ledger()
+    ledger, speed = _Ledger(), controller.motions.style.speed
     frame = controller.step(Command(), 0.0)
     while frame.time < settings.limit - 0.5 * DT and not controller.scene.finished(controller.root):
-        command = user.command(frame.stuck, DT)
+        command = at_speed(user.command(frame.stuck, DT), speed)
         began, planned = time.perf_counter(), 0.0 if desk is None else desk.spent
         frame = controller.step(command, DT)
         cost = time.perf_counter() - began

@@ -12,7 +12,7 @@ from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model
-from elbowroom.body.living import living
+from elbowroom.body.living import body_of, living
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.body.slim_capsule import Wanted, slimmest
 from elbowroom.planning.command import Command
@@ -126,7 +126,7 @@ def rehearse_feet(humanoid: Humanoid) -> None:
     gait, root = body_model(humanoid).gait, np.zeros(ROOT_STATE)
     row = gliding(gait, beside(gait, root), root, 0.01)
     settled(gait, onward(gait, row, root, 0.01))
-    living(gait, np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
+    living(body_of(gait), np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
 
 
 def rehearse_place() -> None:

@@ -78,6 +78,7 @@ class Changes:
             "planner": lambda name: WalkSettings(planner=name),
             "queue_size": lambda size: WalkSettings(queue_size=size),
             "walk_speed": lambda speed: WalkSettings(walk_speed=speed),
+            "style": lambda name: WalkSettings(style=name),
         }
 
     async def _configure(self, message: Configure) -> None:
@@ -125,4 +126,4 @@ def make_walk(library: Library, wanted: Wanted, places: Sequence[RootState], sce
         stored = library.clips.get(wanted.clip)
         return ClipWalk(avatar, scene, wanted.settings, stored, as_planned=wanted.as_planned)
     desk = PlanningThread(library.planning, library.meter)
-    return Walk(avatar, scene, wanted.settings, places, desk, library.motions)
+    return Walk(avatar, scene, wanted.settings, places, desk, library.motions_in(wanted.settings.style))

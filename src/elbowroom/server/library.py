@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from elbowroom.body.load_settings import LoadSettings
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.clips.style import STYLES
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.names import NAMED, PREFIX, parse_name
 from elbowroom.experiment.gauntlet.scenes import load_scene, random_names
@@ -23,7 +24,7 @@ from elbowroom.server.courses import Courses
 from elbowroom.server.meter import Meter
 from elbowroom.server.place_files import PlaceFiles
 from elbowroom.server.schema.bounds import QUEUE_SIZES, WALK_SPEEDS
-from elbowroom.server.schema.menus import Catalog, SceneChoice
+from elbowroom.server.schema.menus import Catalog, SceneChoice, StyleChoice
 from elbowroom.server.shelf import OwnShelf, Shelf
 from elbowroom.server.vmc_stream import VmcStream
 from elbowroom.server.walk import WalkSettings
@@ -63,6 +64,7 @@ class Library:
     sent_places: dict[str, Scene] = field(default_factory=dict)  # by name, the oldest first
     built: BuiltScenes = field(default_factory=BuiltScenes)  # on pages
     places: PlaceFiles = field(default_factory=lambda: PlaceFiles(Path()))
+    _styled: dict[str, MotionSet] = field(default_factory=dict)  # the same in a style, by its name
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
     @classmethod
@@ -105,6 +107,12 @@ class Library:
         self.check_scene(name)
         known = self.scenes.get(name) or self.sent_places.get(name) or self.built.get(name)
         return known if known is not None else await self.courses.find(name, client)
+
+    def motions_in(self, style: str) -> MotionSet:
+        """What avatars have learnt, in a stock style: the same ones for all who ask, so that they share models."""
+        if style == self.motions.style.name:
+            return self.motions
+        return self._styled.setdefault(style, replace(self.motions, style=STYLES[style]))
 
     def hold(self, user: Hashable, *shown: "Wanted") -> None:
         """This is what a session shows from now on, or will in a moment: it stays here. Nothing: it has ended."""
@@ -155,5 +163,6 @@ class Library:
             planners=list(planner_names()),
             queue_sizes=list(QUEUE_SIZES),
             walk_speed=WALK_SPEEDS,
+            styles=[StyleChoice(style.name, style.speed) for style in STYLES.values()],
             clips=self.clips.choices(owner),
         )

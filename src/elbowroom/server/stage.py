@@ -217,6 +217,7 @@ class Stage:
             queue_size=walk.settings.queue_size,
             assist=walk.settings.assist,
             walk_speed=walk.settings.walk_speed,
+            style=walk.settings.style,
             paused=self.paused,
             speed=self.speed,
             capsules=self.overlays.capsules,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
+from elbowroom.clips.style import PLAIN_STYLE, STYLES, style_named
 from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.desk import PlanningDesk
 from elbowroom.control.frame import Frame
@@ -19,6 +20,7 @@ from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Way
 from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.pace import at_speed
 from elbowroom.server.avatar_store import StoredAvatar
 from elbowroom.server.pose import NodePose
 from elbowroom.server.schema.bounds import WALK_SPEEDS
@@ -37,13 +39,20 @@ class WalkSettings:
     queue_size: int = 5
     assist: bool = True
     walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it
+    style: str = PLAIN_STYLE.name  # a stock one
 
     def __post_init__(self) -> None:
         check_planner(self.planner)
         check_queue_size(self.queue_size)
+        if self.style not in STYLES:
+            raise InputError(f"style {self.style[:40]!r} is none of {', '.join(STYLES)}")
         if not WALK_SPEEDS[0] <= self.walk_speed <= WALK_SPEEDS[1]:
             limits = f"{WALK_SPEEDS[0]:g} to {WALK_SPEEDS[1]:g} m/s"
             raise InputError(f"walking speed {self.walk_speed:g}: allowed are {limits}")
+
+    def in_style(self, name: str) -> "WalkSettings":
+        """The same in a stock style, at the speed that it likes; raises `InputError`."""
+        return replace(self, style=name, walk_speed=style_named(name).speed)
 
 
 class Walk:
@@ -219,14 +228,3 @@ class Walk:
         standing = root.forward == 0.0 and root.lateral == 0.0
         if not self._armed or standing:
             self._armed, self._stuck_since_start, self._started = True, 0, self.frame.time
-
-
-def at_speed(command: Command, walk_speed: float) -> Command:
-    """The command that makes the root planner, which has speeds of its own, walk at `walk_speed` m/s or run faster."""
-    factor = walk_speed * (_MOTION.run_speed / _MOTION.walk_speed if command.run else 1.0)
-    speed = max(command.forward, 0.0) * factor
-    share = min(factor / _MOTION.walk_speed, 1.0)  # of what goes back and sideways
-    runs = speed > _MOTION.walk_speed
-    ahead = min(speed / (_MOTION.run_speed if runs else _MOTION.walk_speed), 1.0)
-    forward = ahead if command.forward > 0.0 else command.forward * share
-    return replace(command, forward=forward, strafe=command.strafe * share, run=runs)

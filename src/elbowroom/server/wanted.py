@@ -25,9 +25,10 @@ class Wanted:
         return cls(walk.scene.name, walk.avatar.id, walk.settings, *clip)
 
     def changed(self, message: Configure) -> "Wanted":
-        """The same with what a client has chosen."""
+        """The same with what a client has chosen; a style comes at the speed that it likes, unless one is asked for."""
+        before = self.settings if message.style is None else self.settings.in_style(message.style)
         chosen = {name: getattr(message, name) for name in ("planner", "queue_size", "assist", "walk_speed")}
-        settings = replace(self.settings, **{name: value for name, value in chosen.items() if value is not None})
+        settings = replace(before, **{name: value for name, value in chosen.items() if value is not None})
         return Wanted(
             scene=message.scene or self.scene,
             avatar=message.avatar or self.avatar,
@@ -39,7 +40,7 @@ class Wanted:
     def differs(self, now: "Wanted") -> bool:
         """Whether something new must be made to show this after `now`."""
         mine, old = self.settings, now.settings
-        planner = (mine.planner, mine.queue_size) != (old.planner, old.queue_size)
+        planner = (mine.planner, mine.queue_size, mine.style) != (old.planner, old.queue_size, old.style)
         return replace(self, settings=old) != now or (planner and not self.clip)
 
     def loading(self, now: "Wanted") -> Loading:

@@ -1,6 +1,6 @@
 /** What is shown and the address line, each following the other. */
 
-import { AddressLine, isPrivate, withOwnAvatar } from "../address";
+import { AddressLine, isPrivate, PLAIN, withOwnAvatar } from "../address";
 import type { Session } from "../net/session";
 import { parseOverlays } from "../overlays/overlay_names";
 import type { Picture } from "../picture";
@@ -50,8 +50,8 @@ export class AddressBar {
   private goTo(query: URLSearchParams): void {
     const { session, taste, modes } = this.parts;
     modes.showLive();
-    const { scene, avatar, planner, queueSize, walkSpeed, camera, assist } = readWishes(query);
-    session.configure({ scene, avatar, planner, queueSize, walkSpeed, assist: assist ?? true });
+    const { scene, avatar, planner, queueSize, walkSpeed, style, camera, assist } = readWishes(query);
+    session.configure({ scene, avatar, planner, queueSize, walkSpeed, style: style ?? PLAIN, assist: assist ?? true });
     taste.showCamera(camera);
     taste.setOverlays(parseOverlays(query.get("overlays")));
   }

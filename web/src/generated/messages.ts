@@ -43,6 +43,8 @@ export interface Configure {
   assist?: boolean | null;
   /** m/s at forward = 1, within the catalog's limits */
   walkSpeed?: number | null;
+  /** in which it walks: one of the catalog's; at most 128 long */
+  style?: string | null;
   /** play this clip; "" walks again; at most 128 long */
   clip?: string | null;
   /** play only what the planning degrees of freedom keep of it */
@@ -113,6 +115,13 @@ export interface ClipChoice {
   title: string;
 }
 
+/** A style of walking in the menu. */
+export interface StyleChoice {
+  name: string;
+  /** m/s that it likes to walk */
+  speed: number;
+}
+
 /** The answer to a file that was posted to /api/avatars. */
 export interface Uploaded {
   /** null for a file without one */
@@ -130,6 +139,7 @@ export interface Catalog {
   queueSizes: number[];
   /** slowest and fastest */
   walkSpeed: [number, number];
+  styles: StyleChoice[];
   clips: ClipChoice[];
 }
 
@@ -151,6 +161,7 @@ export interface Settings {
   queueSize: number;
   assist: boolean;
   walkSpeed: number;
+  style: string;
   paused: boolean;
   speed: number;
   capsules: boolean;

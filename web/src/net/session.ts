@@ -58,8 +58,8 @@ export class Session {
   private choices: Omit<Configure, "type">;
 
   constructor(url: string, private readonly listener: SessionListener, wishes: SessionWishes) {
-    const { scene, avatar, planner, queueSize, assist, walkSpeed } = wishes;
-    this.choices = { scene, avatar, planner, queueSize, assist, walkSpeed };
+    const { scene, avatar, planner, queueSize, assist, walkSpeed, style } = wishes;
+    this.choices = { scene, avatar, planner, queueSize, assist, walkSpeed, style };
     this.connection = new Connection(url, {
       pose: (frame) => this.receivePose(frame),
       message: (message) => this.receive(message),

@@ -48,6 +48,7 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   "queue size: {0} is not a whole number from {1} key frames": "預先規劃的關鍵影格數 {0} 不是 {1} 之間的整數",
   "planner {0} is unknown; there are {1}": "沒有規劃器 {0}；可用的有 {1}",
   "scene {0}: a course is named {1}": "場景 {0}：隨機關卡的名稱格式是 {1}",
+  "style {0} is none of {1}": "沒有走路風格 {0}；可用的有 {1}",
   "walking speed {0}: allowed are {1}": "步行速度 {0} 不可用；允許的範圍是 {1}",
   "obstacle {0} of scene {1}: there is nothing that can be pushed by this number": "場景 {1} 中沒有編號 {0} 的可推物件",
   "obstacle {0} of scene {1}: only what is upright, small and no ground can be pushed": "場景 {1} 的 {0} 無法推動：只有直立、小型且非地面的物件可以",

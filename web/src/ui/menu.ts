@@ -36,6 +36,9 @@ export class Menu {
   private readonly planner = byId("planner", HTMLSelectElement);
   private readonly queue = byId("queue", HTMLInputElement);
   private readonly speed = byId("speed", HTMLInputElement);
+  private readonly style = byId("style", HTMLSelectElement);
+  /** The speeds that the styles like, m/s, by their names. */
+  private liked = new Map<string, number>();
   private readonly file = byId("file", HTMLInputElement);
   private readonly hud = byId("hud-shown", HTMLInputElement);
   private readonly inset = byId("inset-shown", HTMLInputElement);
@@ -48,6 +51,7 @@ export class Menu {
     this.courses = new CoursePanel((scene) => listener.configure({ scene }));
     this.listenToLists();
     this.listenToSliders();
+    this.listenToStyle();
     this.listenToFile();
     this.addViews();
     this.listenToButtons();
@@ -85,6 +89,8 @@ export class Menu {
     setOptions(this.planner, catalog.planners.map((name) => [name, name]));
     this.queue.min = String(Math.min(...catalog.queueSizes));
     this.queue.max = String(Math.max(...catalog.queueSizes));
+    setOptions(this.style, catalog.styles.map(({ name }) => [name, worded(name)]));
+    this.liked = new Map(catalog.styles.map(({ name, speed }) => [name, speed]));
     const [slowest, fastest] = catalog.walkSpeed;
     Object.assign(this.speed, { min: String(slowest), max: String(fastest), step: "0.05" });
   }
@@ -96,6 +102,7 @@ export class Menu {
     this.planner.value = settings.planner;
     showValue(this.queue, String(settings.queueSize));
     showValue(this.speed, String(settings.walkSpeed));
+    this.style.value = settings.style;
     this.showValues();
     this.clips.showSettings(settings);
     const assist = byId("assist", HTMLButtonElement);
@@ -155,6 +162,14 @@ export class Menu {
     for (const name of ["scene", "avatar", "planner"] as const) {
       this[name].addEventListener("change", () => this.listener.configure({ [name]: this[name].value }));
     }
+  }
+
+  /** A style comes at the speed that it likes. */
+  private listenToStyle(): void {
+    this.style.addEventListener("change", () => {
+      const style = this.style.value;
+      this.listener.configure({ style, walkSpeed: this.liked.get(style) ?? null });
+    });
   }
 
   private listenToSliders(): void {

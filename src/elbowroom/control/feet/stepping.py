@@ -13,7 +13,7 @@ from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled, standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, lower_body
-from elbowroom.body.living import lively, living
+from elbowroom.body.living import body_of, lively, living
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
@@ -40,7 +40,7 @@ class Stepping:
     def __init__(self, humanoid: Humanoid, motions: MotionSet) -> None:
         """`motions` are those that it walks with."""
         model = body_model(humanoid)
-        self._gait = model.gait
+        self._gait, self._body = model.gait, body_of(model.gait, motions.style.manner)
         self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
 
     def standing(self, root: Floats) -> Floats:
@@ -131,7 +131,7 @@ class Stepping:
         """A pose on a root with feet (WITH_FEET,), with hips, chest and head that live."""
         faces = float(posed.upper[_TWIST] + posed.upper[_HEAD_TURN])
         shown, dt = moment.shown.root, moment.dt
-        return posed._replace(root=living(self._gait, shown, root, dt, moment.room, moment.ahead, faces))
+        return posed._replace(root=living(self._body, shown, root, dt, moment.room, moment.ahead, faces))
 
     def _is_strained(self, root: Floats, upper: Floats) -> bool:
         """Whether a foot that has waited lies so far behind that the hips would come far down to it."""

@@ -10,7 +10,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.footholds import UNKNOWN, beside
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.living import living
+from elbowroom.body.living import body_of, living
 from elbowroom.body.root import CARRIAGE, ROOT_STATE
 
 MANY = 256
@@ -31,7 +31,8 @@ def cost(humanoid: Humanoid) -> Cost:
     roots = np.zeros((MANY, ROOT_STATE))
     roots[:, 3], roots[:, 6] = 1.1, np.linspace(0.0, 1.0, MANY)
     still = np.concatenate([beside(model.gait, roots[0]), np.zeros(CARRIAGE)])
-    states = np.array([living(model.gait, still, beside(model.gait, root), 1.0, np.inf, UNKNOWN) for root in roots])
+    body = body_of(model.gait)
+    states = np.array([living(body, still, beside(model.gait, root), 1.0, np.inf, UNKNOWN) for root in roots])
     postures = np.zeros((MANY, DOF))
     return Cost(
         _best(lambda: posture_capsules(model, postures[:1], states[:1])),

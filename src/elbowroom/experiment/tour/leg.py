@@ -13,6 +13,7 @@ from elbowroom.control.journey import JourneyState
 from elbowroom.experiment.crossing import DT
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot
+from elbowroom.planning.root.pace import at_speed
 
 Listener = Callable[[Command, float, Frame], None]
 
@@ -45,7 +46,8 @@ class LegTimes:
 
     find_ms: float  # the way
     frame_ms: NDArray[np.float64]  # (frames,)
-    plan_ms: NDArray[np.float64]  # (plans,) of these, the frames that planned
+    frame_cpu_ms: NDArray[np.float64]  # (frames,) the same in processor time, whatever else the machine does
+    planned: NDArray[np.bool_]  # (frames,) which of these planned
 
 
 def walk_to(
@@ -55,19 +57,21 @@ def walk_to(
     frame = controller.step(Command(), 0.0)
     began, started = time.perf_counter(), frame.time
     try:
-        journey = controller.goto(target, FORWARD)
+        journey = controller.goto(target, at_speed(FORWARD, controller.motions.style.speed))
     except NoWayError as error:
         here = _here(controller)
         none = np.empty(0)
         leg = Leg(target, NO_WAY, str(error), here, 0.0, 0.0, 0, 0.0, round(frame.clearance, 6))
-        return leg, LegTimes(1e3 * (time.perf_counter() - began), none, none)
+        return leg, LegTimes(1e3 * (time.perf_counter() - began), none, none, np.empty(0, np.bool_))
     found = time.perf_counter() - began
     way_m = journey.way.left(_here(controller))
-    costs, planned, stuck_times, stuck_frames, clearance = list[float](), list[bool](), 0, 0, frame.clearance
+    costs, processor, planned = list[float](), list[float](), list[bool]()
+    stuck_times, stuck_frames, clearance = 0, 0, frame.clearance
     while (journey.walking or not controller.stands) and frame.time - started < limit:
-        before, began = frame, time.perf_counter()
+        before, began, used = frame, time.perf_counter(), time.process_time()
         frame = controller.step(Command(), DT)
         costs.append(time.perf_counter() - began)
+        processor.append(time.process_time() - used)
         planned.append(frame.plan is not before.plan)
         stuck_times += frame.stuck and not before.stuck
         stuck_frames += frame.stuck
@@ -86,8 +90,7 @@ def walk_to(
         stuck_s=round(stuck_frames * DT, 3),
         least_clearance=round(float(clearance), 6),
     )
-    frame_ms = 1e3 * np.array(costs)
-    return leg, LegTimes(1e3 * found, frame_ms, frame_ms[np.array(planned, bool)])
+    return leg, LegTimes(1e3 * found, 1e3 * np.array(costs), 1e3 * np.array(processor), np.array(planned, np.bool_))
 
 
 def _here(controller: Controller) -> Place:

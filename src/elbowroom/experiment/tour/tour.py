@@ -50,8 +50,10 @@ class TourResult:
     stuck: int  # times
     stuck_s: float
     seconds: float  # of walking
-    plan_ms: Milliseconds  # frames that planned
-    frame_ms: Milliseconds  # all frames
+    plan_ms: Milliseconds  # frames that planned, on the clock
+    plan_cpu_ms: Milliseconds  # the same in processor time
+    frame_ms: Milliseconds  # all frames, on the clock
+    frame_cpu_ms: Milliseconds  # those that did not plan, in processor time
     find_ms: Milliseconds  # finding the ways
     legs: tuple[Leg, ...]
 
@@ -93,6 +95,9 @@ def run_tour(
         times.append(cost)
         if heard is not None:
             heard(number, leg)
+    on_the_clock = np.concatenate([np.empty(0), *(cost.frame_ms for cost in times)])
+    processor = np.concatenate([np.empty(0), *(cost.frame_cpu_ms for cost in times)])
+    planned = np.concatenate([np.empty(0, np.bool_), *(cost.planned for cost in times)])
     return TourResult(
         scene=controller.scene.name,
         seed=controller.settings.seed,
@@ -101,8 +106,10 @@ def run_tour(
         stuck=sum(leg.stuck_times for leg in legs),
         stuck_s=round(sum(leg.stuck_s for leg in legs), 3),
         seconds=round(sum(leg.seconds for leg in legs), 3),
-        plan_ms=Milliseconds.of(np.concatenate([np.empty(0), *(cost.plan_ms for cost in times)])),
-        frame_ms=Milliseconds.of(np.concatenate([np.empty(0), *(cost.frame_ms for cost in times)])),
+        plan_ms=Milliseconds.of(on_the_clock[planned]),
+        plan_cpu_ms=Milliseconds.of(processor[planned]),
+        frame_ms=Milliseconds.of(on_the_clock),
+        frame_cpu_ms=Milliseconds.of(processor[~planned]),
         find_ms=Milliseconds.of(np.array([cost.find_ms for cost in times])),
         legs=tuple(legs),
     )

@@ -28,6 +28,7 @@ class Configure:
     queue_size: int | None = None  # one of the catalog's
     assist: bool | None = None  # False plays the canned walk, right through everything
     walk_speed: float | None = None  # m/s at forward = 1, within the catalog's limits
+    style: Name | None = None  # in which it walks: one of the catalog's
     clip: Name | None = None  # play this clip; "" walks again
     clip_as_planned: bool | None = None  # play only what the planning degrees of freedom keep of it
 

@@ -28,6 +28,14 @@ class ClipChoice:
 
 
 @dataclass(frozen=True)
+class StyleChoice:
+    """A style of walking in the menu."""
+
+    name: str
+    speed: float  # m/s that it likes to walk
+
+
+@dataclass(frozen=True)
 class Uploaded:
     """The answer to a file that was posted to /api/avatars."""
 
@@ -45,6 +53,7 @@ class Catalog:
     planners: list[str]
     queue_sizes: list[int]
     walk_speed: tuple[float, float]  # slowest and fastest
+    styles: list[StyleChoice]
     clips: list[ClipChoice]
 
 
@@ -67,6 +76,7 @@ class Settings:
     queue_size: int
     assist: bool
     walk_speed: float
+    style: str
     paused: bool
     speed: float
     capsules: bool
