@@ -31,9 +31,12 @@ class NarrowPlaces:
         A way has a place and the direction in which one walks there, a unit vector. To the first one comes from a
         `height`.
         """
+        return _narrow_ones(self.window(ways, height), self.figure, self.half, ways)
+
+    def window(self, ways: Floats, height: float) -> Window:
+        """The part of the map that ways (N, 4) need."""
         low, high = ways[:, :2].min(axis=0) - 2.0 * self.half, ways[:, :2].max(axis=0) + 2.0 * self.half
-        window = self._map.window(low, high, (float(ways[0, 0]), height, float(ways[0, 1])))
-        return _narrow_ones(window, self.figure, self.half, ways)
+        return self._map.window(low, high, (float(ways[0, 0]), height, float(ways[0, 1])))
 
 
 @exact_kernel
@@ -41,10 +44,10 @@ def _narrow_ones(window: Window, figure: Figure, half: float, ways: Floats) -> F
     out, count, far = np.empty((ways.shape[0], 3)), 0, 2.0 * half
     for n in range(ways.shape[0]):
         place, across = (ways[n, 0], ways[n, 1]), (ways[n, 3], -ways[n, 2])
-        inside = _free(window, figure, place[0], place[1]) < _BODY * figure.slim
-        left = far if inside else _beside(window, figure, place, across, far)
+        inside = free_at(window, figure, place[0], place[1]) < _BODY * figure.slim
+        left = far if inside else beside(window, figure, place, across, far)
         if left < far:
-            both = left + _beside(window, figure, place, (-across[0], -across[1]), far - left)
+            both = left + beside(window, figure, place, (-across[0], -across[1]), far - left)
             if both < far:
                 out[count, 0], out[count, 1], out[count, 2] = ways[n, 0], ways[n, 1], 0.5 * both
                 count += 1
@@ -52,16 +55,14 @@ def _narrow_ones(window: Window, figure: Figure, half: float, ways: Floats) -> F
 
 
 @exact_kernel
-def _beside(
-    window: Window, figure: Figure, place: tuple[float, float], aside: tuple[float, float], far: float
-) -> float:
+def beside(window: Window, figure: Figure, place: tuple[float, float], aside: tuple[float, float], far: float) -> float:
     """Metres from a place in the direction `aside` to what stands there; `far` if that is farther.
 
     Each look leads as far on as nothing is near.
     """
     gone = 0.0
     for _ in range(_LOOKS):
-        free = _free(window, figure, place[0] + gone * aside[0], place[1] + gone * aside[1])
+        free = free_at(window, figure, place[0] + gone * aside[0], place[1] + gone * aside[1])
         if free < _TOUCH:
             return float(min(gone + max(free - _COARSE, 0.0), far))
         gone += free
@@ -71,7 +72,7 @@ def _beside(
 
 
 @exact_kernel
-def _free(window: Window, figure: Figure, x: float, z: float) -> float:
+def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
     """The free distance at a place, bilinear, at the levels of a figure; the window's edge holds outside."""
     free, least = window.distances, np.inf
     p = min(max((x - window.x) / CELL, 0.0), free.shape[1] - 1.0)

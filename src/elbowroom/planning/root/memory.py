@@ -16,10 +16,16 @@ from elbowroom.planning.root.way_out import WayOut
 
 Floats = NDArray[np.float64]
 
-Evading = tuple[Profile, TravelLine] | None  # the evasion being followed, and the line that it leads from
-
 _TURNED = 0.05  # radians
 _NEAR = 0.5  # metres: who is farther away than this does not go on from a path
+
+
+class Evading(NamedTuple):
+    """An evasion that is being followed."""
+
+    profile: Profile
+    line: TravelLine  # that it leads from
+    along: TravelLine  # that the profile belongs to: the same line, or the axis of a gap
 
 
 class RootMemory(NamedTuple):
@@ -27,7 +33,7 @@ class RootMemory(NamedTuple):
 
     line: TravelLine | None = None  # of the command that is being held
     last: Floats | None = None  # (n+1, 7) states of the last path
-    evading: Evading = None
+    evading: Evading | None = None
     way_out: WayOut | None = None  # the last one along the line
     way: Corners = ()  # that the command which is being held leads along
     leg: int = 0  # the number of the leg that was reached
@@ -46,14 +52,14 @@ class RootMemory(NamedTuple):
         if line is not None and line.asked == asked_direction(command) and self._continues(start, line, widest):
             return line
         if self.evading is not None and command.direction is None and self.still_turned(start, widest):
-            start = start._replace(heading=self.evading[1].facing, turn=0.0)
+            start = start._replace(heading=self.evading.line.facing, turn=0.0)
         return new_line(start, command, motion)
 
     def still_turned(self, start: RootState, widest: float) -> bool:
         """Whether the body is turned away from where the user means it to face."""
-        if self.evading is None or not self._continues(start, self.evading[1], widest):
+        if self.evading is None or not self._continues(start, self.evading.line, widest):
             return False
-        return abs(math.remainder(start.heading - self.evading[1].facing, math.tau)) > _TURNED
+        return abs(math.remainder(start.heading - self.evading.line.facing, math.tau)) > _TURNED
 
     def _continues(self, start: RootState, line: TravelLine, widest: float) -> bool:
         """Whether a start goes on from the last path, within the breadth of a detour."""

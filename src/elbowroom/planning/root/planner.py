@@ -39,7 +39,7 @@ class _Candidate(NamedTuple):
     """A path, and what is remembered if it is taken."""
 
     plan: RootPlan
-    evading: Evading
+    evading: Evading | None
     way_out: WayOut | None = None
 
 
@@ -140,8 +140,8 @@ class RootPlanner:
         """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
-        that lead far aside are thought of when the others have become dear. The last one that was given is the one that
-        is being followed; whoever takes an earlier one says so (`follow`).
+        along the axis of a gap and those that lead far aside are thought of when the others have become dear. The last
+        one that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
         """
         self._offered.clear()
         for plan in self._candidates(Asked(start, command, horizon, interval, start_time), paces):
@@ -184,13 +184,15 @@ class RootPlanner:
         offers += [_Offer(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
         if wanted_speed(asked.command, self.settings.motion) < SLOW:
             line = None  # who is in no hurry leaves no line
-        grids = [] if line is None else list(self._paths.evasions)
+        (fine, wide), dear = self._paths.evasions, self.settings.wide_from
+        grids = [] if line is None else [(0.0, fine, False), (dear, fine, True), (dear, wide, False)]
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
             yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
         while offers or grids:
             offers.sort(key=lambda offer: offer.lost)
-            if line is not None and grids and _dearer(offers, self.settings.wide_from if len(grids) == 1 else 0.0):
-                offers += self._evaded(asked, line, known, grids.pop(0))
+            if line is not None and grids and _dearer(offers, grids[0][0]):
+                _, finder, through = grids.pop(0)
+                offers += self._evaded(asked, line, known, finder, through=through)
                 continue
             what = offers.pop(0).what
             if isinstance(what, float):
@@ -204,12 +206,14 @@ class RootPlanner:
         if len(self.moving):
             yield from self._steps_aside(asked, direct)
 
-    def _steps_aside(self, asked: Asked, evading: Evading) -> Iterator[_Candidate]:
+    def _steps_aside(self, asked: Asked, evading: Evading | None) -> Iterator[_Candidate]:
         """Short steps out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
             yield self._taken(_Candidate(plan, evading))
 
-    def _out(self, asked: Asked, line: TravelLine, evading: Evading, before: WayOut | None) -> Iterator[_Candidate]:
+    def _out(
+        self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None
+    ) -> Iterator[_Candidate]:
         """Ways out for who stands, where all else stands; not again and again without getting farther."""
         if self._paths.restless or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
             return
@@ -233,12 +237,23 @@ class RootPlanner:
         self.memory = self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out)
         return candidate
 
-    def _evaded(self, asked: Asked, line: TravelLine, known: Evading, finder: EvasionFinder) -> list[_Offer]:
-        """Evasions from the line of travel."""
-        before = self.memory.way_out
-        kept = known[0] if known is not None and known[1] == line else None
-        found = self._paths.evaded(asked, line, finder, kept)
-        return [_Offer(plan.lost, _Candidate(plan, (profile, line), before)) for plan, profile in found]
+    def _through(self, asked: Asked, line: TravelLine, known: Evading | None) -> TravelLine | None:
+        """The axis of a gap ahead, as a line of travel; the same as long as it is followed."""
+        axis = self._paths.axis_ahead(asked, line)
+        if axis is not None and known is not None and known.line == line and known.along.is_like(axis):
+            return known.along
+        return axis
+
+    def _evaded(
+        self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, *, through: bool
+    ) -> list[_Offer]:
+        """Evasions from the line of travel; if they are to lead `through` a gap, in a grid that lies along its axis."""
+        before, along = self.memory.way_out, self._through(asked, line, known) if through else line
+        if along is None:
+            return []
+        kept = known.profile if known is not None and known.along == along else None
+        found = self._paths.evaded(asked, line, along, finder, kept)
+        return [_Offer(plan.lost, _Candidate(plan, Evading(profile, line, along), before)) for plan, profile in found]
 
 
 def _dearer(offers: list[_Offer], lost: float) -> bool:

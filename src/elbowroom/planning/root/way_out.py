@@ -144,7 +144,9 @@ class WayOutFinder:
         """The commanded path from a place, and evasions from it."""
         yield self._paths.travelled(at, line, 1.0)
         if evading:
-            yield from (plan for plan, _ in self._paths.evaded(at, line, self._paths.evasions[0], None))
+            axis = self._paths.axis_ahead(at, line)
+            for along in (line,) if axis is None else (line, axis):
+                yield from (plan for plan, _ in self._paths.evaded(at, line, along, self._paths.evasions[0], None))
 
 
 def _joined(asked: Asked, place: _Place, onward: RootPlan) -> tuple[RootPlan, RootPath, int]:
