@@ -89,3 +89,14 @@ def test_a_door_is_passed_at_a_slant(slant: float, aside: float) -> None:
         if controller.root.z > 2.8:
             return
     pytest.fail(f"stands at {np.round(controller.root[:2], 2)}")
+
+
+@pytest.mark.parametrize("aside", [-0.1, 0.0])
+def test_a_door_that_leaves_no_room_for_long_steps_is_passed_with_short_ones(aside: float) -> None:
+    scene = door(0.36, 0.1, 0.0, 0.0, 2.2)
+    controller = Controller(AVATAR, scene, start=RootState(aside, 0.0))
+    for _ in range(600):
+        assert not controller.step(Command(forward=1.0), DT).touching
+        if controller.root.z > 2.8:
+            return
+    pytest.fail(f"stands at {np.round(controller.root[:2], 2)}")

@@ -46,6 +46,7 @@ class EvasionSettings:
     step: float = 0.1  # between rows
     aside: float = 0.04  # between columns
     sideways: float = 0.45  # m/s: with long steps to the side the knees come forward
+    short: float = 0.33  # of that, in gaps: with short steps the knees stay where they are
     punctual: float = 0.2  # seconds before and after that a row may be reached in
     polite: float = 0.05  # metres by which all that could move is taken to be larger, where any of it does
     cares: tuple[float, ...] = (0.0, 0.015)  # clearance beyond the margin, tried in turn

@@ -16,6 +16,7 @@ Number = TypeVar("Number", float, Floats)
 
 _BESIDE = 1.0  # metres: lines that begin no farther apart may be alike
 _SOON, _SLANT = 0.6, 1.5  # metres ahead, and for each metre beside it, after which a route comes to the line
+_PARALLEL = math.radians(2.0)
 ON_THE_LINE = 0.0  # metres beside it
 
 
@@ -33,6 +34,10 @@ class TravelLine(NamedTuple):
         """Whether another leads in much the same direction, from much the same place."""
         bent = abs(math.remainder(other.heading - self.heading, math.tau))
         return self.turns == other.turns and bent < BENT and math.dist((self.x, self.z), (other.x, other.z)) < _BESIDE
+
+    def is_parallel(self, other: "TravelLine") -> bool:
+        """Whether both lead in the same direction, for a walker."""
+        return abs(math.remainder(other.heading - self.heading, math.tau)) < _PARALLEL
 
     def coordinates(self, x: Number, z: Number) -> tuple[Number, Number]:
         """Metres ahead and to the left of the line's first point, of one place or of many."""

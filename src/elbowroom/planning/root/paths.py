@@ -41,7 +41,6 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _NEAR = 1.0  # metres
-_ALIKE = math.radians(2.0)  # lines of travel for which one grid will do
 _AIMED = 0.5  # metres beyond what is checked to which a way is known: the last steps are aimed there
 
 
@@ -173,21 +172,31 @@ class RootPaths:
         return slow_places(self._narrow, line, line.coordinates(start.x, start.z)[0], sight, start.height)
 
     def axis_ahead(self, asked: Asked, line: TravelLine) -> TravelLine | None:
-        """The axis of a gap on a line of travel, if one has to turn for it; who faces aside goes on to do so."""
+        """The axis of a gap near a line of travel; who faces aside goes on to do so."""
         start = asked.start
         gap = gap_ahead(self._narrow, line, start.x, start.z, start.height)
-        if gap is None or abs(gap.heading - line.heading) < _ALIKE:
+        if gap is None:
             return None
         return line._replace(x=gap.x, z=gap.z, heading=gap.heading, facing=line.facing + gap.heading - line.heading)
 
     def evaded(
-        self, asked: Asked, line: TravelLine, along: TravelLine, finder: EvasionFinder, kept: Profile | None
+        self,
+        asked: Asked,
+        line: TravelLine,
+        along: TravelLine,
+        finder: EvasionFinder,
+        kept: Profile | None,
+        share: float = 1.0,
     ) -> Iterator[tuple[RootPlan, Profile]]:
-        """Evasions from a line of travel in a grid `along` another or the same, each once; `kept` is followed."""
+        """Evasions from a line of travel in a grid `along` another or the same, each once; `kept` is followed.
+
+        They are walked at the `share` of the speed sideways.
+        """
         start, command, _, _, start_time = asked
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(command, self.settings.motion)
         evasion, before = finder.settings, query.checks
-        speeds = (speed, min(speed, evasion.sideways))
+        sideways = share * min(speed, evasion.sideways)
+        speeds = (speed, sideways)
         grid = finder.ahead_of(along, start, self._sight(asked, speed), speeds, self._moving, start_time)
         if grid is None:
             return
@@ -198,7 +207,7 @@ class RootPaths:
                 if any(np.array_equal(found.profile.rows, other.rows) for other in profiles):
                     break
                 profiles.append(found.profile)
-                answer = query.evaded(along, found, speed)
+                answer = query.evaded(along, found, speed, sideways)
                 checks, lost = grid.cells + query.checks - before, self._lost(asked, line, speed, answer)
                 yield _plan(asked, answer, checks, began, lost), found.profile
                 if answer.whole:

@@ -185,14 +185,15 @@ class RootPlanner:
         if wanted_speed(asked.command, self.settings.motion) < SLOW:
             line = None  # who is in no hurry leaves no line
         (fine, wide), dear = self._paths.evasions, self.settings.wide_from
-        grids = [] if line is None else [(0.0, fine, False), (dear, fine, True), (dear, wide, False)]
+        grids = [(0.0, fine, None), (dear, fine, 1.0), (dear, fine, fine.settings.short), (dear, wide, None)]
+        grids = [] if line is None else grids
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
             yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
         while offers or grids:
             offers.sort(key=lambda offer: offer.lost)
             if line is not None and grids and _dearer(offers, grids[0][0]):
                 _, finder, through = grids.pop(0)
-                offers += self._evaded(asked, line, known, finder, through=through)
+                offers += self._evaded(asked, line, known, finder, through)
                 continue
             what = offers.pop(0).what
             if isinstance(what, float):
@@ -237,22 +238,31 @@ class RootPlanner:
         self.memory = self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out)
         return candidate
 
-    def _through(self, asked: Asked, line: TravelLine, known: Evading | None) -> TravelLine | None:
-        """The axis of a gap ahead, as a line of travel; the same as long as it is followed."""
+    def _through(self, asked: Asked, line: TravelLine, known: Evading | None, share: float) -> TravelLine | None:
+        """The axis of a gap ahead, as a line of travel; the same as long as it is followed.
+
+        None if there is none, or one that the line itself leads through, for who is no slower than elsewhere.
+        """
         axis = self._paths.axis_ahead(asked, line)
-        if axis is not None and known is not None and known.line == line and known.along.is_like(axis):
+        if axis is None or (share >= 1.0 and axis.is_parallel(line)):
+            return None
+        if known is not None and known.line == line and known.along.is_like(axis):
             return known.along
         return axis
 
     def _evaded(
-        self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, *, through: bool
+        self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, through: float | None
     ) -> list[_Offer]:
-        """Evasions from the line of travel; if they are to lead `through` a gap, in a grid that lies along its axis."""
-        before, along = self.memory.way_out, self._through(asked, line, known) if through else line
+        """Evasions from the line of travel; if they are to lead `through` a gap, in a grid that lies along its axis.
+
+        Sideways they are walked at that share of the usual speed.
+        """
+        before, share = self.memory.way_out, through or 1.0
+        along = line if through is None else self._through(asked, line, known, share)
         if along is None:
             return []
         kept = known.profile if known is not None and known.along == along else None
-        found = self._paths.evaded(asked, line, along, finder, kept)
+        found = self._paths.evaded(asked, line, along, finder, kept, share)
         return [_Offer(plan.lost, _Candidate(plan, Evading(profile, line, along), before)) for plan, profile in found]
 
 

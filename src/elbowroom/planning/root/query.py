@@ -231,15 +231,13 @@ class RootQuery:
             self._places += self._route[1].checks
         return self._route[1]
 
-    def evaded(self, line: TravelLine, evasion: Evasion, speed: float) -> Answer:
-        """Walk along an evasion from the line of travel, or as much of it as is free."""
+    def evaded(self, line: TravelLine, evasion: Evasion, speed: float, sideways: float) -> Answer:
+        """Walk along an evasion from a line at speeds forward and sideways, or as much of it as is free."""
         profile, s = evasion.profile, self.settings.evasion
 
         def candidate(share: float) -> Floats:
             states, ahead = self._blank(), share * speed
-            course = Course(
-                line.x, line.z, line.heading, line.facing, ahead, min(ahead, share * s.sideways), not evasion.whole
-            )
+            course = Course(line.x, line.z, line.heading, line.facing, ahead, share * sideways, not evasion.whole)
             follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
             return states
 

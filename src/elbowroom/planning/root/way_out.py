@@ -144,9 +144,11 @@ class WayOutFinder:
         """The commanded path from a place, and evasions from it."""
         yield self._paths.travelled(at, line, 1.0)
         if evading:
-            axis = self._paths.axis_ahead(at, line)
-            for along in (line,) if axis is None else (line, axis):
-                yield from (plan for plan, _ in self._paths.evaded(at, line, along, self._paths.evasions[0], None))
+            fine, axis = self._paths.evasions[0], self._paths.axis_ahead(at, line)
+            for along, share in (
+                [(line, 1.0)] if axis is None else [(line, 1.0), (axis, 1.0), (axis, fine.settings.short)]
+            ):
+                yield from (plan for plan, _ in self._paths.evaded(at, line, along, fine, None, share))
 
 
 def _joined(asked: Asked, place: _Place, onward: RootPlan) -> tuple[RootPlan, RootPath, int]:
