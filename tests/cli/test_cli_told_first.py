@@ -1,5 +1,8 @@
 """A call that cannot be carried out is told before kernels are compiled: nobody waits for minutes to hear of a slip."""
 
+import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -66,6 +69,12 @@ WRONG = [
     *([*command, "nothing.elbow"] for command in RECORDING),
 ]
 
+# What is wrong with these is known to the modules that do the work, which take a second to import.
+HEAVY = {
+    *("--style", "--height", "--limit", "--fps", "--unit", "--rounds"),
+    *("--seed", "--seeds", "--courses", "--case", "--trials", "--vmc", "bench"),
+}
+
 
 class CompiledError(Exception):
     """Kernels would be compiled now."""
@@ -92,3 +101,20 @@ def test_what_is_wrong_is_told_before_kernels_are_compiled(arguments: list[str])
 @pytest.mark.parametrize("arguments", [["walk"], ["tour", "a"], ["table1"], ["gauntlet"], ["bench", "plan"]])
 def test_a_call_that_is_right_compiles_them(arguments: list[str]) -> None:
     assert isinstance(RUNNER.invoke(app, arguments).exception, CompiledError)
+
+
+def test_a_slip_is_told_before_anything_heavy_is_imported(tmp_path: Path) -> None:
+    """Files that are not there, numbers out of range, and names that nothing has: within a second, so without Numba."""
+    slips = [call for call in WRONG if not {*call} & HEAVY]
+    code = (
+        "import json, sys\n"
+        "from typer.testing import CliRunner\n"
+        "from elbowroom.cli.main import app\n"
+        "sys.modules['numba'] = None\n"  # to import it is an error
+        "calls = json.loads(sys.argv[1])\n"
+        "print(json.dumps([call for call in calls if CliRunner().invoke(app, call).exit_code != 2]))\n"
+    )
+    command = [sys.executable, "-c", code, json.dumps(slips)]
+    told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert json.loads(told) == []
+    assert len(slips) > 30

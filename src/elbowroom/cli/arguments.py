@@ -15,6 +15,7 @@ def check_arguments(
     files: Iterable[Path | None] = (),
     clips: Iterable[str] = (),
     written: Iterable[Path | None] = (),
+    port: int = 0,
 ) -> None:
     """Raises `InputError` for names that nothing has, sizes out of range and files that are not there.
 
@@ -25,8 +26,10 @@ def check_arguments(
     from elbowroom.experiment.gauntlet.levels import level_of
     from elbowroom.experiment.gauntlet.names import check_name, is_course
     from elbowroom.planning.names import check_planner
+    from elbowroom.server.ports import check_port
     from elbowroom.world.stock_scenes import stock_names
 
+    check_port(port)
     for planner in planners:
         check_planner(planner)
     for size in queues:

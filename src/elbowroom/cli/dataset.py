@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row
 from elbowroom.cli.time_left import time_left_bar
@@ -55,6 +56,7 @@ def make(
     """
     from dataclasses import replace
 
+    check_arguments(files=[spec])
     check_cluster(cluster)
     _check_installed()
     from elbowroom.dataset.spec import DatasetSpec

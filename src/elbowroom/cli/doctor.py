@@ -168,6 +168,10 @@ def _soak_faults(soaked: dict[str, Any] | None) -> list[str]:
     faults = [f"clients that behave were failed: {soaked['failures']}"] if soaked["failures"] else []
     if soaked["long_enough"] and soaked["slope"] > soaked["slope_budget"]:
         faults.append("the server's memory grows faster than its budget")
+    if soaked["on_time_percent"] < soaked["on_time_budget_percent"]:
+        faults.append(
+            f"more frames than 1 in 100 were over {soaked['late_budget_ms']:g} ms late while clients misbehaved"
+        )
     return faults
 
 
@@ -256,9 +260,11 @@ def _soak_rows(soaked: dict[str, Any] | None) -> list[tuple[str, str]]:
     own = f"own memory {soaked['own_first']:.0f} MB after the warm-up, {soaked['own_last']:.0f} in the end"
     slope = f"{soaked['slope']:+.1f} MB an hour (budget {soaked['slope_budget']:g})"
     short = "" if soaked["long_enough"] else "; too short for a verdict: 15 minutes or more"
-    frames = f"{soaked['frames_per_second']:.1f} frames/s, 99 % within {soaked['late_ms_p99']:.0f} ms of their time"
+    frames = f"{soaked['frames_per_second']:.1f} frames/s, 99 % within {soaked['late_ms_typical']:.0f} ms of their time"
+    share = f"{soaked['on_time_percent']:.2f} % of all frames at most {soaked['late_budget_ms']:g} ms late"
     return [
         ("soak", f"{soaked['minutes']:g} minutes: {clients}, {soaked['misdeeds']} misdeeds"),
         ("", f"{own}, {soaked['own_most']:.0f} at most: {slope}{short}"),
-        ("", f"one who walked on all the time: {frames} in the worst 10 s"),
+        ("", f"{share} (budget {soaked['on_time_budget_percent']:g} %)"),
+        ("", f"one who walked on all the time: {frames}, {soaked['late_ms_p99']:.0f} ms in the worst 10 s"),
     ]

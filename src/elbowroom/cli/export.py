@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 from elbowroom.cli.spoken import said
@@ -42,6 +43,7 @@ def export(
     It holds the frames as the page shows them. BVH is in centimetres with Y up and a T-pose, unless told otherwise.
     GLB has the avatar's mesh in it where its licence allows that.
     """
+    check_arguments(files=[recording, avatar], written=[out])
     from elbowroom.control.recording import Recording
     from elbowroom.export.animation import Animation, check_rate
     from elbowroom.export.writers import Wishes, format_of

@@ -106,13 +106,13 @@ def _told(sessions: int, tallies: list[Tally], read: tuple[dict[str, float], ...
         served=len(tallies),
         seconds=wall,
         frames_per_second=sum(tally.frames for tally in tallies) / wall / served,
-        on_time_percent=_percent(spent["frames"], spent["framesLate"]),
+        on_time_percent=percent(spent["frames"], spent["framesLate"]),
         on_time_budget_percent=ON_TIME,
         late_budget_ms=1e3 * LATE,
         late_ms_p99=max((status.late_ms_p99 for status in told), default=0.0),
         answer_ms_p50=median(half for half, _, _ in answers) if answers else 0.0,
         answer_ms_p99=max((most for _, most, _ in answers), default=0.0),
-        answered_in_time_percent=_percent(spent["answers"], spent["answersLate"]),
+        answered_in_time_percent=percent(spent["answers"], spent["answersLate"]),
         answer_budget_ms=1e3 * PROMPT,
         cpu_percent=100.0 * spent["cpuSeconds"] / wall / served,
         own_megabytes=(after["ownBytes"] - start["ownBytes"]) / 1e6 / served,
@@ -120,7 +120,8 @@ def _told(sessions: int, tallies: list[Tally], read: tuple[dict[str, float], ...
     )
 
 
-def _percent(count: float, bad: float) -> float:
+def percent(count: float, bad: float) -> float:
+    """The share of what was not bad."""
     return 100.0 * (1.0 - bad / count) if count else 100.0
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli import clip_options, vmc_options
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
@@ -62,7 +63,13 @@ def play(
     vmc_bundles: vmc_options.VmcBundles = True,
 ) -> None:
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], port=port)
+    check_arguments(clips=clip_options.named_by(swing, dodge))
     from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.clips.style import style_named
+
+    read = LoadSettings(bones, include_hair, height)
+    style_named(style)
     from elbowroom.server.library import Library
     from elbowroom.server.walk import WalkSettings
 
@@ -70,7 +77,6 @@ def play(
     of_place = is_model(scene)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
     told = place_options(scale, up if of_place else None, ground, drop, passable)
-    read = LoadSettings(bones, include_hair, height)
 
     with stream_to(vmc, vmc_root, bundles=vmc_bundles) or contextlib.nullcontext() as stream:
 

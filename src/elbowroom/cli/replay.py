@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, progress_bar
 from elbowroom.cli.play import serve_until_interrupted
@@ -39,6 +40,7 @@ def replay(
     Bit for bit holds for one processor that kernels are compiled for, and one version of what compiles them: where they
     are others, the last bits may differ, and this says so.
     """
+    check_arguments(files=[recording, avatar], port=port)
     from elbowroom.control.recording import Recording
     from elbowroom.control.replay import replay as run_again
 

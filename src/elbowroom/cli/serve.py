@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.play import tell_openness
@@ -43,6 +44,7 @@ def serve(
 
     Each session is held by one server; should that be lost, its page goes on at another one, in the same place.
     """
+    check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar], port=port)
     check_cluster(cluster)
     from rich.console import Console
 

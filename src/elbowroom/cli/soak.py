@@ -12,6 +12,8 @@ from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from statistics import median
+from typing import NamedTuple
 from urllib.error import HTTPError
 from urllib.parse import urlsplit
 from urllib.request import Request, urlopen
@@ -20,8 +22,10 @@ import numpy as np
 from websockets.exceptions import ConnectionClosed
 
 from elbowroom.body.stock import stock_avatar_path
+from elbowroom.cli.load import ON_TIME, percent
 from elbowroom.cli.session_cost import client_of, started_server, usage, wait_until_warm, walk_about
 from elbowroom.server.codec import encode
+from elbowroom.server.meter import LATE
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.commands import Configure, Ping
 
@@ -56,8 +60,21 @@ class Soak:
     slope: float  # MB an hour after the warm-up
     slope_budget: float
     long_enough: bool  # for a verdict on the slope
+    on_time_percent: float  # of all frames after the warm-up, at most `late_budget_ms` after they were due
+    on_time_budget_percent: float
+    late_budget_ms: float
     late_ms_p99: float  # of the frames of a client that walks about all the time, in its worst 10 s
+    late_ms_typical: float  # the same in half of the times that it looked
     frames_per_second: float  # that it got
+
+
+class _Reading(NamedTuple):
+    """What the server tells of itself."""
+
+    at: float  # seconds since the clients began
+    own: float  # MB of memory
+    frames: float  # of all sessions
+    late: float  # of these
 
 
 @dataclass
@@ -99,9 +116,9 @@ def soak(minutes: float, tell: Callable[[str], object] = lambda _: None) -> Soak
         return _summary(yard, readings, minutes, time.monotonic() - began)
 
 
-def _summary(yard: _Yard, readings: list[tuple[float, float]], minutes: float, seconds: float) -> Soak:
-    after = [(at, own) for at, own in readings if at >= _WARM_UP * 60.0 * minutes] or readings[-1:]
-    times, own = np.array(after).T
+def _summary(yard: _Yard, readings: list[_Reading], minutes: float, seconds: float) -> Soak:
+    after = [reading for reading in readings if reading.at >= _WARM_UP * 60.0 * minutes] or readings[-1:]
+    times, own, frames, late = np.array(after).T
     return Soak(
         minutes=minutes,
         sessions=yard.counts["sessions"],
@@ -115,7 +132,11 @@ def _summary(yard: _Yard, readings: list[tuple[float, float]], minutes: float, s
         slope=slope_of(times / 3600.0, own),
         slope_budget=SLOPE_BUDGET,
         long_enough=bool(times[-1] - times[0] >= 60.0 * _VERDICT),
+        on_time_percent=percent(float(frames[-1] - frames[0]), float(late[-1] - late[0])),
+        on_time_budget_percent=ON_TIME,
+        late_budget_ms=1e3 * LATE,
         late_ms_p99=max(yard.late, default=0.0),
+        late_ms_typical=median(yard.late or [0.0]),
         frames_per_second=yard.frames / seconds,
     )
 
@@ -127,14 +148,15 @@ def slope_of(times: "np.ndarray[tuple[int], np.dtype[np.float64]]", values: obje
     return float(np.median((values[later] - values[sooner]) / (times[later] - times[sooner]))) if len(later) else 0.0
 
 
-def _watch(yard: _Yard, began: float, tell: Callable[[str], object]) -> list[tuple[float, float]]:
-    """The server's own memory, (seconds, MB), until the end."""
-    readings: list[tuple[float, float]] = []
+def _watch(yard: _Yard, began: float, tell: Callable[[str], object]) -> list[_Reading]:
+    """What the server tells of itself until the end."""
+    readings: list[_Reading] = []
     while not yard.over():
         with contextlib.suppress(OSError):
-            own = usage(yard.url)["ownBytes"] / 1e6
-            readings.append((time.monotonic() - began, own))
-            tell(f"{readings[-1][0] / 60.0:.0f} min, {own:.0f} MB, {yard.counts['sessions']} sessions")
+            told = usage(yard.url)
+            own = told["ownBytes"] / 1e6
+            readings.append(_Reading(time.monotonic() - began, own, told["frames"], told["framesLate"]))
+            tell(f"{readings[-1].at / 60.0:.0f} min, {own:.0f} MB, {yard.counts['sessions']} sessions")
         time.sleep(_EVERY)
     return readings
 

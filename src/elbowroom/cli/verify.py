@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.output import print_json, print_row, progress_bar
 from elbowroom.cli.spoken import said
@@ -35,6 +36,7 @@ def verify(
 
     Exit code 0: nothing touches, 1: something does.
     """
+    check_arguments(files=[recording, avatar])
     from elbowroom.control.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion
     from elbowroom.experiment.judge.verdict import JudgeSettings, judge

@@ -16,6 +16,7 @@ from elbowroom.control.neighbour import Neighbour
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
@@ -94,7 +95,7 @@ class BodyCheck:
     @property
     def restless(self) -> bool:
         """Whether anything moves that is not the avatar's own."""
-        return bool(len(self._moving) or self.others) or self.loose.fastest > 0.0
+        return bool(len(self._moving) or self.others) or self.loose.fastest > STILL
 
     def clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).

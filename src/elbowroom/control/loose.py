@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from elbowroom.control.thing_room import ThingRoom
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
+from elbowroom.planning.stillness import is_still
 from elbowroom.world.ground.ground import STEEPEST, STEP
 from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -60,7 +61,7 @@ class Thing:
     @property
     def moves(self) -> bool:
         """Whether it moves."""
-        return bool(self.velocity.any())
+        return not is_still(self.velocity)
 
     def track(self, times: Floats, places: Floats) -> Track:
         """It at places (K, 2) at times (K,)."""
@@ -192,13 +193,13 @@ class Loose:
         tracks, times = [], np.array([time, time + dt])
         for number, thing in self._things.items():
             wanted, here = self._wanted(number, thing, dt), np.array(thing.place)
-            room = self._room(number, time + dt) if wanted.any() else None
+            room = self._room(number, time + dt) if not is_still(wanted) else None
             for velocity in _slower(wanted):
                 track = thing.track(times, np.array([here, here + dt * velocity]))
                 way = dt * float(np.hypot(*velocity))
                 if room is None or way <= 0.0 or (room.lets(track) and leaves_alone(Moving((track,)), way)):
                     break
-            if thing.moves or velocity.any():
+            if thing.moves or not is_still(velocity):
                 self._things[number] = replace(thing, center=track.centers[1].copy(), velocity=velocity)
             tracks.append(track)
         return Moving(tuple(tracks))

@@ -17,6 +17,7 @@ from elbowroom.server.app import make_app
 from elbowroom.server.connections import BoundedWebSocket, looks_after
 from elbowroom.server.ending import end_at_latest
 from elbowroom.server.library import Library
+from elbowroom.server.ports import HIGHEST, check_port
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 
 _PORTS_TRIED = 50
@@ -25,15 +26,14 @@ _SEND_BUFFER = 128 * 1024  # bytes in the kernel's hands: a slow client must not
 
 def listen(host: str, port: int) -> socket.socket:
     """A listening socket on the port, or on the next free one (port 0: any); raises `InputError` where that fails."""
-    if not 0 <= port <= 65535:
-        raise InputError(f"--port {port}: a port is a whole number from 0 (any free one) to 65535")
+    check_port(port)
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
     except (OSError, UnicodeError):
         raise InputError(
             f"--host {host!r} is not a name or address of this machine; 127.0.0.1 is the default"
         ) from None
-    for candidate in range(port, min(port + _PORTS_TRIED, 65536)):
+    for candidate in range(port, min(port + _PORTS_TRIED, HIGHEST + 1)):
         found = _bound(family, (address[0], candidate, *address[2:]))
         if found is not None:
             return found
