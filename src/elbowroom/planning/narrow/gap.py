@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 _BEHIND, _AHEAD = 0.3, 1.6  # metres along a line of travel in which a gap is looked for
 _BESIDE = 0.1 * np.arange(-4.0, 5.0)  # metres to the left of the line
-_SLANTS = np.deg2rad([-30.0, 0.0, 30.0])  # from the line, at which gaps are looked through
+_SLANTS = np.deg2rad(np.arange(-45.0, 46.0, 15.0))  # from the line, at which gaps are looked through
 _NEAREST = 0.15  # metres: gaps no farther beside the line than that from the nearest one
 _DIRECTIONS = 36  # across which a gap is measured
 _ALIKE = 0.015  # metres: gaps are as broad as that to both sides of their axis
