@@ -43,7 +43,7 @@ def test_ways_on_which_skin_could_touch_come_last() -> None:
         def look(root: Floats, _: Floats) -> Around:
             return Around(0.002 if root[RISES + 2] < close_below else 0.1, NOTHING, lasts=True)
 
-        moment = Moment(shown, DT, UNKNOWN, 0.1, look)
+        moment = Moment(shown, DT, UNKNOWN, 0.1, look, lambda roots, upper: 0.1)
         ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))
         assert len(ways) == 4, "each of them may be shown, if no better one is free"
         return float(ways[0].root[RISES + 2])

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOWERING
+from elbowroom.body.dof import LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.control.neighbour import Neighbour
@@ -29,6 +29,7 @@ _HALVINGS = 9  # of the time between two frames: the bound on a foot in its stri
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _REMEMBERED = 4  # poses
+_LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
 
 
 def configuration(root: Floats, upper: Floats) -> Floats:
@@ -119,6 +120,18 @@ class BodyCheck:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body."""
         legs = self.model.roots.indices
         return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf, legs)
+
+    def room_along(self, roots: Floats, upper: Floats) -> float:
+        """Metres from the legs to what stands about feet on the plane, the least of root states (N, WITH_FEET)."""
+        if self._empty:
+            return np.inf
+        legs, near = self.model.roots, roots.copy()
+        near[:, :2] -= roots[0, :2]
+        axes = leg_capsules(self.model, near, upper[_LOWERING])
+        lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
+        radii = np.tile(legs.radii, len(roots))
+        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, np.full(len(radii), -np.inf))
+        return float(found.min(initial=np.inf))
 
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""

@@ -126,7 +126,8 @@ class Showing:
 
     def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
-        return Moment(self._pose, dt, ahead, max(self._clearance, 0.0) if self.assist else -1.0, self._look)
+        room = max(self._clearance, 0.0) if self.assist else -1.0
+        return Moment(self._pose, dt, ahead, room, self._look, self._around.check.room_along)
 
     def _look(self, root: Floats, upper: Floats) -> Around:
         """What stands and moves about a body."""

@@ -21,6 +21,7 @@ class Around(NamedTuple):
 
 
 Look = Callable[[Floats, Floats], Around]  # for a root with feet and an upper body
+RoomAlong = Callable[[Floats, Floats], float]  # metres from legs to what stands: roots with feet (N, WITH_FEET), upper
 
 
 class Moment(NamedTuple):
@@ -31,6 +32,7 @@ class Moment(NamedTuple):
     ahead: Floats  # (m, 8) seconds from now and root states that the root is to come to
     room: float  # metres about the whole body as it is shown; negative where that is not looked at
     look: Look
+    room_along: RoomAlong
 
 
 class Feet(Protocol):

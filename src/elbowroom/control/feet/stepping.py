@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled, standing
+from elbowroom.body.footholds_ahead import steps_ahead
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, lower_body
 from elbowroom.body.living import body_of, lively, living
@@ -25,7 +26,7 @@ Floats = NDArray[np.float64]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 _CLEAR = 0.008  # metres about the legs that have to stay, where there are less, as far ahead as is known
-_PIECE, _FORESEEN = 0.05, 0.75  # seconds between looks ahead, and in all
+_FORESEEN = 0.75  # seconds that are looked ahead
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
@@ -104,22 +105,8 @@ class Stepping:
 
     def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
         """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
-        return all(moment.look(row, upper).room >= _CLEAR for row in self._foreseen(moment, root[:WITH_FEET]))
-
-    def _foreseen(self, moment: Moment, root: Floats) -> Iterator[Floats]:
-        """Root states with feet (WITH_FEET,) from `root` on, as the root goes on and feet step."""
-        yield root
-        since, ahead = 0.0, moment.ahead[moment.ahead[:, 0] > 0.0]
-        for n, (until, *_) in enumerate(ahead.tolist()):
-            span, begin, coming = until - since, root[:ROOT_STATE], ahead[n:].copy()
-            pieces = max(round(span / _PIECE), 1)
-            for share in np.arange(1.0, pieces + 1.0) / pieces:
-                coming[:, 0] = ahead[n:, 0] - since - share * span
-                root = onward(self._gait, root, begin + share * (ahead[n, 1:] - begin), span / pieces, coming)
-                yield root
-            since = until
-            if since >= _FORESEEN:
-                break
+        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN)
+        return moment.room_along(rows, upper) >= _CLEAR
 
     def _steps(self, moment: Moment, posed: Playback) -> Playback:
         return self._alive(moment, onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead), posed)
