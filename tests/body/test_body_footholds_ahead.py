@@ -30,7 +30,9 @@ def drawn(seed: int) -> tuple[np.ndarray, np.ndarray]:
     times = np.cumsum(rng.uniform(0.02, 0.3, 6)) - 0.1
     ahead = np.empty((6, 1 + ROOT_STATE))
     ahead[:, 0] = times
-    ahead[:, 1:] = root + times[:, None] * np.concatenate([root[3:6], rng.normal(0, 0.1, 3), [0.9], np.zeros(ROOT_STATE - 7)])
+    ahead[:, 1:] = root + times[:, None] * np.concatenate(
+        [root[3:6], rng.normal(0, 0.1, 3), [0.9], np.zeros(ROOT_STATE - 7)]
+    )
     return row, ahead
 
 

@@ -70,6 +70,7 @@ class BodyCheck:
         moving = scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
+        self._around = self._that_can_move()
         self._empty = not len(scene.obstacles)
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
@@ -82,7 +83,7 @@ class BodyCheck:
     @property
     def alone(self) -> bool:
         """Whether there is nothing and nobody else: then no pose has to be looked at."""
-        return self._empty and not self.others and not len(self._loose)
+        return self._empty and not self.accompanied
 
     @property
     def loose(self) -> Moving:
@@ -92,6 +93,7 @@ class BodyCheck:
     @loose.setter
     def loose(self, things: Moving) -> None:
         self._loose = Obstacles(moving=things)
+        self._around = self._that_can_move()
 
     @property
     def restless(self) -> bool:
@@ -195,8 +197,7 @@ class BodyCheck:
         """Whether there is anything that can move."""
         return bool(self.others or self._around)
 
-    @property
-    def _around(self) -> list[Obstacles]:
+    def _that_can_move(self) -> list[Obstacles]:
         """The obstacles that can move: the scene's own, and what is loose."""
         return [each for each in (self._moving, self._loose) if len(each)]
 

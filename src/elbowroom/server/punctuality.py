@@ -2,9 +2,8 @@
 
 from collections import deque
 
-import numpy as np
-
 from elbowroom.server.meter import Meter
+from elbowroom.server.percentiles import percentiles
 
 _FRAMES = 600  # that are remembered
 _ANSWERS = 1000
@@ -39,12 +38,12 @@ class Punctuality:
     @property
     def late_ms(self) -> float:
         """99th percentile of the frames' lateness, milliseconds."""
-        return 1e3 * float(np.percentile(self._late or [0.0], 99))
+        return 1e3 * percentiles(self._late, 99)[0]
 
     @property
     def answer_ms(self) -> tuple[float, float, float] | None:
         """Median, 99th percentile and longest wait of the commands, milliseconds; None where there was none."""
         if not self._answers:
             return None
-        half, most, longest = (1e3 * np.percentile(self._answers, [50, 99, 100])).tolist()
-        return half, most, longest
+        half, most, longest = percentiles(self._answers, 50, 99, 100)
+        return 1e3 * half, 1e3 * most, 1e3 * longest

@@ -14,6 +14,7 @@ from elbowroom.server import pose_frame
 from elbowroom.server.clip_walk import ClipWalk
 from elbowroom.server.meter import Meter
 from elbowroom.server.nearest import nearest
+from elbowroom.server.percentiles import percentiles
 from elbowroom.server.pose_frame import PoseFrame
 from elbowroom.server.punctuality import Punctuality
 from elbowroom.server.reports import blocked_message, finite, group_reports, plan_message
@@ -175,7 +176,7 @@ class Stage:
         walk, frame = self.walk, self.walk.frame
         plan = frame.plan
         groups = group_reports(plan)
-        median, slow = np.percentile(self._busy or [0.0], [50, 95]) * 1e3
+        median, slow = percentiles(self._busy, 50, 95)
         return Status(
             time=now,
             sim_time=frame.time,
@@ -188,8 +189,8 @@ class Stage:
             plans_failed=walk.plans_failed,
             checks=sum(group.checks for group in groups),
             planning_ms=sum(group.ms for group in groups),
-            frame_ms_p50=float(median),
-            frame_ms_p95=float(slow),
+            frame_ms_p50=1e3 * median,
+            frame_ms_p95=1e3 * slow,
             late_ms_p99=self.punctuality.late_ms,
             answer_ms=self.punctuality.answer_ms,
             late_plans=walk.late_plans,
