@@ -170,3 +170,11 @@ def test_a_seed_without_a_course_is_passed_over(tmp_path: Path, monkeypatch: pyt
     report = json.loads(outcome.stdout)
     assert (report["courses"], report["without_course"]) == (2, [11])
     assert "seed 11" in outcome.stderr
+
+
+def test_arms_pass_thin_boards_that_hide_between_two_key_times() -> None:
+    """Behind them at one key time and before them at the next: whoever steers has no time to search on for long."""
+    made = replace(course(5, 7712), limit=3.0)
+    result = walk_course(controller_on(stock()[0], made, TrialSettings()), made)
+    assert result.stuck_times == 0
+    assert result.touching_frames == 0

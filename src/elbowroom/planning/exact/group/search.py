@@ -122,17 +122,30 @@ def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
 
 
 @exact_kernel
-def _close(lattice: Lattice, work: Work, edges: ClosedEdges, nodes: Longs, touches: Bools) -> tuple[int, float]:
+def _beside(touches: Bools) -> Bools:
+    """The intervals (n,) that touch, and those before and after them: what is passed in one can be passed in these."""
+    beside = touches.copy()
+    for k in range(touches.shape[0]):
+        if touches[k]:
+            beside[max(k - 1, 0)], beside[min(k + 1, touches.shape[0] - 1)] = True, True
+    return beside
+
+
+@exact_kernel
+def _close(
+    lattice: Lattice, work: Work, edges: ClosedEdges, nodes: Longs, touches: Bools, looked_at: Bools
+) -> tuple[int, float]:
     """Close the edges of a path through `nodes` (n+1,) in the intervals where it touches, and those near to them.
 
-    Each of these intervals has a table. Returns the first of them and how much dearer paths are to be checked.
+    Each interval that is `looked_at` (n,) has a table. Returns the first of them and how much dearer paths are to be
+    checked.
     """
     first, farthest = touches.shape[0], 0.0
     for k in range(touches.shape[0] - 1, -1, -1):
         if touches[k]:
-            first = k
             close_near(lattice, work, k, nodes[k], nodes[k + 1], _CLOSE_RADIUS)
-            at = edges.tables[k]
+        if looked_at[k]:
+            first, at = k, edges.tables[k]
             slack = max(2.0 * edges.slack[at], _FIRST_SLACK)
             edges.slack[at], farthest = slack, max(farthest, slack)
     return first, farthest
@@ -235,9 +248,10 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
             deepest, spent = horizon, rounds + 1
             break
         settled += widen(lattice, work)
-        edges = with_tables(edges, touches)
+        looked_at = _beside(touches)
+        edges = with_tables(edges, looked_at)
         lattice = _closing(lattice, edges)
-        first, farthest = _close(lattice, work, edges, nodes, touches)
+        first, farthest = _close(lattice, work, edges, nodes, touches, looked_at)
         deepest = max(deepest, first)
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)
