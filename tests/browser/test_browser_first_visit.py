@@ -75,7 +75,7 @@ def test_a_first_visit_ends_with_a_shared_film_of_a_crossing(open_page: Open) ->
     live.page.wait_for_selector("#replay .share:not([hidden])")
     picture(live, "5-filmed")
     finger.tap("分享影片")
-    live.page.wait_for_timeout(100)
+    live.page.wait_for_function("window.shared.length")
     (film,) = live.page.evaluate("window.shared")
     assert film["type"] in ("video/mp4", "video/webm")
     assert film["size"] > 1000

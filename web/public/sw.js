@@ -6,11 +6,13 @@
 const KEPT = "elbowroom";
 /** The server is asked whether what the browser has is still the newest. */
 const ASKED_AGAIN = { cache: "no-cache" };
+/** Over when the newest page is in place of the one before. */
+let renewed = Promise.resolve();
 
 self.addEventListener("install", () => self.skipWaiting());
 self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
 // What the first visit has fetched before this worker was there: addresses of this page's own files.
-self.addEventListener("message", (event) => event.waitUntil(Promise.all(event.data.filter(isKept).map(keep))));
+self.addEventListener("message", (event) => event.waitUntil(keepAll(event.data.filter(isKept))));
 
 self.addEventListener("fetch", (event) => {
   const { request } = event;
@@ -47,7 +49,7 @@ async function fresh(event) {
   const key = keyOf(event.request.url);
   try {
     const answer = await fetch(event.request.url, ASKED_AGAIN);
-    if (answer.ok) event.waitUntil(renew(key, answer.clone()));
+    if (answer.ok) event.waitUntil((renewed = renew(key, answer.clone(), renewed)));
     return answer;
   } catch (error) {
     const found = await (await caches.open(KEPT)).match(key);
@@ -56,14 +58,21 @@ async function fresh(event) {
   }
 }
 
-/** Keeps a page in place of the one before; with another page its files are others. */
-async function renew(key, answer) {
+/** Keeps a page in place of the one before, when those `earlier` are; with another page its files are others. */
+async function renew(key, answer, earlier) {
+  await earlier.catch(() => {});
   const cache = await caches.open(KEPT);
   const before = await cache.match(key);
   if (before && key.endsWith("/") && (await before.text()) !== (await answer.clone().text())) {
     for (const old of await cache.keys()) await cache.delete(old);
   }
   await cache.put(key, answer);
+}
+
+/** Waits for the newest page: what is kept of it is not what was kept of the one before. */
+async function keepAll(addresses) {
+  await renewed.catch(() => {});
+  await Promise.all(addresses.map(keep));
 }
 
 async function keep(address) {
