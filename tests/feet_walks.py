@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait import phase_rate
 from elbowroom.body.kinematics import body_model
-from elbowroom.body.living import body_of, living
+from elbowroom.body.living import Body, body_of, living
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 
@@ -82,9 +82,9 @@ def random_carriage(rng: np.random.Generator, rows: Floats) -> Floats:
     return np.hstack([rows, rng.uniform(-most, most, (len(rows), CARRIAGE))])
 
 
-def alive(rows: Floats, room: Callable[[int], float] = lambda _: np.inf) -> Floats:
+def alive(rows: Floats, room: Callable[[int], float] = lambda _: np.inf, body: Body = BODY) -> Floats:
     """Rows (frames, WITH_FEET) as they live (frames, SHOWN), with so much room in each frame, metres."""
     shown = [np.concatenate([rows[0], np.zeros(CARRIAGE)])]
     for k, row in enumerate(rows[1:], 1):
-        shown.append(living(BODY, shown[-1], row, DT, room(k), UNKNOWN))
+        shown.append(living(body, shown[-1], row, DT, room(k), UNKNOWN))
     return np.array(shown)

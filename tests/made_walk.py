@@ -1,8 +1,11 @@
 """Our own gait along a straight line, as if it had been captured."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from bvh_builder import BONES
+from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
@@ -10,7 +13,6 @@ from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry import quaternion
 
 HUMANOID = proportional_humanoid(1.7)
-SKELETON = HUMANOID.skeleton
 FPS, PACE, SPEED = 60.0, 0.9, 1.1  # frames a second, strides a second, m/s
 
 
@@ -31,20 +33,25 @@ def upper_at(phases: np.ndarray) -> np.ndarray:
 
 def made_walk(strides: float = 3.0, first_phase: float = 0.3, *, on_the_spot: bool = False) -> BodyMotion:
     """Our own gait along a straight line, as if it had been captured."""
-    model = body_model(HUMANOID)
     times = np.arange(round(strides / PACE * FPS) + 1) / FPS
     phases = first_phase + PACE * times
     states = [RootState(0.5, SPEED * t, 0.0, SPEED, 0.0, 0.0, p).as_array() for t, p in zip(times, phases, strict=True)]
-    uppers = upper_at(phases)
-    index = [SKELETON.index(bone) for bone in BONES]
+    motion = captured(HUMANOID, np.array(states), upper_at(phases))
+    return replace(motion, hips=motion.hips - np.outer(SPEED * times, [0.0, 0.0, 1.0])) if on_the_spot else motion
+
+
+def captured(humanoid: Humanoid, rows: np.ndarray, uppers: np.ndarray) -> BodyMotion:
+    """Root states (F, 7), or with feet and carriage (F, SHOWN), and upper bodies (F, LOCAL), as if captured."""
+    model, skeleton = body_model(humanoid), humanoid.skeleton
+    index = [skeleton.index(bone) for bone in BONES]
     turns, hips = [], []
-    for state, upper in zip(states, uppers, strict=True):
-        q = np.concatenate([state[:3], upper])
-        local = local_rotations(model, q, state)
+    for row, upper in zip(rows, uppers, strict=True):
+        q = np.concatenate([row[:3], upper])
+        local = local_rotations(model, q, row)
         for joint in range(1, len(local)):
-            local[joint] = quaternion.multiply(local[SKELETON.parents[joint]], local[joint])
-        turns.append(local[index])
-        at = hips_position(model, q, state)
-        hips.append(at + np.array([state[0], 0.0, 0.0 if on_the_spot else state[1]]))
+            local[joint] = quaternion.multiply(local[skeleton.parents[joint]], local[joint])
+        heading = quaternion.about_axis(1, row[2])
+        turns.append(quaternion.multiply(heading, local[index]))
+        hips.append(quaternion.rotate(heading, hips_position(model, q, row)) + np.array([row[0], 0.0, row[1]]))
     soles = np.array([[[x, 0.0, -0.06], [x, 0.0, 0.15]] for x in (0.1, -0.1)])
-    return BodyMotion("made", BONES, SKELETON.positions[index], 1.0 / FPS, np.array(turns), np.array(hips), soles)
+    return BodyMotion("made", BONES, skeleton.positions[index], 1.0 / FPS, np.array(turns), np.array(hips), soles)

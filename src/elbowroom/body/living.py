@@ -27,6 +27,7 @@ from elbowroom.body.carriage import (
 )
 from elbowroom.body.gait import GaitShape, Stride, stride_of
 from elbowroom.body.manner import PLAIN, Manner
+from elbowroom.body.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
 from elbowroom.jit import exact_kernel, helper
 
@@ -78,8 +79,8 @@ def _radians(line: Floats, speed: float) -> float:
 
 
 @helper
-def _walk(stride: Stride, phase: float, out: Floats) -> None:
-    """Write how a walking body is carried."""
+def _walk(stride: Stride, phase: float, out: Floats) -> float:
+    """Write how a walking body is carried; returns the part of its steps that leads ahead or back."""
     scale, forward = stride.scale, stride.forward
     speed, way = abs(forward) / math.sqrt(scale), 1.0 if forward >= 0.0 else -1.0
     part = forward * forward / (forward * forward + stride.lateral**2 + (0.3 * scale * stride.turn) ** 2 + 1e-9)
@@ -95,6 +96,7 @@ def _walk(stride: Stride, phase: float, out: Floats) -> None:
     out[CHEST_LIST] = _CHEST_LIST * out[LIST]
     out[CHEST_BEND] = much * min(speed, _FASTEST) * (way * _LEAN + _NODS * _wave(2.0 * phase, 2.0 * _NODS_AT))
     out[HEAD_NOD] = -much * min(speed, _FASTEST) * _GAZE * _wave(2.0 * phase, 2.0 * _LOWEST)
+    return part
 
 
 @helper
@@ -152,6 +154,7 @@ class Body(NamedTuple):
 
     scale: float  # of its legs, see `GaitShape`
     amounts: Floats  # (POSING + 1,) of its manner
+    own: OwnStride  # of a walk that was recorded, in place of published gait
 
 
 @exact_kernel
@@ -170,7 +173,9 @@ def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, fac
         out[WITH_FEET + i] = 0.0
     share = _smooth(out[SHARE])
     if share > 0.0:
-        _walk(stride_of(body.scale, out[3], out[4], out[5]), out[6], out)
+        part = _walk(stride_of(body.scale, out[3], out[4], out[5]), out[6], out)
+        if body.own.speed > 0.0:
+            carry_as_recorded(body.own, part, out[3], body.scale, out[6], out)
         _idle(body.scale, _smooth(out[REST]), out[CLOCK], out)
         for i in range(POSING):
             out[WITH_FEET + i] *= share * body.amounts[i]
@@ -179,9 +184,9 @@ def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, fac
         out[HEAD_TURN] = _eased(before[HEAD_TURN], share * (_looks_to(out, coming) - faces), dt)
 
 
-def body_of(gait: GaitShape, manner: Manner = PLAIN) -> Body:
-    """A body that walks in a manner."""
-    return Body(gait.scale, manner.amounts())
+def body_of(gait: GaitShape, manner: Manner = PLAIN, own: OwnStride = PUBLISHED) -> Body:
+    """A body that walks in a manner, or like somebody who was recorded."""
+    return Body(gait.scale, manner.amounts(), own)
 
 
 def living(

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of, followed, side_by_side
+from elbowroom.body.own_stride import PUBLISHED, OwnStride
 from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import KEYS, Swing
@@ -33,6 +34,11 @@ class MotionSet:
     def is_stock_walk(self) -> bool:
         """Whether head and arms go as in the stock walk, and the waist is upright."""
         return self.swing is None and self.style.posture is None
+
+    @property
+    def own_stride(self) -> OwnStride:
+        """How hips and chest are carried: as in the recorded walk, or as published."""
+        return PUBLISHED if self.swing is None else self.swing.own
 
     def goal(self, group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
         """What a local group would like to do at gait phases (n,) and forward speeds (n,): (n, size)."""
@@ -81,6 +87,7 @@ class MotionSet:
                 "name": swing.name,
                 "speed": swing.speed,
                 "keys": {group.name: keys.tolist() for group, keys in swing.keys.items()},
+                "carried": {"harmonics": swing.own.harmonics.tolist(), "speed": swing.own.speed},
             },
             "dodges": [
                 {"name": c.name, "group": c.group.name, "times": c.times.tolist(), "keys": c.configurations.tolist()}
@@ -124,7 +131,14 @@ def _swing(data: Mapping[str, Any]) -> Swing:
     speed = float(data["speed"])
     if any(len(rows) != KEYS + 1 for rows in keys.values()) or not 0.0 < speed < 100.0:
         raise ValueError("swing")
-    return Swing(str(data["name"]), speed, keys)
+    return Swing(str(data["name"]), speed, keys, PUBLISHED if "carried" not in data else _own_stride(data["carried"]))
+
+
+def _own_stride(data: Mapping[str, Any]) -> OwnStride:
+    harmonics, speed = np.array(data["harmonics"], np.float64), float(data["speed"])
+    if harmonics.shape != PUBLISHED.harmonics.shape or not np.abs(harmonics).max() < 1.0 or not 0.0 <= speed < 100.0:
+        raise ValueError("carried")
+    return OwnStride(harmonics, speed)
 
 
 def _clip(data: Mapping[str, Any]) -> MotionClip:

@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
 from elbowroom.body.dof import ARMS, CHILDREN, DofGroup, Turning, clamp, side_by_side
-from elbowroom.body.gait import foot_poses, gait_shape
+from elbowroom.body.gait import GaitShape, foot_poses, gait_shape
 from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
+from elbowroom.clips.carried import carried
 from elbowroom.clips.root_track import RootTrack, root_track, seen_from_root
 from elbowroom.geometry import quaternion
 
@@ -22,8 +23,10 @@ class PlanningMotion:
 
     name: str
     frame_time: float  # seconds
+    gait: GaitShape  # the legs of the figure
     track: RootTrack  # root states (F, 7) and strides
     groups: dict[DofGroup, Floats]  # (F, size) of each local group, within the limits
+    carried: Floats  # (F, POSING) how hips and chest go beside that, see `carried`
     trunk_error: Floats  # (F,) radians between the chest and what bend and twist make of it
     arm_error: Floats  # (F, 4) radians between the directions of left upper arm, forearm, right ...; and theirs
 
@@ -33,10 +36,10 @@ class PlanningMotion:
 
 def planning_motion(motion: BodyMotion) -> PlanningMotion:
     """Bring a motion to the planning degrees of freedom."""
-    track = root_track(motion)
+    track, gait = root_track(motion), gait_shape(motion.skeleton)
     turns = seen_from_root(motion, track.states)
     chest = turns[:, motion.index(next(bone for bone in reversed(SPINE) if bone in motion.bones))]
-    waist = _waist(motion, chest, track.states)
+    waist = _waist(motion, gait, chest, track.states)
     planned = chest_rotation(waist)
     groups, errors = {DofGroup.WAIST: waist}, []
     back = quaternion.conjugate(planned)
@@ -52,12 +55,13 @@ def planning_motion(motion: BodyMotion) -> PlanningMotion:
         for rotation, direction in zip((upper, lower), arm_directions(groups[group], side), strict=True):
             errors.append(_angle(quaternion.rotate(rotation, outwards), direction))
     trunk_error = np.linalg.norm(quaternion.to_rotation_vector(quaternion.multiply(back, chest)), axis=1)
-    return PlanningMotion(motion.name, motion.frame_time, track, groups, trunk_error, np.stack(errors, axis=1))
+    beside = carried(motion, turns[:, 0], quaternion.multiply(chest, back))
+    arm_error = np.stack(errors, axis=1)
+    return PlanningMotion(motion.name, motion.frame_time, gait, track, groups, beside, trunk_error, arm_error)
 
 
-def _waist(motion: BodyMotion, chest: Floats, states: Floats) -> Floats:
+def _waist(motion: BodyMotion, gait: GaitShape, chest: Floats, states: Floats) -> Floats:
     """Bend, twist and lowering (F, 3): how far the hips are below where the walking cycle has them."""
-    gait = gait_shape(motion.skeleton)
     _, drops = foot_poses(gait.legs, gait.scale, states)
     lowering = (motion.rest[0, 1] - motion.hips[:, 1] - drops) / gait.half_leg
     return clamp(DofGroup.WAIST, np.concatenate([waist_angles(chest), lowering[:, None]], axis=1))

@@ -25,8 +25,8 @@ class RootTrack:
 
 def root_track(motion: BodyMotion) -> RootTrack:
     """Smooth the hips' way and heading, and find the strides."""
-    heading = _smooth(hips_heading(motion), motion.frame_time)
-    ground = _smooth(motion.hips[:, [0, 2]], motion.frame_time)
+    heading = smoothed(hips_heading(motion), motion.frame_time, _SMOOTH)
+    ground = smoothed(motion.hips[:, [0, 2]], motion.frame_time, _SMOOTH)
     strides = strides_of(motion, ground, heading)
     states = np.zeros((len(motion), ROOT_STATE))
     states[:, :2], states[:, 2] = ground, heading
@@ -53,13 +53,13 @@ def seen_from_root(motion: BodyMotion, states: Floats) -> Floats:
     return quaternion.multiply(quaternion.about_axis(1, -states[:, 2])[:, None], motion.turns)
 
 
-def _smooth(values: Floats, frame_time: float) -> Floats:
-    """Gaussian filter along time; beyond its ends a motion goes on as it began and ended."""
+def smoothed(values: Floats, frame_time: float, seconds: float) -> Floats:
+    """Gaussian filter of that standard deviation along time; beyond its ends a motion goes on as it began and ended."""
     from scipy.ndimage import gaussian_filter1d  # takes longer to import than a whole start
 
     if len(values) < 3:
         return values.copy()
-    spread = _SMOOTH / frame_time
+    spread = seconds / frame_time
     pad = min(len(values) - 1, max(int(3 * spread), 1))
     before, after = 2.0 * values[0] - values[pad:0:-1], 2.0 * values[-1] - values[-2 : -pad - 2 : -1]
     filtered: Floats = gaussian_filter1d(np.concatenate([before, values, after]), spread, axis=0)

@@ -41,7 +41,7 @@ class Stepping:
     def __init__(self, humanoid: Humanoid, motions: MotionSet) -> None:
         """`motions` are those that it walks with."""
         model = body_model(humanoid)
-        self._gait, self._body = model.gait, body_of(model.gait, motions.style.manner)
+        self._gait, self._body = model.gait, body_of(model.gait, motions.style.manner, motions.own_stride)
         self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
 
     def standing(self, root: Floats) -> Floats:
