@@ -10,7 +10,9 @@ import typer
 from elbowroom.cli.arguments import check_arguments
 from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.first_run import compile_first
+from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
 from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
+from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.cli.time_left import time_left_bar
 from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
 from elbowroom.errors import InputError
@@ -20,16 +22,19 @@ if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.avatar_reference import AvatarReference
     from elbowroom.experiment.gauntlet.course import Course
+    from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
     from elbowroom.experiment.gauntlet.runner import GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialResult
 
 EXAMPLES = (
     "Examples:  elbowroom gauntlet --level 3 --courses 50  |  elbowroom gauntlet --level 5 --show 2  |  "
-    "elbowroom gauntlet --level 4 --save 7 course.json  |  elbowroom gauntlet --level 3 --avatar alice.vrm --judge"
+    "elbowroom gauntlet --level 4 --save 7 course.json  |  elbowroom gauntlet --level 3 --avatar alice.vrm --judge  |  "
+    "elbowroom gauntlet --place house.glb --drop 'IfcDoor_*' --courses 10"
 )
 FELL_SHORT = 1
 _NO_COURSE = "no course for this body from {}: its arms stand out too little beside its trunk and legs"
+_NO_WAY = "no course for this body from {}: no way of 3 m and more was found that furniture leaves free"
 _LISTED = 12  # seeds that are named
 
 
@@ -38,6 +43,13 @@ def gauntlet(
     level: Annotated[int, typer.Option(help="Difficulty, 1 to 5.")] = 1,
     courses: Annotated[int, typer.Option(help="How many courses; course K has the seed S + K.")] = 20,
     seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
+    place: PlaceFile = None,
+    pieces: Pieces = None,
+    scale: Scale = None,
+    up: UpAxis = None,
+    ground: GroundHeight = None,
+    drop: Drop = None,
+    passable: Passable = None,
     planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
     queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
     jobs: Jobs = None,
@@ -62,36 +74,42 @@ def gauntlet(
 ) -> None:
     """Walk random courses, each with a proof that this avatar's body can cross it, and count.
 
+    With --place they lead through the model of a place, between its furniture, moved at random.
     Crossed: through in time; straight: and never stuck; stuck: at least once; stopped: not through, but never touching.
     A seed that gives this body no course is passed over and named.
     Exit code 0: all crossed and nothing touched, 1: not, 2: no seed gives a course.
     """
-    check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones])
+    check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
     check_cluster(cluster)
+    of_levels = {"--shapes": shapes, "--save": save is not None, "--show": show is not None}
+    furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), of_levels)
+    from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
     from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialSettings
 
     walker = _Walker(avatar, bones, height, include_hair)
-    settings = GauntletSettings(level, courses, seed, TrialSettings(planner, queue), judge, shapes=shapes)
+    trial = TrialSettings(planner, queue)
+    of_level = GauntletSettings(level, courses, seed, trial, judge, shapes=shapes)
+    of_place = None if furnished is None else PlaceGauntletSettings(furnished, courses, seed, trial, judge)
     compile_first(quiet=quiet)
-    settings = replace(settings, avatar=walker.reference())
     if save is not None:
-        return _save(_course(settings, walker, save[0], quiet), save[1])
+        return _save(_course(of_level, walker, save[0], quiet), save[1])
     if show is not None:
-        return _show(_course(settings, walker, show, quiet), settings, walker)
+        return _show(_course(of_level, walker, show, quiet), of_level, walker)
+    settings: GauntletSettings | PlaceGauntletSettings = replace(of_place or of_level, avatar=walker.reference())
     with chosen_workers(cluster, jobs, courses) as workers, time_left_bar("Courses", quiet) as move:
         (results, without), processes = run_gauntlet(settings, workers, out, move), workers.at_once
     if not results:
-        raise InputError(f"level {level}: {_NO_COURSE.format(_listed(without))}; try another level or other seeds")
+        raise InputError(f"{_about(settings)[0]}: {_without(settings, without)}; try others")
     summary = GauntletSummary.of(results)
     document = _document(settings, processes, summary) | {"without_course": list(without)}
     whole = document | _trials(results)
     if out is not None:
-        _write(out / f"gauntlet-{level}.json", json_text(whole) + "\n")
+        _write(out / f"gauntlet-{level if place is None else 'place'}.json", json_text(whole) + "\n")
     print_json(whole) if json else _print(settings, summary)
     if without:
-        typer.echo(f"elbowroom: {_NO_COURSE.format(_listed(without))}; the figures are of the others", err=True)
+        typer.echo(f"elbowroom: {_without(settings, without)}; the figures are of the others", err=True)
     raise typer.Exit(0 if _is_good(summary) else FELL_SHORT)
 
 
@@ -99,6 +117,29 @@ def _is_good(summary: "GauntletSummary") -> bool:
     """Whether all courses were crossed and nothing touched."""
     touching = summary.touching_frames or summary.judged_touching or summary.mesh_touching
     return summary.crossed == summary.courses and not touching
+
+
+def _without(settings: "GauntletSettings | PlaceGauntletSettings", seeds: tuple[int, ...]) -> str:
+    """That some seeds give no course, and why."""
+    from elbowroom.experiment.gauntlet.runner import GauntletSettings
+
+    return (_NO_COURSE if isinstance(settings, GauntletSettings) else _NO_WAY).format(_listed(seeds))
+
+
+def _about(settings: "GauntletSettings | PlaceGauntletSettings") -> tuple[str, dict[str, Any]]:
+    """What the courses are of, in words and as data."""
+    from dataclasses import asdict
+
+    from elbowroom.experiment.gauntlet.levels import level_of
+    from elbowroom.experiment.gauntlet.place.course import MARGIN
+    from elbowroom.experiment.gauntlet.runner import GauntletSettings
+
+    if isinstance(settings, GauntletSettings):
+        level = level_of(settings.level)
+        return f"level {settings.level} ({100 * level.margin:.0f} cm)", {"level": asdict(level)}
+    place = settings.place
+    about = {"file": place.path.name, "pieces": place.pieces, "margin": MARGIN}
+    return f"{place.path.name} with {place.pieces} pieces of furniture ({100 * MARGIN:.0f} cm)", {"place": about}
 
 
 def _listed(seeds: tuple[int, ...]) -> str:
@@ -164,10 +205,11 @@ def _show(course: "Course", settings: "GauntletSettings", walker: _Walker) -> No
         )
 
 
-def _document(settings: "GauntletSettings", jobs: int, summary: "GauntletSummary") -> dict[str, Any]:
+def _document(
+    settings: "GauntletSettings | PlaceGauntletSettings", jobs: int, summary: "GauntletSummary"
+) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from elbowroom.experiment.gauntlet.levels import level_of
     from elbowroom.experiment.gauntlet.runner import identity
     from elbowroom.experiment.gauntlet.speeds import HumanSpeeds
     from elbowroom.experiment.statistics import wilson
@@ -180,12 +222,12 @@ def _document(settings: "GauntletSettings", jobs: int, summary: "GauntletSummary
         "plan_ms": times,
         "intervals_95": rates,
         "settings": {
-            "level": asdict(level_of(settings.level)),
+            **_about(settings)[1],
             "speeds": asdict(HumanSpeeds()),
             "courses": settings.courses,
             "seed": settings.seed,
             "jobs": jobs,
-            **identity(settings),
+            **{name: value for name, value in identity(settings).items() if name != "place"},
         },
     }
 
@@ -197,9 +239,7 @@ def _trials(results: list["TrialResult"]) -> dict[str, Any]:
     return {"trials": [asdict(result) | {"plan_ms": max(result.plan_ms, default=0.0)} for result in results]}
 
 
-def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
-    from elbowroom.experiment.gauntlet.levels import level_of
-
+def _print(settings: "GauntletSettings | PlaceGauntletSettings", summary: "GauntletSummary") -> None:
     def share(count: int) -> str:
         from elbowroom.experiment.statistics import wilson
 
@@ -227,6 +267,6 @@ def _print(settings: "GauntletSettings", summary: "GauntletSummary") -> None:
         if summary.mesh_clearance is not None:
             rows["least clearance of the mesh"] = f"{1e3 * summary.mesh_clearance:.1f} mm"
     last = settings.seed + settings.courses - 1
-    about = f"level {settings.level} ({100 * level_of(settings.level).margin:.0f} cm), seeds {settings.seed} to {last}"
+    about = f"{_about(settings)[0]}, seeds {settings.seed} to {last}"
     trial = settings.trial
     print_row(f"Gauntlet, {about}, {trial.planner}, |Q| {trial.queue_size}", rows)

@@ -14,6 +14,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.levels import level_of
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
+from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
 from elbowroom.experiment.machine import machine_kind, program_digest
@@ -52,6 +53,10 @@ class GauntletSettings:
         seeds = range(self.seed, self.seed + self.courses)
         return [CourseTask(self.level, seed, self.trial, self.judge, self.avatar, self.shapes) for seed in seeds]
 
+    def told(self) -> dict[str, Any]:
+        """What tells these courses from others, besides level and seed."""
+        return {"shapes": self.shapes}
+
 
 class GauntletRun(NamedTuple):
     """What came of the courses that were asked for."""
@@ -60,24 +65,24 @@ class GauntletRun(NamedTuple):
     without_course: tuple[int, ...]  # seeds that give this body no course
 
 
-def identity(settings: GauntletSettings) -> dict[str, Any]:
+def identity(settings: GauntletSettings | PlaceGauntletSettings) -> dict[str, Any]:
     """All on which the outcome of a walk depends, besides the course's level and seed."""
     return {
         "experiment": "gauntlet",
+        **settings.told(),
         "version": __version__,
         "program": program_digest(),
         "generator": _generator_digest(),
         **asdict(settings.trial),
         "interval": ControlSettings.interval,
         "judge": settings.judge,
-        "shapes": settings.shapes,
         "avatar": "stock" if settings.avatar is None else asdict(replace(settings.avatar, path="")),
         "machine": this_machine() | {"kind": machine_kind()},
     }
 
 
 def run_gauntlet(
-    settings: GauntletSettings,
+    settings: GauntletSettings | PlaceGauntletSettings,
     workers: Workers = Processes(),  # noqa: B008  frozen
     folder: Path | None = None,
     progress: Progress | None = None,
@@ -108,6 +113,6 @@ def run_gauntlet(
 
 def _generator_digest() -> str:
     """A hash of the code that makes and walks courses."""
-    folder = files("elbowroom.experiment.gauntlet")
-    sources = {entry.name: entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".py")}
-    return digest(sources)
+    folders = files("elbowroom.experiment.gauntlet"), files("elbowroom.experiment.gauntlet.place")
+    entries = [entry for folder in folders for entry in folder.iterdir() if entry.name.endswith(".py")]
+    return digest({str(number): entry.read_text("utf-8") for number, entry in enumerate(entries)})

@@ -6,13 +6,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.frame import Frame
-from elbowroom.experiment.crossing import DT, warm_up
-from elbowroom.experiment.gauntlet.course import Course, CourseMaker, NoCourseError
+from elbowroom.experiment.crossing import warm_up
+from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
+from elbowroom.experiment.gauntlet.judged import judged_walk
 from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
 from elbowroom.experiment.opened import Thing, opened
@@ -20,7 +19,7 @@ from elbowroom.planning.command import Command
 
 Record = dict[str, Any]
 
-_NO_COURSE = "no_course"
+NO_COURSE = "no_course"
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class CourseTask:
         try:
             course = maker.course(self.level, self.seed)
         except NoCourseError:
-            return {"level": self.level, "seed": self.seed, _NO_COURSE: True}
+            return {"level": self.level, "seed": self.seed, NO_COURSE: True}
         course = in_shapes(course) if self.shapes else course
         controller = controller_on(humanoid, course, self.settings)
         warm_up(controller)
@@ -75,13 +74,13 @@ class CourseTask:
 
         result = walk_course(controller, course, listen if self.judge else None)
         if self.judge and shown:
-            result = replace(result, judge=_judged(humanoid, course, shown))
+            result = replace(result, judge=judged_walk(humanoid, course.scene, shown))
         return asdict(result)
 
 
 def result_of(record: Mapping[str, Any]) -> TrialResult | None:
     """The result that a record holds, None where the seed gave no course; raises TypeError or KeyError otherwise."""
-    if record.get(_NO_COURSE):
+    if record.get(NO_COURSE):
         return None
     judge = record["judge"]
     figures = None if judge is None else JudgeFigures(**judge)
@@ -92,24 +91,3 @@ def result_of(record: Mapping[str, Any]) -> TrialResult | None:
 def _maker(avatar: AvatarReference | None) -> CourseMaker:
     """The maker of an avatar's courses, once in a process."""
     return CourseMaker.of(opened(CourseWalker(avatar)))
-
-
-def _judged(humanoid: Humanoid, course: Course, shown: list[Frame]) -> JudgeFigures:
-    """What another library says about capsules and mesh in all that was shown."""
-    from elbowroom.experiment.judge.motion import ShownMotion
-    from elbowroom.experiment.judge.verdict import judge
-
-    q, roots = np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown])
-    verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), humanoid, course.scene)
-    least, mesh = verdict.capsules.least, verdict.mesh
-    return JudgeFigures(
-        poses=verdict.poses,
-        touching=verdict.capsules.touching,
-        deepest=verdict.capsules.deepest,
-        least_clearance=None if least is None else least.clearance,
-        self_touching=verdict.itself.touching,
-        self_deepest=verdict.itself.deepest,
-        mesh_touching=None if mesh is None else mesh.touching,
-        mesh_deepest=None if mesh is None else mesh.deepest,
-        mesh_clearance=None if mesh is None or mesh.least is None else mesh.least.clearance,
-    )

@@ -1,0 +1,120 @@
+"""Courses in a place as tasks that other processes can do."""
+
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from elbowroom.control.avatar_reference import AvatarReference
+from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.settings import ControlSettings
+from elbowroom.errors import InputError
+from elbowroom.experiment.crossing import warm_up
+from elbowroom.experiment.gauntlet.course import NoCourseError
+from elbowroom.experiment.gauntlet.judged import judged_walk
+from elbowroom.experiment.gauntlet.names import LARGEST_SEED
+from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
+from elbowroom.experiment.gauntlet.place.trial import NO_LEVEL, walk_place_course
+from elbowroom.experiment.gauntlet.tasks import NO_COURSE, CourseWalker, Record
+from elbowroom.experiment.gauntlet.trial import TrialSettings
+from elbowroom.experiment.opened import Thing, opened
+from elbowroom.planning.names import check_planner
+from elbowroom.world.places.options import PlaceOptions
+
+MOST_PIECES, MOST_COURSES = 100, 1_000_000
+
+
+@dataclass(frozen=True)
+class FurnishedPlace:
+    """The model of a place, and how many pieces of furniture are put beside each way through it."""
+
+    path: Path
+    sha256: str  # of the file
+    options: PlaceOptions = field(default_factory=PlaceOptions)
+    pieces: int = 8
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.pieces <= MOST_PIECES:
+            raise InputError(f"pieces: {self.pieces} is not a whole number from 1 to {MOST_PIECES}")
+
+
+@dataclass(frozen=True)
+class PlaceCourses:
+    """The courses of one place for one avatar, as a thing that is opened once in a process."""
+
+    place: FurnishedPlace
+    avatar: AvatarReference | None  # None: the stock one
+
+    def open(self) -> PlaceCourseMaker:
+        """Read avatar and place."""
+        humanoid = opened(CourseWalker(self.avatar))
+        return PlaceCourseMaker.open(humanoid, self.place.path, self.place.options, self.place.pieces)
+
+
+@dataclass(frozen=True)
+class PlaceTask:
+    """Make a course in a place, walk it, and have the walk judged if asked to."""
+
+    place: FurnishedPlace
+    seed: int
+    settings: TrialSettings
+    judge: bool = False
+    avatar: AvatarReference | None = None
+
+    @property
+    def key(self) -> str:
+        """What tells this task from all others with the same settings."""
+        return f"place-{self.seed}"
+
+    @property
+    def things(self) -> tuple[Thing[Any], ...]:
+        """The avatar, and the place."""
+        return (CourseWalker(self.avatar), PlaceCourses(self.place, self.avatar))
+
+    def run(self) -> Record:
+        """The result as a plain record, see `tasks.result_of`."""
+        maker = opened(PlaceCourses(self.place, self.avatar))
+        try:
+            course = maker.course(self.seed)
+        except NoCourseError:
+            return {"level": NO_LEVEL, "seed": self.seed, NO_COURSE: True}
+        ahead = Lookahead(self.settings.queue_size)
+        controller = Controller(
+            maker.humanoid, course.scene, planner=self.settings.planner, seed=self.seed, ahead=ahead
+        )
+        warm_up(controller)
+        shown: list[Frame] = []
+        result = walk_place_course(controller, course, shown.append if self.judge else None)
+        if self.judge and shown:
+            result = replace(result, judge=judged_walk(maker.humanoid, course.scene, shown))
+        return asdict(result)
+
+
+@dataclass(frozen=True)
+class PlaceGauntletSettings:
+    """Which courses of a place are walked, and how. Course k has the seed `seed + k`."""
+
+    place: FurnishedPlace
+    courses: int = 20
+    seed: int = 0
+    trial: TrialSettings = field(default_factory=TrialSettings)
+    judge: bool = False  # whether another library judges every walk
+    avatar: AvatarReference | None = None  # None: the stock one
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.courses <= MOST_COURSES:
+            raise InputError(f"courses: {self.courses} is not a whole number from 1 to {MOST_COURSES}")
+        if not 0 <= self.seed <= LARGEST_SEED + 1 - self.courses:
+            raise InputError(f"seed: {self.seed} is not a whole number from 0 to {LARGEST_SEED + 1 - self.courses}")
+        check_planner(self.trial.planner)
+        ControlSettings(queue_size=self.trial.queue_size)
+
+    def tasks(self) -> list[PlaceTask]:
+        """A task for every course."""
+        seeds = range(self.seed, self.seed + self.courses)
+        return [PlaceTask(self.place, seed, self.trial, self.judge, self.avatar) for seed in seeds]
+
+    def told(self) -> dict[str, Any]:
+        """What tells these courses from others, as JSON has it."""
+        return {"place": {"sha256": self.place.sha256, **self.place.options.to_dict(), "pieces": self.place.pieces}}
