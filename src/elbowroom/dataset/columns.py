@@ -56,6 +56,9 @@ COLUMNS = (
     Column("contacts", _frames(2, pa.bool_()), "(F, 2) whether the left, the right foot stands"),
     Column("clearance", pa.list_(F32), "(F,) metres from the body to the nearest obstacle, infinite without any"),
     Column("nearest", pa.list_(pa.int32()), "(F,) number of that obstacle, -1 without any"),
+    Column("others", pa.list_(pa.string()), "(N,) avatars of those who walk about in the same place"),
+    Column("others_root", pa.list_(pa.list_(F32)), "(N, 8 F) of each: root and height as above, frame after frame"),
+    Column("others_joints", pa.list_(pa.list_(F32)), "(N, 66 F) of each: joints as above, frame after frame"),
     Column("near", pa.list_(pa.list_(pa.int32())), "(F, any) numbers of what stands within 3 m, and of all that moves"),
 )  # fmt: skip
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from elbowroom.control.recording import Recorder
+from elbowroom.dataset.company import NoRoomError
 from elbowroom.dataset.spec import DatasetSpec
-from elbowroom.dataset.walk import controller_of, draw, setting_of, steps_of
+from elbowroom.dataset.walk import company_on, controller_of, draw, setting_of, steps_of
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import NoCourseError
@@ -18,6 +19,10 @@ def record_walk(spec: DatasetSpec, number: int, path: Path) -> None:
     except NoCourseError:
         raise InputError(f"walk {number}: its seed gives no course for this body") from None
     controller = controller_of(spec, drawn, setting)
+    try:
+        company = company_on(drawn, setting, controller)
+    except NoRoomError as error:
+        raise InputError(f"walk {number}: {error}") from None
     with Recorder(path, controller) as recorder:
-        for command, frame in steps_of(spec, drawn, setting, controller):
+        for command, frame in steps_of(spec, drawn, setting, controller, company):
             recorder.append(command, DT, frame)

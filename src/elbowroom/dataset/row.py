@@ -19,6 +19,7 @@ from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
 if TYPE_CHECKING:
+    from elbowroom.dataset.company import Company
     from elbowroom.dataset.walk import Draw
 
 Floats = NDArray[np.float64]
@@ -34,14 +35,11 @@ def row_of(
     """The row of walk `number`, every so many of its frames, 60 a second, that `fps` a second are left."""
     from elbowroom.dataset.columns import SMPL_BONES
 
-    kept = steps[:: round(1.0 / (DT * fps))]
+    kept = steps[:: _every(fps)]
     frames = [frame for _, frame in kept]
     q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
     times = np.array([frame.time for frame in frames])
-    rotations, hips = posed_frames(humanoid, q, roots)
-    places = roots[:, [0, HEIGHT, 1]]
-    body = Animation("", fps, humanoid.skeleton, rotations, hips, places, roots[:, 2])
-    known = [_present(humanoid.skeleton, bone) for bone in SMPL_BONES]
+    rotations, joints, known = _posed(humanoid, q, roots, fps)
     present = np.array([humanoid.skeleton.has(bone) for bone in SMPL_BONES])
     local = np.where(present[:, None], rotations[:, known], [0.0, 0.0, 0.0, 1.0])
     return {
@@ -64,13 +62,40 @@ def row_of(
         "feet": _behind(roots, ROOT_STATE, 2 * FOOT),
         "carriage": _behind(roots, WITH_FEET, CARRIAGE),
         "q": q,
-        "joints": body.joints_in_world()[:, known].reshape(len(frames), -1),
+        "joints": joints,
         "rotations": local.reshape(len(frames), -1),
         "contacts": np.stack([frame.contacts for frame in frames]),
         "clearance": np.array([frame.clearance for frame in frames]),
         "nearest": _nearest(humanoid, scene, q, roots, times),
         "near": [_near(scene, root) for root in roots],
     }
+
+
+def others_in(company: "Company", names: Sequence[str], fps: int) -> Row:
+    """The columns of those who walk there too, of as many frames as the walk has."""
+    seen = [one.frames[:: _every(fps)] for one in company.companions]
+    poses = [(np.stack([frame.q for frame in own]), np.stack([frame.root for frame in own])) for own in seen]
+    joints = [_posed(one.humanoid, q, roots, fps)[1] for one, (q, roots) in zip(company.companions, poses, strict=True)]
+    return {
+        "others": [_named(name) for name in names],
+        "others_root": [roots[:, : HEIGHT + 1].astype(np.float32).ravel().tolist() for _, roots in poses],
+        "others_joints": [places.astype(np.float32).ravel().tolist() for places in joints],
+    }
+
+
+def _every(fps: int) -> int:
+    """Of so many of the frames, 60 a second, one is kept."""
+    return round(1.0 / (DT * fps))
+
+
+def _posed(humanoid: Humanoid, q: Floats, roots: Floats, fps: int) -> tuple[Floats, Floats, list[int]]:
+    """Local rotations (F, J, 4), places (F, 66) of the SMPL joints in the world, and which joints these are."""
+    from elbowroom.dataset.columns import SMPL_BONES
+
+    rotations, hips = posed_frames(humanoid, q, roots)
+    body = Animation("", fps, humanoid.skeleton, rotations, hips, roots[:, [0, HEIGHT, 1]], roots[:, 2])
+    known = [_present(humanoid.skeleton, bone) for bone in SMPL_BONES]
+    return rotations, body.joints_in_world()[:, known].reshape(len(q), -1), known
 
 
 def _behind(roots: Floats, first: int, size: int) -> Floats:

@@ -20,6 +20,7 @@ MOST_WALKS = 10_000_000
 _MOST_BYTES = 1_000_000  # of a file
 _MOST_CHOICES = 1000
 _LONGEST = 600.0  # seconds of a walk
+_MOST_OTHERS = 8
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class DatasetSpec:
     avatars: tuple[str, ...] = (STOCK,)  # or files
     swings: tuple[str, ...] = (STOCK,)  # or style:NAME, or motions that are walked as, FILE or FILE#CLIP
     steering: tuple[str, ...] = ("straight",)  # see `hands`
+    company: tuple[int, ...] = (0,)  # how many others walk about in the same place
     seconds: float = 20.0  # at most, of each walk
     planner: str = DEFAULT_PLANNER
     shard: int = 100  # walks that are drawn for one file
@@ -55,6 +57,8 @@ class DatasetSpec:
         for name in ("places", "avatars", "swings", "steering"):
             if not 1 <= len(getattr(self, name)) <= _MOST_CHOICES:
                 raise InputError(f"{name}: give 1 to {_MOST_CHOICES}")
+        if not 1 <= len(self.company) <= _MOST_CHOICES or not all(0 <= n <= _MOST_OTHERS for n in self.company):
+            raise InputError(f"company: give 1 to {_MOST_CHOICES} numbers of others, each from 0 to {_MOST_OTHERS}")
         for place in self.places:
             level(place)
         for hand in self.steering:
@@ -111,7 +115,7 @@ def level(place: str) -> int | None:
 
 def _is_like(value: Any, default: Any) -> bool:
     if isinstance(default, tuple):
-        return isinstance(value, list) and all(isinstance(entry, str) for entry in value)
+        return isinstance(value, list) and all(type(entry) is type(default[0]) for entry in value)
     if isinstance(default, float):
         return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     return type(value) is type(default)

@@ -1,8 +1,9 @@
 """One walk of a dataset: drawn by its number, walked, judged."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,11 +15,13 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.clips.style import style_named
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.dataset.company import Company, NoRoomError, company_of
 from elbowroom.dataset.hands import HANDS, TOUR, Way
-from elbowroom.dataset.row import Row, row_of
+from elbowroom.dataset.row import Row, others_in, row_of
 from elbowroom.dataset.spec import STOCK, STYLE, DatasetSpec, level
 from elbowroom.experiment.crossing import DT, start_for
 from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
+from elbowroom.experiment.judge.apart import Walker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.experiment.opened import Thing, opened
@@ -37,6 +40,7 @@ class Draw(NamedTuple):
     steering: str
     seed: int
     swing: str = STOCK
+    others: tuple[str, ...] = ()  # avatars of those who walk there too
 
 
 class Setting(NamedTuple):
@@ -53,7 +57,10 @@ def draw(spec: DatasetSpec, number: int) -> Draw:
     lists = (spec.places, spec.avatars, spec.steering)
     place, avatar, steering = (choices[int(rng.integers(len(choices)))] for choices in lists)
     seed = int(rng.integers(2**31))
-    return Draw(place, avatar, steering, seed, spec.swings[int(rng.integers(len(spec.swings)))])
+    swing = spec.swings[int(rng.integers(len(spec.swings)))]
+    count = spec.company[int(rng.integers(len(spec.company)))]
+    others = tuple(spec.avatars[int(rng.integers(len(spec.avatars)))] for _ in range(count))
+    return Draw(place, avatar, steering, seed, swing, others)
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,8 @@ class WalkTask:
         """Avatar and motions, and the scene unless it is made by a seed."""
         drawn = draw(self.spec, self.number)
         scene = () if level(drawn.place) is not None else (NamedScene(drawn.place),)
-        return (_avatar(drawn.avatar), SwingFile(drawn.swing), *scene)
+        others = (_avatar(name) for name in dict.fromkeys(drawn.others) if name != drawn.avatar)
+        return (_avatar(drawn.avatar), SwingFile(drawn.swing), *scene, *others)
 
     def run(self) -> Row | str:
         """Walk and judge."""
@@ -90,15 +98,19 @@ class WalkTask:
             setting = setting_of(drawn)
         except NoCourseError:
             return "the seed gives no course for this body"
-        steps = list(steps_of(self.spec, drawn, setting))
-        frames = [frame for _, frame in steps]
-        q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
-        verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), setting.humanoid, setting.scene)
-        if not verdict.clean or verdict.itself.touching:
-            bodies = [verdict.capsules, verdict.itself, *([] if verdict.mesh is None else [verdict.mesh])]
-            deepest = max(body.deepest for body in bodies)
-            return f"touches in {max(body.touching for body in bodies)} poses, {1e3 * deepest:.1f} mm deep"
-        return row_of(self.number, drawn, self.spec.fps, setting.humanoid, setting.scene, steps)
+        controller = controller_of(self.spec, drawn, setting)
+        try:
+            company = company_on(drawn, setting, controller)
+        except NoRoomError as error:
+            return str(error)
+        steps = list(steps_of(self.spec, drawn, setting, controller, company))
+        walkers = [_shown(setting.humanoid, [frame for _, frame in steps])]
+        walkers += [_shown(one.humanoid, one.frames) for one in company.companions]
+        fault = _fault(walkers, setting.scene)
+        if fault is not None:
+            return fault
+        row = row_of(self.number, drawn, self.spec.fps, setting.humanoid, setting.scene, steps)
+        return row | others_in(company, drawn.others, self.spec.fps)
 
 
 def setting_of(drawn: Draw) -> Setting:
@@ -124,18 +136,48 @@ def controller_of(spec: DatasetSpec, drawn: Draw, setting: Setting) -> Controlle
 
 
 def steps_of(
-    spec: DatasetSpec, drawn: Draw, setting: Setting, controller: Controller | None = None
+    spec: DatasetSpec, drawn: Draw, setting: Setting, controller: Controller, company: Company
 ) -> Iterator[tuple[Command, Frame]]:
     """The walk, 60 frames a second: until the finish, or its time is over; a tour goes on past the finish."""
-    controller = controller_of(spec, drawn, setting) if controller is None else controller
     hand = HANDS[drawn.steering](setting.way, controller, np.random.default_rng([drawn.seed, 1]))
     frame = None
     for number in range(round(spec.seconds / DT)):
         command = hand(number * DT, controller.root, frame is not None and frame.stuck)
+        company.tell()
         frame = controller.step(command, DT)
+        company.step(number * DT)
         yield command, frame
         if drawn.steering != TOUR and setting.scene.finished(controller.root):
             return
+
+
+def company_on(drawn: Draw, setting: Setting, controller: Controller) -> Company:
+    """Those who walk about the walker; raises `NoRoomError`."""
+    humanoids = [opened(_avatar(name)) for name in drawn.others]
+    return company_of(controller, humanoids, setting.scene, drawn.seed)
+
+
+def _shown(humanoid: Humanoid, frames: Sequence[Frame]) -> Walker:
+    q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
+    return Walker(humanoid, ShownMotion.at_rate(q, roots, 1.0 / DT))
+
+
+def _fault(walkers: Sequence[Walker], scene: Scene) -> str | None:
+    """What the judge finds wrong with a walk: something touches the place, itself, or the walker one of the others."""
+    for one in walkers:
+        verdict = judge(one.motion, one.humanoid, scene)
+        if not verdict.clean or verdict.itself.touching:
+            bodies = [verdict.capsules, verdict.itself, *([] if verdict.mesh is None else [verdict.mesh])]
+            return _touches(max(body.touching for body in bodies), max(body.deepest for body in bodies))
+    for one, other in combinations(walkers, 2):
+        apart = judge_apart(one, other)
+        if apart.touching:
+            return _touches(apart.touching, apart.deepest)
+    return None
+
+
+def _touches(poses: int, deepest: float) -> str:
+    return f"touches in {poses} poses, {1e3 * deepest:.1f} mm deep"
 
 
 def _avatar(name: str) -> AvatarFile:
