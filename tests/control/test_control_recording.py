@@ -23,7 +23,9 @@ from elbowroom.control.recording import MAGIC, STEP, STEPS_PER_CHUNK, Recorder, 
 from elbowroom.control.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
+from place_builder import TWO_ROOMS, write_place
 
 HUMANOID = proportional_humanoid(1.72)
 STEPS = 150
@@ -296,6 +298,21 @@ def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> Non
 
 def test_the_step_record_is_fixed() -> None:
     assert STEP.itemsize == 522
+
+
+def test_a_walk_in_a_place_with_steps_replays_without_its_file(tmp_path: Path) -> None:
+    place = write_place(tmp_path / "rooms.glb", {**TWO_ROOMS, "Podium": ((0, 0.08, 6.5), (4.0, 0.16, 2.0))})
+    scene = Scene.load(place, PlaceOptions(drop=("Door_*",)))
+    assert not scene.ground.plain
+    controller, path = Controller(HUMANOID, scene, seed=3), tmp_path / "rooms.elbow"
+    with Recorder(path, controller) as recorder:
+        for _ in range(60):
+            recorder.append(Command(forward=1.0), 1 / 60, controller.step(Command(forward=1.0), 1 / 60))
+    place.unlink()
+    assert replay(Recording(path), HUMANOID).identical
+    start = scene.start._replace(x=-2.1)  # in the wall
+    with pytest.raises(InputError, match="stands in the obstacle 'Wall_west"):
+        Scene.from_dict({**scene.to_dict(), "start": {"position": [start.x, start.z]}})
 
 
 def test_an_old_recording_may_be_replaced(run: tuple[Path, object], tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.reading import read_place
 from elbowroom.world.places.scene_place import with_more
+from elbowroom.world.scene import Scene
 from place_builder import TWO_ROOMS, Boxes, write_place
 from shared_data import SHARED, needs_shared
 
@@ -103,6 +104,17 @@ def test_on_the_command_line_courses_are_walked_judged_and_told(tmp_path: Path) 
     again = CliRunner().invoke(app, [*arguments, "--out", str(tmp_path / "out")])
     assert "flat.glb with 8 pieces of furniture" in again.stdout
     assert CliRunner().invoke(app, [*arguments, "--shapes"]).exit_code == 2
+
+
+def test_a_course_is_a_scene_that_stands_for_itself(maker: PlaceCourseMaker, tmp_path: Path) -> None:
+    file = write_place(tmp_path / "flat.glb", FURNISHED)
+    arguments = ["gauntlet", "--place", str(file), "--drop", "Door_*", "--pieces", "6", "--seed", "2", "-q", "--save"]
+    outcome = CliRunner().invoke(app, [*arguments, "1", str(tmp_path / "course.json")])
+    assert outcome.exit_code == 0, outcome.output
+    file.unlink()
+    saved, wanted = Scene.load(tmp_path / "course.json"), maker.course(3).scene
+    assert saved.to_dict() == wanted.to_dict()
+    assert saved.obstacles.names == wanted.obstacles.names
 
 
 @needs_shared

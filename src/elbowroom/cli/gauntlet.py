@@ -21,11 +21,11 @@ from elbowroom.planning.names import DEFAULT_PLANNER
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.avatar_reference import AvatarReference
-    from elbowroom.experiment.gauntlet.course import Course
     from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
     from elbowroom.experiment.gauntlet.runner import GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialResult
+    from elbowroom.world.scene import Scene
 
 EXAMPLES = (
     "Examples:  elbowroom gauntlet --level 3 --courses 50  |  elbowroom gauntlet --level 5 --show 2  |  "
@@ -81,8 +81,7 @@ def gauntlet(
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
     check_cluster(cluster)
-    of_levels = {"--shapes": shapes, "--save": save is not None, "--show": show is not None}
-    furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), of_levels)
+    furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
     from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
     from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
@@ -93,11 +92,11 @@ def gauntlet(
     of_level = GauntletSettings(level, courses, seed, trial, judge, shapes=shapes)
     of_place = None if furnished is None else PlaceGauntletSettings(furnished, courses, seed, trial, judge)
     compile_first(quiet=quiet)
-    if save is not None:
-        return _save(_course(of_level, walker, save[0], quiet), save[1])
-    if show is not None:
-        return _show(_course(of_level, walker, show, quiet), of_level, walker)
     settings: GauntletSettings | PlaceGauntletSettings = replace(of_place or of_level, avatar=walker.reference())
+    if save is not None:
+        return _save(_course(settings, walker, save[0], quiet), save[1])
+    if show is not None:
+        return _show(_course(settings, walker, show, quiet), settings, walker)
     with chosen_workers(cluster, jobs, courses) as workers, time_left_bar("Courses", quiet) as move:
         (results, without), processes = run_gauntlet(settings, workers, out, move), workers.at_once
     if not results:
@@ -165,20 +164,30 @@ class _Walker(NamedTuple):
         return AvatarReference.of(self.load()) if any(option for option in self) else None
 
 
-def _course(settings: "GauntletSettings", walker: _Walker, k: int, quiet: bool) -> "Course":
+def _course(settings: "GauntletSettings | PlaceGauntletSettings", walker: _Walker, k: int, quiet: bool) -> "Scene":
+    """Course `k` as a scene."""
     from elbowroom.experiment.gauntlet.course import CourseMaker
+    from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
+    from elbowroom.experiment.gauntlet.runner import GauntletSettings
     from elbowroom.experiment.gauntlet.shapes import in_shapes
 
     if k < 0:
         raise InputError(f"course {k}: courses are counted from 0")
     with progress_bar("Making the course", None, quiet):
+        if not isinstance(settings, GauntletSettings):
+            place = settings.place
+            return (
+                PlaceCourseMaker.open(walker.load(), place.path, place.options, place.pieces)
+                .course(settings.seed + k)
+                .scene
+            )
         course = CourseMaker.of(walker.load()).course(settings.level, settings.seed + k)
-        return in_shapes(course) if settings.shapes else course
+        return (in_shapes(course) if settings.shapes else course).scene
 
 
-def _save(course: "Course", path: Path) -> None:
-    _write(path, json_text(course.scene.to_dict()) + "\n")
-    print(f"{path}: {course.scene.title}")
+def _save(course: "Scene", path: Path) -> None:
+    _write(path, json_text(course.to_dict()) + "\n")
+    print(f"{path}: {course.title}")
 
 
 def _write(path: Path, text: str) -> None:
@@ -188,12 +197,12 @@ def _write(path: Path, text: str) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 
 
-def _show(course: "Course", settings: "GauntletSettings", walker: _Walker) -> None:
+def _show(course: "Scene", settings: "GauntletSettings | PlaceGauntletSettings", walker: _Walker) -> None:
     from elbowroom.cli.play import play
 
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"{course.name}.json"
-        _write(path, json_text(course.scene.to_dict()))
+        _write(path, json_text(course.to_dict()))
         play(
             host="127.0.0.1",
             port=8765,

@@ -1,7 +1,6 @@
 """What `elbowroom gauntlet` is told about a place whose furniture is moved."""
 
 import hashlib
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,12 +23,9 @@ _PIECES = 8
 
 
 def chosen_place(
-    place: Path | None, pieces: int | None, options: "PlaceOptions", of_levels: Mapping[str, bool]
+    place: Path | None, pieces: int | None, options: "PlaceOptions", *, shapes: bool
 ) -> "FurnishedPlace | None":
-    """The place that is told of, None for courses of a level; raises `InputError` for what does not go together.
-
-    `of_levels` are the options that only those have, and whether they are given.
-    """
+    """The place that is told of, None for courses of a level; raises `InputError` for what does not go together."""
     from elbowroom.world.places.options import PlaceOptions
 
     if place is None:
@@ -38,8 +34,8 @@ def chosen_place(
                 "--pieces, --scale, --up, --ground, --drop and --passable are for the place of --place FILE"
             )
         return None
-    if given := [name for name, is_given in of_levels.items() if is_given]:
-        raise InputError(f"{given[0]} is for courses of a level, not for those of --place {place}: leave one out")
+    if shapes:
+        raise InputError(f"--shapes is for courses of a level, not for those of --place {place}: leave one out")
     from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace
     from elbowroom.formats.models.kinds import kind_by_name
 

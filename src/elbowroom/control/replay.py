@@ -89,8 +89,12 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
 
 
 def _same(step: Any, frame: Frame, known: int) -> bool:
-    """Whether a frame is the recorded one, in as many numbers of the root as are `known`: older ones had fewer."""
-    same_root = step["root"][:known].tobytes() == frame.root[:known].tobytes()
+    """Whether a frame is the recorded one, in as many numbers of the root as are `known`: older ones had fewer.
+
+    Those that a frame lacks, as on uneven ground, are recorded as 0.
+    """
+    shown = frame.root[:known]
+    same_root = step["root"][:known].tobytes() == np.pad(shown, (0, known - len(shown))).tobytes()
     same_pose = step["q"].tobytes() == frame.q.tobytes() and same_root
     return bool(same_pose and _PHASES.index(frame.phase) == step["phase"])
 

@@ -24,7 +24,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Hull, Shape
 from elbowroom.world.place_format import read_place_field, write_place
 from elbowroom.world.places.scene_place import with_more
-from elbowroom.world.scene import Gate, Scene
+from elbowroom.world.scene import Gate, Scene, on_ground
 from elbowroom.world.shape_format import FIELDS, MOST_POINTS_TOGETHER, read_shape, type_of, write_shape
 from elbowroom.world.stops import read_tour, write_tour
 
@@ -198,12 +198,16 @@ def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
 
 
 def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
-    x, z = scene.start.x, scene.start.z
+    """What is no higher than a step is stood on where the ground is not plain."""
+    x, z, ground = scene.start.x, scene.start.z, scene.ground
+    height = on_ground(scene, scene.start).height
+    bottom = height + (_STANCE_LOW if ground.plain else ground.step + 2.0 * _STANCE_RADIUS)
+    top = height + _STANCE_HIGH
     least, most = scene.obstacles.bounds_at(0.0)
-    low, high = np.array([x, _STANCE_LOW, z]) - _STANCE_RADIUS, np.array([x, _STANCE_HIGH, z]) + _STANCE_RADIUS
+    low, high = np.array([x, bottom, z]) - _STANCE_RADIUS, np.array([x, top, z]) + _STANCE_RADIUS
     if not np.any(np.all((least <= high) & (most >= low), axis=1)):
         return  # told without a kernel, which may have to be compiled
-    legs = np.array([[0.0, _STANCE_LOW, 0.0, 0.0, _STANCE_HIGH, 0.0]])
+    legs = np.array([[0.0, bottom, 0.0, 0.0, top, 0.0]])
     found = scene.obstacles.nearest(legs, [_STANCE_RADIUS], (x, z), 0.0)
     if found is not None and found.distance < 0.0:
         name = scene.obstacles.names[found.obstacle]

@@ -23,6 +23,7 @@ from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place
 from elbowroom.world.ground.making import walked_over
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Mesh, Shape
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.place_scene import place_scene
 from elbowroom.world.places.reading import read_place
@@ -164,15 +165,18 @@ class PlaceCourseMaker:
         return True
 
     def _built(self, seed: int, corners: Floats, placed: list[tuple[Piece, Floats, float]]) -> PlaceCourse:
+        placed = sorted(placed, key=lambda one: not isinstance(one[0].shape, Mesh))  # the place's own first
         centers = np.array([[at[0], piece.height, at[1]] for piece, at, _ in placed])
-        turns = np.array([quaternion.about_axis(1, turn) for _, _, turn in placed])
+        own = np.array([isinstance(piece.shape, Mesh) for piece, _, _ in placed])
+        turned = np.array([quaternion.about_axis(1, turn) for _, _, turn in placed])
+        shapes = tuple(_turned(piece.shape, turn) for (piece, _, _), turn in zip(placed, turned, strict=True))
+        turns = np.where(own[:, None], [0.0, 0.0, 0.0, 1.0], turned)
         names = tuple(f"{number}: {piece.name}"[:60] for number, (piece, _, _) in enumerate(placed, 1))
-        more = Obstacles(tuple(piece.shape for piece, _, _ in placed), centers, turns, names)
-        fixed, place = self.fixed, self.fixed.place
+        fixed, place, more = self.fixed, self.fixed.place, Obstacles(shapes, centers, turns, names)
         assert place is not None
         heading, last = (math.atan2(*(corners[k + 1] - corners[k])) for k in (0, len(corners) - 2))
         (x, z), (goal_x, goal_z) = corners[0].tolist(), corners[-1].tolist()
-        drawn = b"".join(values.astype("<f8").tobytes() for values in (corners, centers, turns))
+        drawn = b"".join(values.astype("<f8").tobytes() for values in (corners, centers, turned))
         length = float(np.hypot(*np.diff(corners, axis=0).T).sum())
         return PlaceCourse(
             seed=seed,
@@ -183,6 +187,7 @@ class PlaceCourseMaker:
                 start=RootState(x=x, z=z, heading=heading),
                 finish=Gate((goal_x, goal_z), last),
                 obstacles=walked_over(with_more(fixed.obstacles, more), place.floor),
+                place=replace(place, parts=place.parts + int(own.sum())),
             ),
             goal=(goal_x, 0.0, goal_z),
             corners=corners,
@@ -209,6 +214,13 @@ class PlaceCourseMaker:
         if not len(level):
             raise InputError(f"{self.fixed.title}: nobody can walk on its floor from where one begins")
         return level
+
+
+def _turned(shape: Shape, turn: Floats) -> Shape:
+    """A shape; the triangles of what a place has are turned here: its parts stand as they are written down."""
+    if not isinstance(shape, Mesh):
+        return shape
+    return Mesh(quaternion.rotate(turn, shape.vertices).astype(np.float32).astype(np.float64), shape.faces)
 
 
 def _box_row(piece: Piece, middle: Floats, turn: float) -> Floats:
