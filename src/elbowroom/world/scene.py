@@ -145,9 +145,10 @@ class Scene:
 
 def on_ground(scene: Scene, root: RootState) -> RootState:
     """A root state at the height of the ground about it, of that which is nearest to its own height."""
-    ground = scene.ground
-    height = eased_height(ground, (root.x, root.height, root.z), root.x, root.z)
-    return root if ground.plain or not math.isfinite(height) else root._replace(height=height)
+    if scene.ground.plain:
+        return root  # told without a kernel, which may have to be compiled
+    height = eased_height(scene.ground, (root.x, root.height, root.z), root.x, root.z)
+    return root._replace(height=height) if math.isfinite(height) else root
 
 
 def _read(path: Path) -> Any:
