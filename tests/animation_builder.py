@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.formats.packing import write_glb
 from elbowroom.geometry import quaternion
 

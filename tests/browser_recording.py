@@ -4,7 +4,7 @@ from pathlib import Path
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import Recorder
+from elbowroom.control.recordings.recording import Recorder
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 

@@ -14,6 +14,6 @@ settings.load_profile("calm")
 @pytest.fixture(autouse=True, scope="session")
 def _kernels_are_compiled_where_they_are_needed() -> None:
     """Commands that run within the tests' own process start no compilers: a test uses few of the kernels."""
-    from elbowroom.server import kernel_cache
+    from elbowroom.server.kernels import kernel_cache
 
     kernel_cache.is_warm = lambda: True

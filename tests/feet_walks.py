@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.footholds import UNKNOWN, beside, onward
-from elbowroom.body.gait import phase_rate
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.living import Body, body_of, living
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
+from elbowroom.body.gait.living import Body, body_of, living
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 
 Floats = NDArray[np.float64]

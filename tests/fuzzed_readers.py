@@ -45,7 +45,7 @@ GZIP = Container(lambda data: [gzip.decompress(data)], lambda parts: gzip.compre
 def glb_reader() -> Reader:
     """GLB and VRM humanoids."""
     from avatar_builder import MIXAMO, Recipe, build
-    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 
     recipes = (Recipe(vrm="1", points=2, spin=True), Recipe(vrm="0", points=2), Recipe(names=MIXAMO, points=2))
     words: tuple[bytes, ...] = (
@@ -67,7 +67,7 @@ def compressed_reader() -> Reader:
     from avatar_builder import Recipe, build
     from compressed_builder import draco_file
     from compressed_vrm import with_meshopt
-    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.body.loading.avatar_file import load_humanoid_bytes
     from elbowroom.formats.meshopt.index_codec import decode_sequence, decode_triangles
 
     words = (
@@ -202,7 +202,7 @@ def hanim_motion_reader() -> Reader:
 
 def hanim_reader(encoding: str, words: tuple[bytes, ...]) -> Reader:
     """H-Anim humanoids in one of the encodings of X3D."""
-    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.body.loading.avatar_file import load_humanoid_bytes
     from hanim_builder import SOLIDS, HanimRecipe, build_hanim
 
     version = "1.1" if encoding == "vrml" else "2.0"
@@ -266,7 +266,7 @@ def vrml_reader() -> Reader:
 
 def packed_reader() -> Reader:
     """The three packed with gzip."""
-    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.body.loading.avatar_file import load_humanoid_bytes
     from hanim_builder import HanimRecipe, build_hanim
 
     encodings = ("xml", "classic", "vrml")
@@ -291,8 +291,8 @@ def scene_reader() -> Reader:
 
 def message_reader() -> Reader:
     """What a client sends over a live session."""
-    from elbowroom.server.codec import decode_client, encode
     from elbowroom.server.schema.commands import ClockMessage, Configure, Input, Overlays, Ping
+    from elbowroom.server.wire.codec import decode_client, encode
 
     configure, clock = Configure("a", queue_size=5), ClockMessage(steps=2)
     messages = (Input(3, 1.0, direction=0.5), configure, clock, Overlays(), Ping(1.0))
@@ -303,9 +303,9 @@ def message_reader() -> Reader:
 
 def recording_reader() -> Reader:
     """Recordings, to their last step."""
-    from elbowroom.body.proportions import proportional_humanoid
+    from elbowroom.body.fitting.proportions import proportional_humanoid
     from elbowroom.control.controller import Controller
-    from elbowroom.control.recording import Recorder, Recording, RecordingHeader
+    from elbowroom.control.recordings.recording import Recorder, Recording, RecordingHeader
     from elbowroom.planning.command import Command
     from elbowroom.world.scene import Scene
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, limits
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.control.recording import ASSIST, MAGIC, STEP
+from elbowroom.control.recordings.recording import ASSIST, MAGIC, STEP
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Gate, Scene
 

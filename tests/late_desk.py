@@ -1,7 +1,7 @@
 """A desk whose answers come some turns late, always the same: slow planning without a clock."""
 
-from elbowroom.control.desk import Job
-from elbowroom.control.wayfinder import Answer
+from elbowroom.control.plans.desk import Job
+from elbowroom.control.plans.wayfinder import Answer
 
 
 class LateDesk:

@@ -8,13 +8,13 @@ from typing import Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 
-from elbowroom.server.codec import decode_server, encode
-from elbowroom.server.library import Library
-from elbowroom.server.messages import ClientMessage, ServerMessage
-from elbowroom.server.pose_frame import PoseFrame, parse
 from elbowroom.server.schema.commands import Input, Ping
 from elbowroom.server.schema.progress import Notice, Pong
 from elbowroom.server.serving import listen, make_server, url_of
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.codec import decode_server, encode
+from elbowroom.server.wire.messages import ClientMessage, ServerMessage
+from elbowroom.server.wire.pose_frame import PoseFrame, parse
 
 LONG = 120.0  # seconds: only a hang lasts longer
 

@@ -12,7 +12,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.key_frame_queue import KeyFrames
-from elbowroom.control.recording import Recorder, Recording
+from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from bvh_builder import BONES
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, hips_position, local_rotations
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.root import RootState
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry import quaternion

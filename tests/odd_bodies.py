@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.proportions import proportional_skeleton
+from elbowroom.body.fitting.proportions import proportional_skeleton
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

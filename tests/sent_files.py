@@ -4,9 +4,9 @@ import secrets
 from pathlib import Path
 
 from elbowroom.server.apart.jobs import read_upload
-from elbowroom.server.avatar_store import AvatarStore, StoredAvatar
-from elbowroom.server.clip_store import ClipStore, SentMotions, StoredClip
-from elbowroom.server.page_key import Sender
+from elbowroom.server.entrance.page_key import Sender
+from elbowroom.server.stores.avatar_store import AvatarStore, StoredAvatar
+from elbowroom.server.stores.clip_store import ClipStore, SentMotions, StoredClip
 
 NOBODY = Sender()
 

@@ -100,7 +100,7 @@ def test_fast_and_exact_mathematics_are_told_apart() -> None:
 def test_who_can_keep_no_kernels_hears_it_once(told_before: bool, warnings: int) -> None:
     code = (
         "import elbowroom.kernel_cache as kept; kept._is_writable = lambda folder: False; "
-        "import elbowroom.body.gait, elbowroom.body.posing"
+        "import elbowroom.body.gait.cycle, elbowroom.body.pose.posing"
     )
     environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     if told_before:

@@ -37,7 +37,7 @@ def test_the_first_picture_of_the_readme_moves() -> None:
 
 def test_one_command_makes_them_all() -> None:
     tools = "".join(path.read_text("utf-8") for path in (ROOT / "tools").glob("make_*.py"))
-    plots = (ROOT / "src" / "elbowroom" / "cli" / "bench_plan.py").read_text("utf-8")
+    plots = (ROOT / "src" / "elbowroom" / "cli" / "bench" / "plan.py").read_text("utf-8")
     recipe = (ROOT / "Makefile").read_text("utf-8").split("\npictures:")[1].split("\n\n")[0]
     for tool in (ROOT / "tools").glob("make_*pictures.py"):
         assert tool.name in recipe

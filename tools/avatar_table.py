@@ -8,7 +8,7 @@ import argparse
 from collections import Counter
 from pathlib import Path
 
-from elbowroom.body.inspection import inspect_avatar
+from elbowroom.body.loading.inspection import inspect_avatar
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
 from elbowroom.planning.names import DEFAULT_PLANNER

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.report.svg import tag
 from elbowroom.planning.command import Command

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from elbowroom.body.root import RootState as RootState
     from elbowroom.clips.clip import Clip as Clip
     from elbowroom.clips.clip import motions_of as motions_of
-    from elbowroom.control.body_check import BodyCheck as BodyCheck
     from elbowroom.control.controller import Controller as Controller
     from elbowroom.control.frame import Frame as Frame
     from elbowroom.control.frame import Phase as Phase
-    from elbowroom.control.lookahead import Lookahead as Lookahead
-    from elbowroom.control.recording import Recorder as Recorder
+    from elbowroom.control.plans.lookahead import Lookahead as Lookahead
+    from elbowroom.control.recordings.recording import Recorder as Recorder
+    from elbowroom.control.shown.body_check import BodyCheck as BodyCheck
     from elbowroom.errors import InputError as InputError
     from elbowroom.planning.command import Command as Command
     from elbowroom.planning.goal import natural_walk as natural_walk
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from elbowroom.planning.result import LocalPlan as LocalPlan
     from elbowroom.planning.result import PlanStatus as PlanStatus
     from elbowroom.planning.root.path import RootPath as RootPath
-    from elbowroom.server.notebook import show as show
+    from elbowroom.server.standalone.notebook import show as show
     from elbowroom.world.places.options import PlaceOptions as PlaceOptions
     from elbowroom.world.scene import Gate as Gate
     from elbowroom.world.scene import Scene as Scene
@@ -36,7 +36,7 @@ __version__ = "0.1.0"
 
 # Where each public name lives; it is imported when it is first asked for, so that `import elbowroom` costs nothing.
 _HOMES = {
-    "BodyCheck": "control.body_check",
+    "BodyCheck": "control.shown.body_check",
     "Clip": "clips.clip",
     "Command": "planning.command",
     "Controller": "control.controller",
@@ -45,19 +45,19 @@ _HOMES = {
     "Humanoid": "body.humanoid",
     "InputError": "errors",
     "LocalPlan": "planning.result",
-    "Lookahead": "control.lookahead",
+    "Lookahead": "control.plans.lookahead",
     "Phase": "control.frame",
     "PlaceOptions": "world.places.options",
     "PlanStatus": "planning.result",
     "Planner": "planning.planner",
-    "Recorder": "control.recording",
+    "Recorder": "control.recordings.recording",
     "RootPath": "planning.root.path",
     "RootState": "body.root",
     "Scene": "world.scene",
     "motions_of": "clips.clip",
     "natural_walk": "planning.goal",
     "register_planner": "planning.planner",
-    "show": "server.notebook",
+    "show": "server.standalone.notebook",
 }
 
 

@@ -14,9 +14,9 @@ from elbowroom.body.bone_mapping.override import override_nodes, parse_override
 from elbowroom.body.bone_mapping.spelling import simplified
 from elbowroom.body.bones import REQUIRED
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
-from elbowroom.body.size import crown_of
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading.settings import LoadSettings
+from elbowroom.body.loading.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
 from odd_bodies import SKELETON

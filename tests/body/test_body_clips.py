@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import connected_components
 
-from elbowroom.body.clip import MotionClip
-from elbowroom.body.clip_data import parse_clips
+from elbowroom.body.clips.clip import MotionClip
+from elbowroom.body.clips.clip_data import parse_clips
+from elbowroom.body.clips.stock_clips import arm_swing, arm_swing_goal, stock_clips
 from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, clamp
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.stock_clips import arm_swing, arm_swing_goal, stock_clips
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.errors import InputError
 from naive_pose import segment_gap
 

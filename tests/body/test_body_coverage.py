@@ -8,13 +8,13 @@ import pytest
 from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
-from elbowroom.body.coverage import WANTED
-from elbowroom.body.hands import relaxed_rotations
+from elbowroom.body.fitting.coverage import WANTED
+from elbowroom.body.fitting.slim_capsule import distances
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.inspection import facts_of, inspect_avatar
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
-from elbowroom.body.slim_capsule import distances
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading.inspection import facts_of, inspect_avatar
+from elbowroom.body.loading.settings import LoadSettings
+from elbowroom.body.pose.hands import relaxed_rotations
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.poses import Posed, Poser

@@ -1,9 +1,9 @@
 import numpy as np
 
-from elbowroom.body.body_parts import BodyPoints, part_of_points
-from elbowroom.body.coverage import coverage
-from elbowroom.body.fitting import fit_capsules
-from elbowroom.body.proportions import proportional_capsules, proportional_skeleton
+from elbowroom.body.fitting.body_parts import BodyPoints, part_of_points
+from elbowroom.body.fitting.coverage import coverage
+from elbowroom.body.fitting.fit import fit_capsules
+from elbowroom.body.fitting.proportions import proportional_capsules, proportional_skeleton
 
 SKELETON = proportional_skeleton(1.7)
 

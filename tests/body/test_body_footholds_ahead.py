@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
-from elbowroom.body.footholds import UNKNOWN, beside, onward
-from elbowroom.body.footholds_ahead import steps_ahead
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
+from elbowroom.body.gait.footholds_ahead import steps_ahead
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
-from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.world.scene import Scene
 
 HUMANOID = Humanoid.default()

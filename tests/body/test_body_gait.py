@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body import kinematics
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
-from elbowroom.body.gait import (
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.cycle import (
     STANDARD_LEG,
     feet_standing,
     foot_poses,
@@ -13,9 +13,9 @@ from elbowroom.body.gait import (
     quickness,
     stride_length,
 )
-from elbowroom.body.kinematics import BodyModel, body_model
-from elbowroom.body.legs import leg_rotations
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.pose import kinematics
+from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.geometry import quaternion
 from naive_pose import joint_frames, segment_gap
 

@@ -18,8 +18,8 @@ from elbowroom.body.dof import (
     limits,
     side_by_side,
 )
-from elbowroom.body.kinematics import body_model, group_capsules, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, group_capsules, posture_capsules
 
 
 def test_the_groups_are_a_tree_and_each_is_searched_after_what_it_depends_on() -> None:

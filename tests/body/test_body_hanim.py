@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from elbowroom.body.bones import REQUIRED
-from elbowroom.body.hanim_names import BY_DEF, BY_NAME
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
+from elbowroom.body.loading.hanim_names import BY_DEF, BY_NAME
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body import kinematics
 from elbowroom.body.bones import PARENTS
 from elbowroom.body.dof import CHILDREN, DOF, LOCAL, LOCAL_GROUPS, DofGroup, followed, limits
+from elbowroom.body.fitting.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model
-from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
+from elbowroom.body.pose import kinematics
+from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.geometry import quaternion
 from naive_pose import arm_rotations, capsule_ends, chest_rotation, joint_frames, required_only, same_rotation

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.carriage import ASIDE, CHEST_BEND, CHEST_TURN, HEAD_TURN, LIST, POSING, TURN
 from elbowroom.body.dof import DOF
-from elbowroom.body.footholds import UNKNOWN
-from elbowroom.body.kinematics import body_model, hips_position, posture_capsules
-from elbowroom.body.living import SHARE, lively, living
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.carriage import ASIDE, CHEST_BEND, CHEST_TURN, HEAD_TURN, LIST, POSING, TURN
+from elbowroom.body.gait.footholds import UNKNOWN
+from elbowroom.body.gait.living import SHARE, lively, living
+from elbowroom.body.pose.kinematics import body_model, hips_position, posture_capsules
 from elbowroom.body.root import CARRIAGE, WITH_FEET
 from feet_walks import BODY, DT, WANTED, Velocities, alive, path, random_wish, walked
 

@@ -8,9 +8,9 @@ import pytest
 
 from avatar_builder import MIXAMO, UNREAL, Recipe, build, json_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
-from elbowroom.body.size import crown_of
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading.settings import LoadSettings
+from elbowroom.body.loading.size import crown_of
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
 from hanim_builder import HanimRecipe, build_hanim

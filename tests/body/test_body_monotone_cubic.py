@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
-from elbowroom.body.monotone_cubic import MonotoneCubic
+from elbowroom.body.clips.monotone_cubic import MonotoneCubic
 
 
 def keys(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:

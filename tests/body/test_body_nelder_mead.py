@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from elbowroom.body.nelder_mead import Ends, Held, least_volume, volume
+from elbowroom.body.fitting.nelder_mead import Ends, Held, least_volume, volume
 
 SIZE, SPREAD = 1e-4, 1e-8
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from avatar_builder import Recipe, build
-from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
-from elbowroom.body.permissions import Permissions, Use, of_vrm_0, of_vrm_1
+from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
+from elbowroom.body.loading.permissions import Permissions, Use, of_vrm_0, of_vrm_1
 from shared_data import SHARED, needs_shared
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup, clamp, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, local_rotations
-from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
+from elbowroom.body.pose.kinematics import body_model, local_rotations
+from elbowroom.body.pose.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.geometry import quaternion
 
 SIDES = {DofGroup.LEFT_ARM: "left", DofGroup.RIGHT_ARM: "right"}

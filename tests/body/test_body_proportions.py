@@ -3,7 +3,12 @@ import pytest
 
 from elbowroom.body.bones import REQUIRED
 from elbowroom.body.dof import DOF, LOCAL_GROUPS, MAX_ELEVATION, DofGroup, clamp, limits, within_limits
-from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton, stature
+from elbowroom.body.fitting.proportions import (
+    proportional_capsules,
+    proportional_humanoid,
+    proportional_skeleton,
+    stature,
+)
 from naive_pose import required_only
 
 LEGS = ["pelvis", "leftThigh", "rightThigh", "leftShin", "rightShin", "leftFoot", "rightFoot"]

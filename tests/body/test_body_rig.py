@@ -5,7 +5,7 @@ import pytest
 
 from avatar_builder import MIXAMO, UNREAL, Floats, Recipe, build, json_of, normalised_fk, slow_world
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.geometry import quaternion
 from odd_bodies import SKELETON
 from shared_data import SHARED, needs_shared

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from hatchling.builders.wheel import WheelBuilder
 
-from elbowroom.body import loading
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.coverage import coverage
-from elbowroom.body.fitting import Fit, fit_capsules
+from elbowroom.body.fitting.coverage import coverage
+from elbowroom.body.fitting.fit import Fit, fit_capsules
+from elbowroom.body.fitting.stock_fit import fit_document, fit_of, stock_fit
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading import avatar_file as loading
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes, load_with_surface
+from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.body.stock import stock_avatar_path, stock_fit_path
-from elbowroom.body.stock_fit import fit_document, fit_of, stock_fit
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -10,7 +10,7 @@ import pytest
 from animation_builder import animated_glb
 from avatar_builder import MIXAMO, Recipe, build
 from bvh_builder import BvhRecipe, random_motion, write_bvh
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.clips.files import parse_motion
 from elbowroom.clips.retarget import retarget
 from elbowroom.formats.animations import read_animations, take_of

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from avatar_builder import Recipe, build, json_of
-from elbowroom.body.hanim_names import hanim_name
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
+from elbowroom.body.loading.hanim_names import hanim_name
 from elbowroom.export.animation import Animation
 from elbowroom.export.layout import RootMotion
 from elbowroom.export.writers import FORMATS, Wishes

@@ -8,7 +8,7 @@ import pytest
 import elbowroom
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import MAGIC, Recorder
+from elbowroom.control.recordings.recording import MAGIC, Recorder
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from live_page import LivePage

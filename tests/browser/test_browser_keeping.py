@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from elbowroom.control.recording import Recording
+from elbowroom.control.recordings.recording import Recording
 from live_page import LivePage
 
 Open = Callable[..., LivePage]

@@ -8,7 +8,7 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import Recorder
+from elbowroom.control.recordings.recording import Recorder
 from elbowroom.formats.bvh import parse_bvh
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene

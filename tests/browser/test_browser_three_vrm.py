@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.geometry import quaternion
-from elbowroom.server.pose import Poser
+from elbowroom.server.wire.pose import Poser
 from shared_data import SHARED
 from three_judge import ThreeJudge
 

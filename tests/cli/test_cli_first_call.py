@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-from elbowroom.cli import first_run
-from elbowroom.server import compiling, kernel_cache
-from elbowroom.server.warmup import Report
+from elbowroom.cli.telling import first_run
+from elbowroom.server.kernels import compiling, kernel_cache
+from elbowroom.server.kernels.warmup import Report
 
 _CALL = """
 import sys

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from elbowroom.cli import doctor, load
-from elbowroom.cli.load import Load, load_faults, measure_load
+from elbowroom.cli.doctor import doctor, load
+from elbowroom.cli.doctor.load import Load, load_faults, measure_load
 from elbowroom.errors import InputError
-from elbowroom.server import admission
-from elbowroom.server.library import Library
+from elbowroom.server.entrance import admission
+from elbowroom.server.stores.library import Library
 from live_session import running
 
 GOOD = Load(16, 16, 10.0, 58.0, 99.5, 99.0, 25.0, 12.0, 60.0, 130.0, 99.2, 150.0, 9.0, 7.0, 20.0)

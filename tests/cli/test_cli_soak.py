@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from elbowroom.cli import doctor
-from elbowroom.cli.soak import Soak, slope_of
+from elbowroom.cli.doctor import doctor
+from elbowroom.cli.doctor.soak import Soak, slope_of
 
 HOURS = np.linspace(0.0, 2.0, 300)
 

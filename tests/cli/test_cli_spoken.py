@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import elbowroom.cli
-from elbowroom.cli.chinese import CHINESE
-from elbowroom.cli.spoken import said
+from elbowroom.cli.telling.chinese import CHINESE
+from elbowroom.cli.telling.spoken import said
 
 SOURCES = sorted(Path(elbowroom.cli.__file__).parent.glob("*.py"))
 

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from elbowroom.cli.main import app
-from elbowroom.server import kernel_cache
+from elbowroom.server.kernels import kernel_cache
 
 RUNNER = CliRunner()
 RECORDING = [["verify"], ["replay"], ["export", "-o", "run.bvh"], ["film", "-o", "run.mp4"]]

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import RecordingHeader
+from elbowroom.control.recordings.recording import RecordingHeader
 from judged_bodies import T_POSE, gliding, scene_with, upright, write_recording
 
 RUNNER = CliRunner()

@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 from elbowroom.cli import walk
 from elbowroom.cli.main import app
-from elbowroom.control import recording
-from elbowroom.control import replay as replays
+from elbowroom.control.recordings import recording
+from elbowroom.control.recordings import replay as replays
 from elbowroom.experiment.crossing import CrossingResult
 
 RUNNER = CliRunner()

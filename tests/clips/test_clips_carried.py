@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.carriage import AHEAD, ASIDE, CHEST_BEND, CHEST_LIST, CHEST_TURN, LIST, POSING, TURN
 from elbowroom.body.dof import LOCAL
-from elbowroom.body.living import body_of
-from elbowroom.body.own_stride import PUBLISHED
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.carriage import AHEAD, ASIDE, CHEST_BEND, CHEST_LIST, CHEST_TURN, LIST, POSING, TURN
+from elbowroom.body.gait.living import body_of
+from elbowroom.body.gait.own_stride import PUBLISHED
 from elbowroom.body.root import WITH_FEET
 from elbowroom.clips.clip import Clip, motions_of
 from elbowroom.clips.motion_set import MotionSet

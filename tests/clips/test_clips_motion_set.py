@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
+from elbowroom.body.clips.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.body.dof import ARMS, LOCAL_GROUPS, DofGroup, clamp, columns_of, followed, side_by_side
-from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.clips.dodge import dodge_clips
 from elbowroom.clips.files import parse_motion
 from elbowroom.clips.motion_set import STOCK, MotionSet

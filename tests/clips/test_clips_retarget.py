@@ -8,9 +8,9 @@ import pytest
 from animation_builder import animated_glb, joint_motion
 from avatar_builder import MIXAMO, Recipe, build, normalised_fk
 from bvh_builder import BvhRecipe, random_motion, write_bvh
+from elbowroom.body.fitting.proportions import proportional_skeleton
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
-from elbowroom.body.proportions import proportional_skeleton
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.clips.files import open_motion, parse_motion
 from elbowroom.clips.retarget import retarget
@@ -74,7 +74,7 @@ def test_soles_are_as_high_as_they_were() -> None:
 
 
 def _soles(skeleton: Skeleton) -> np.ndarray:
-    from elbowroom.body.gait import gait_shape
+    from elbowroom.body.gait.cycle import gait_shape
 
     legs = gait_shape(skeleton).legs
     feet = [skeleton.positions[skeleton.index(f"{side}Foot")] for side in ("left", "right")]

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elbowroom.body.carriage import ASIDE, CHEST_BEND, LIST
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.gait.carriage import ASIDE, CHEST_BEND, LIST
+from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.manner import PLAIN, Manner
 from elbowroom.clips.clip import motions_of
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.style import PLAIN_STYLE, STYLES, WALK_SPEED, Style, style_named
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import Recorder, Recording
-from elbowroom.control.replay import replay
+from elbowroom.control.recordings.recording import Recorder, Recording
+from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings

@@ -18,15 +18,15 @@ from prometheus_client import parser
 from websockets.exceptions import ConnectionClosed
 
 from elbowroom.cluster.door import Address, BadRequestError, Door, Head
-from elbowroom.server.door_word import FOR, WORD
-from elbowroom.server.library import Library
-from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.entrance.door_word import FOR, WORD
 from elbowroom.server.schema.commands import Configure
 from elbowroom.server.schema.menus import Settings
 from elbowroom.server.schema.picture import SceneMessage
 from elbowroom.server.schema.progress import Status
 from elbowroom.server.serving import Front, Server, listen, make_server, url_of
-from elbowroom.server.shelf import OwnShelf
+from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.shelf import OwnShelf
+from elbowroom.server.wire.pose_frame import PoseFrame
 from live_session import LONG, client_at, client_of
 
 THE_WORD = "0123456789abcdef"

@@ -17,13 +17,13 @@ from elbowroom.cluster.connection import joined  # noqa: E402
 from elbowroom.cluster.fleet import Fleet, FleetSettings  # noqa: E402
 from elbowroom.cluster.keeper import Keeper  # noqa: E402
 from elbowroom.cluster.replica import Offer  # noqa: E402
-from elbowroom.server.pose_frame import PoseFrame  # noqa: E402
 from elbowroom.server.schema.commands import Configure  # noqa: E402
 from elbowroom.server.schema.menus import Settings  # noqa: E402
 from elbowroom.server.schema.picture import SceneMessage  # noqa: E402
 from elbowroom.server.schema.progress import Status  # noqa: E402
 from elbowroom.server.serving import listen, url_of  # noqa: E402
-from elbowroom.server.walk import WalkSettings  # noqa: E402
+from elbowroom.server.sessions.walk import WalkSettings  # noqa: E402
+from elbowroom.server.wire.pose_frame import PoseFrame  # noqa: E402
 from elbowroom.world.scene import Scene  # noqa: E402
 from live_session import LONG, Client, client_at  # noqa: E402
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from elbowroom.body.dof import ARMS, LOCAL, columns_of, limits
-from elbowroom.body.footholds import beside
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.footholds import beside
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import FOOT, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs

@@ -4,12 +4,12 @@ import coal
 import numpy as np
 import pytest
 
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command

@@ -7,13 +7,13 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
-from elbowroom.body.footholds import settled, standing
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.footholds import settled, standing
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, SHOWN, WITH_FEET
-from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from feet_walks import in_world

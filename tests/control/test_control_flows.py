@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
-from elbowroom.control import planners as module
-from elbowroom.control.canned import canned_walk
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans import planners as module
+from elbowroom.control.plans.canned import canned_walk
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.memory import RootMemory

@@ -9,8 +9,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.journey import Journey, JourneyState
-from elbowroom.control.recording import Recorder, Recording
-from elbowroom.control.replay import replay
+from elbowroom.control.recordings.recording import Recorder, Recording
+from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError

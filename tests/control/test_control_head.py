@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser

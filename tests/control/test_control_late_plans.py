@@ -5,12 +5,12 @@ from functools import partial
 import numpy as np
 import pytest
 
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.desk import Job
-from elbowroom.control.foresight import Foresight, Haste
 from elbowroom.control.frame import Frame
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.desk import Job
+from elbowroom.control.plans.foresight import Foresight, Haste
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.planning.command import Command, changed
 from elbowroom.world.scene import Scene
 from late_desk import LateDesk

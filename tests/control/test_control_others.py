@@ -5,12 +5,12 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
-from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.prediction import slimmer
+from elbowroom.control.others.prediction import slimmer
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.rows import corners_of
 from elbowroom.world.scene import Scene

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
-from elbowroom.control.neighbour import Neighbour, Walker
-from elbowroom.control.passing import expected, way_made
+from elbowroom.control.others.neighbour import Neighbour, Walker
+from elbowroom.control.others.passing import expected, way_made
 from elbowroom.planning.command import Command
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

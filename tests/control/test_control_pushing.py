@@ -8,14 +8,14 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.loose import FASTEST, pushable, scene_without
-from elbowroom.control.recorded_things import told
-from elbowroom.control.recording import Recorder, Recording
-from elbowroom.control.replay import replay
+from elbowroom.control.recordings.recorded_things import told
+from elbowroom.control.recordings.recording import Recorder, Recording
+from elbowroom.control.recordings.replay import replay
+from elbowroom.control.things.loose import FASTEST, pushable, scene_without
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.server.pose_frame import parse
-from elbowroom.server.run_frames import posed_frames
+from elbowroom.server.standalone.frames import posed_frames
+from elbowroom.server.wire.pose_frame import parse
 from elbowroom.world.moving_format import MAX_KEYS
 from elbowroom.world.scene import Scene
 

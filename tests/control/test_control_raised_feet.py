@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
-from elbowroom.body.footholds import UNKNOWN
+from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RISES, ROOT_STATE
 from elbowroom.control.feet.feet import Around, Moment
 from elbowroom.control.feet.raised import RaisedFeet, raised

@@ -10,17 +10,25 @@ import pytest
 
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, followed
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.root import ROOT_STATE, SHOWN
 from elbowroom.clips.clip import motions_of
 from elbowroom.clips.files import parse_motion
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.clips.swing import KEYS, Swing
-from elbowroom.control import recording as recordings
 from elbowroom.control.controller import Controller
-from elbowroom.control.lookahead import Lookahead
-from elbowroom.control.recording import MAGIC, STEP, STEPS_PER_CHUNK, Recorder, Recording, command_of, roots_of
-from elbowroom.control.replay import replay
+from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.control.recordings import recording as recordings
+from elbowroom.control.recordings.recording import (
+    MAGIC,
+    STEP,
+    STEPS_PER_CHUNK,
+    Recorder,
+    Recording,
+    command_of,
+    roots_of,
+)
+from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.world.places.options import PlaceOptions

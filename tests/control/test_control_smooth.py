@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from elbowroom.control.loose import Hand, Loose, Thing
+from elbowroom.control.things.loose import Hand, Loose, Thing
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.shapes import Capsule, Cylinder, Hull, Sphere, extents_of
 from elbowroom.world.scene import Scene

@@ -7,9 +7,9 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
-from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from gauntlet_courses import course

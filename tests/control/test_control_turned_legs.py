@@ -4,7 +4,7 @@ import numpy as np
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, leg_capsules
+from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RISES, RootState
 from elbowroom.control.feet.turned_legs import SHARES, turned_legs
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes

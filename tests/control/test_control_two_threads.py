@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
-from elbowroom.control import body_check
-from elbowroom.control.body_check import BodyCheck
-from elbowroom.control.canned import standing_posture
+from elbowroom.control.plans.canned import standing_posture
+from elbowroom.control.shown import body_check
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

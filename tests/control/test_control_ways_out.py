@@ -6,7 +6,7 @@ import pytest
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.rehearsal import partial_motions, standing_path
+from elbowroom.control.plans.rehearsal import partial_motions, standing_path
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene

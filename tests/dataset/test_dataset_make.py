@@ -20,7 +20,7 @@ import pyarrow.parquet as pq
 
 from bvh_builder import BvhRecipe, write_bvh
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.cli.main import app
 from elbowroom.dataset.check import check_dataset

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from elbowroom.body.loading import load_humanoid
+from elbowroom.body.loading.avatar_file import load_humanoid
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.world.scene import Scene
 from shared_data import SHARED, needs_shared

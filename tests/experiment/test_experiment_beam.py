@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from elbowroom.body import dof
+from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import LOWERING, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.stock_clips import stock_clips
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, controller_for, run_crossing
 from elbowroom.experiment.judge.motion import ShownMotion

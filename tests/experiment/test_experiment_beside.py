@@ -5,8 +5,8 @@ from typing import Any, cast
 
 import pytest
 
-from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.control.desk import Job
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.control.plans.desk import Job
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.crossing import DT, CrossingSettings, controller_for, run_timed_crossing
 from elbowroom.world.scene import Scene

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import (
     CrossingResult,

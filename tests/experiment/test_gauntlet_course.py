@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from avatar_builder import Recipe, build
-from elbowroom.body.loading import load_humanoid_bytes
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import CourseMaker, make_course
 from elbowroom.experiment.gauntlet.draw import Draw

@@ -11,9 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 from elbowroom.cli.main import app
-from elbowroom.control.body_check import BodyCheck
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import Course, NoCourseError
 from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet

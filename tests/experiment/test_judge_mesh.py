@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from avatar_builder import MIXAMO, Recipe, build
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.loading import load_humanoid, load_humanoid_bytes
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
+from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.mesh_judge import MeshJudge, region_of
 from elbowroom.experiment.judge.motion import ShownMotion

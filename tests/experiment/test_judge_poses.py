@@ -5,9 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
+from elbowroom.body.fitting.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, hips_position, local_rotations, posture_capsules
-from elbowroom.body.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
+from elbowroom.body.pose.kinematics import body_model, hips_position, local_rotations, posture_capsules
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Posed, Poser

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, DofGroup
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser

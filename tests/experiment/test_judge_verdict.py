@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
-from elbowroom.control.recording import ASSIST, RESTART, Recorder, Recording, RecordingHeader
+from elbowroom.control.recordings.recording import ASSIST, RESTART, Recorder, Recording, RecordingHeader
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.smoothness import smoothness

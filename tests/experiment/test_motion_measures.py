@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.experiment.motion.angles import leg_angles
 from elbowroom.experiment.motion.bands import STANCE_SHARES, Band, stance_share

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.control.recording import Recorder, Recording
-from elbowroom.control.replay import replay
+from elbowroom.control.recordings.recording import Recorder, Recording
+from elbowroom.control.recordings.replay import replay
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.gauntlet.shapes import in_shapes

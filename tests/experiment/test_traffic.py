@@ -9,15 +9,15 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.recording import Recorder, Recording
-from elbowroom.control.replay import replay
+from elbowroom.control.recordings.recording import Recorder, Recording
+from elbowroom.control.recordings.replay import replay
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge, judge_recording
 from elbowroom.planning.command import Command
-from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box
+from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 from elbowroom.world.scene import Scene
 
 AVATAR = Humanoid.default()

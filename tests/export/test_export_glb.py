@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build, json_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
 from elbowroom.export.avatar_glb import avatar_glb

@@ -10,7 +10,7 @@ from elbowroom.cli.main import app
 from elbowroom.export.place import place_glb
 from elbowroom.export.place_x3d import place_x3d
 from elbowroom.formats.gltf import parse_gltf
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
 

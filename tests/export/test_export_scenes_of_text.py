@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.hanim_names import hanim_name
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
+from elbowroom.body.loading.hanim_names import hanim_name
 from elbowroom.export.animation import Animation
 from elbowroom.export.writers import FORMATS, Wishes
 from elbowroom.geometry import quaternion

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from avatar_builder import Recipe, build, json_of
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.formats.packing import write_glb
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import parse_json as parse_format
-from elbowroom.server.codec import decode_client
+from elbowroom.server.wire.codec import decode_client
 from elbowroom.world.json_place import parse_json as parse_scene
 
 LONGEST = 300  # characters of a message

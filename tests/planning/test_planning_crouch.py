@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
-from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.exact.memory.previous_plan import StartState

@@ -7,14 +7,14 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed

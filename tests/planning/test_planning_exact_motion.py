@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body import dof
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.proportions import proportional_humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents

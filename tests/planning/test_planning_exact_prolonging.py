@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.planner import ExactPlanner
@@ -20,9 +20,9 @@ from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.obstacles.clearance import clearance
-from elbowroom.world.obstacles.moving import Moving, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Sphere
+from elbowroom.world.obstacles.tracks.moving import Moving, Track
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -6,9 +6,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model, chest_frames, group_capsules, pelvis_frames
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import BodyModel, body_model, chest_frames, group_capsules, pelvis_frames
 from elbowroom.geometry import quaternion
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of
 from elbowroom.planning.exact.memory.cache_index import begin_round

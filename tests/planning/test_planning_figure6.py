@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 import naive_figure6 as naive
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, limits
-from elbowroom.body.kinematics import BodyModel, body_model, group_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import BodyModel, body_model, group_capsules
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import clear_of_trunk
 from elbowroom.planning.paper import figure6

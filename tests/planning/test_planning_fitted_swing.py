@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import ARMS, LOCAL_GROUPS, clamp
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.swing import KEYS, Swing, resting
 from elbowroom.planning.model.fitted_swing import fitted

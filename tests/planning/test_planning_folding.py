@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, LOCAL, SEARCH_ORDER, DofGroup, clamp, columns_of, limits
-from elbowroom.body.kinematics import body_model, group_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, group_capsules
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of

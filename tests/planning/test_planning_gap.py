@@ -8,14 +8,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
 from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.gap import Gap, gap_ahead
 from elbowroom.planning.narrow.places import NarrowPlaces
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.world.scene import Scene
 
 AVATAR = Humanoid.default()

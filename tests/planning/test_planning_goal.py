@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from elbowroom.body.clips.stock_clips import arm_swing_goal
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, within_limits
-from elbowroom.body.stock_clips import arm_swing_goal
 from elbowroom.planning.goal import fixed_goal, natural_walk, periodic_goal, side_by_side
 from elbowroom.planning.root.path import RootPath
 

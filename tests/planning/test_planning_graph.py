@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
+from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, clamp
-from elbowroom.body.stock_clips import stock_clips
 from elbowroom.errors import InputError
 from elbowroom.planning.paper.activity_graph import ActivityGraph
 

@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, clamp, columns_of
-from elbowroom.body.kinematics import body_model, pelvis_frames, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.control.body_check import BodyCheck, Frames
-from elbowroom.control.neighbour import Neighbour, Walker
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, pelvis_frames, posture_capsules
+from elbowroom.control.others.neighbour import Neighbour, Walker
+from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.levers import body_levers
 from elbowroom.planning.root.path import interpolate_root
-from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 from feet_walks import alive, path, random_wish, walked
 

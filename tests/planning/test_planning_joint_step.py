@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import BodyModel, body_model, posture_capsules
 from elbowroom.planning.exact.joint.step import ALONE, PRODUCT, JointStep
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -162,7 +162,7 @@ def child_clearance(
 
 
 def posture_pelvis(humanoid: Humanoid, state: Floats) -> Floats:
-    from elbowroom.body.kinematics import pelvis_frames
+    from elbowroom.body.pose.kinematics import pelvis_frames
 
     return np.asarray(pelvis_frames(body_model(humanoid), state)[0][0])
 

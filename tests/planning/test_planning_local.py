@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, LOCAL, LOCAL_GROUPS, DofGroup, followed
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.errors import InputError
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.names import planner_names

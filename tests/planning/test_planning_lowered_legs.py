@@ -3,17 +3,17 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.root.path import RootPath, sample_states
 from elbowroom.world.obstacles.clearance import clearance_of
 from elbowroom.world.obstacles.layout import Nearby
-from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about
 from elbowroom.world.obstacles.shapes import Box
+from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 
 Floats = NDArray[np.float64]
 

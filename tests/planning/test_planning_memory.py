@@ -11,8 +11,8 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK
-from elbowroom.control.canned import standing_posture
 from elbowroom.control.controller import Controller
+from elbowroom.control.plans.canned import standing_posture
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.upper_body_model import upper_body_model
 from elbowroom.planning.exact.memory.previous_plan import StartState

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of, within_limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.goal import natural_walk
@@ -16,7 +16,7 @@ from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.pace import slow_places
 from elbowroom.planning.narrow.places import NarrowPlaces
-from elbowroom.planning.root.line import new_line
+from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner

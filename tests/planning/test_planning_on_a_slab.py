@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import leg_capsules
+from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.body.root import HEIGHT, ROOT_STATE, RootState
-from elbowroom.control.body_check import BodyCheck, Frames
+from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.hull import to_check
-from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.legs.hull import to_check
+from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.ground.making import ground_of

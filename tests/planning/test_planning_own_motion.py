@@ -5,9 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, columns_of, limits
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.planning.exact.lattice.tangents import smooth_tangents
 from elbowroom.planning.exact.sweep.motion_bounds import configurations_at

@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 import elbowroom as er
-from elbowroom.control.canned import canned_walk
+from elbowroom.control.plans.canned import canned_walk
 from elbowroom.planning import names, planner
-from elbowroom.server.walk import WalkSettings
+from elbowroom.server.sessions.walk import WalkSettings
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import DOF, LOCAL_GROUPS, DofGroup
-from elbowroom.body.kinematics import BodyModel, body_model, chest_frames, pelvis_frames, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import BodyModel, body_model, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.geometry import quaternion
 from elbowroom.planning.model.frames import compose
 from elbowroom.planning.model.limb import limb_of, pose

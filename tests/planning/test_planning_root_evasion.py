@@ -9,18 +9,18 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, leg_capsules
+from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.evasion import EvasionFinder, EvasionSettings
-from elbowroom.planning.root.grid_search import Prices, cheapest
-from elbowroom.planning.root.line import new_line
+from elbowroom.planning.root.evasion.evasion import EvasionFinder, EvasionSettings
+from elbowroom.planning.root.evasion.grid_search import Prices, cheapest
+from elbowroom.planning.root.evasion.profile import Course, follow_profile, turned_speed
+from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.motion import MotionBounds, RootMotionSettings
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.root.profile import Course, follow_profile, turned_speed
 from elbowroom.world.obstacles.clearance import clearance
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

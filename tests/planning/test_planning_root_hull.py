@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import leg_capsules
+from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.root.hull import ground_below, to_check
-from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.legs.hull import ground_below, to_check
+from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby

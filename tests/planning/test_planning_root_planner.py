@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, leg_capsules
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings

@@ -8,10 +8,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.evasion.room import Floor, Grid, Room, free_distance
+from elbowroom.planning.root.evasion.turned_body import TurnedBody
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.root.room import Floor, Grid, Room, free_distance
-from elbowroom.planning.root.turned_body import TurnedBody
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.free_map import CELL, FARTHEST, LEVELS
 from elbowroom.world.obstacles.layout import Spans

@@ -6,17 +6,17 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.ahead import RouteFinder
 from elbowroom.planning.root.cost import prices_of, seconds_lost
-from elbowroom.planning.root.leg_check import LegCheck
-from elbowroom.planning.root.line import new_line, wanted_speed
-from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.legs.leg_check import LegCheck
+from elbowroom.planning.root.legs.lower_body import LowerBody
+from elbowroom.planning.root.legs.moving_legs import MovingAround
+from elbowroom.planning.root.line.ahead import RouteFinder
+from elbowroom.planning.root.line.line import new_line, wanted_speed
+from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
-from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked, RootQuery
-from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 HORIZON, INTERVAL, SIGHT, REACH = 12, 0.15, 4.5, 9.0

@@ -9,8 +9,8 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.root.line.way_ahead import leg_at, way_ahead
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.root.way_ahead import leg_at, way_ahead
 from elbowroom.world.scene import Scene
 
 WAY = ((0.0, 0.0), (0.0, 3.0), (2.0, 3.0), (2.0, 9.0))

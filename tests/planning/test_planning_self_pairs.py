@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.clips.stock_clips import HANGING
 from elbowroom.body.dof import (
     ARMS,
     CHILDREN,
@@ -19,10 +20,9 @@ from elbowroom.body.dof import (
     columns_of,
     limits,
 )
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, group_capsules, posture_capsules
-from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.body.stock_clips import HANGING
+from elbowroom.body.pose.kinematics import body_model, group_capsules, posture_capsules
 from elbowroom.geometry import quaternion
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.axis_distances import arm_clearances, clear_pairs, lower_to_body

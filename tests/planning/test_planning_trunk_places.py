@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, DofGroup, followed
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.planning.command import Command

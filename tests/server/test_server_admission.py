@@ -5,9 +5,9 @@ from contextlib import ExitStack
 import pytest
 from prometheus_client import parser
 
-from elbowroom.server.admission import AMONG, EACH, FIRST, MOST, Admission
-from elbowroom.server.meter import LATE, Histogram, Meter
+from elbowroom.server.entrance.admission import AMONG, EACH, FIRST, MOST, Admission
 from elbowroom.server.metrics import metrics_text
+from elbowroom.server.sessions.meter import LATE, Histogram, Meter
 from elbowroom.server.usage import process_usage
 
 HERE, THERE = "127.0.0.1", "192.168.1.7"

@@ -18,7 +18,7 @@ from elbowroom.experiment.gauntlet.scenes import course_scene
 from elbowroom.server.apart.answers import packed, unpacked
 from elbowroom.server.apart.bounds import Bounds
 from elbowroom.server.apart.process import FullDiskError, run_apart
-from elbowroom.server.courses import BusyError, Courses
+from elbowroom.server.stores.courses import BusyError, Courses
 from elbowroom.world.scene import Scene
 
 
@@ -171,6 +171,6 @@ def test_one_course_at_a_time_for_each_client_and_a_few_remembered(monkeypatch: 
         assert courses.known("gauntlet:1:1") is None
         assert courses.known("gauntlet:1:39") is not None
 
-    monkeypatch.setattr("elbowroom.server.courses.run_apart", slow)
+    monkeypatch.setattr("elbowroom.server.stores.courses.run_apart", slow)
     courses = Courses()
     asyncio.run(ask())

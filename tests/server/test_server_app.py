@@ -22,13 +22,14 @@ from elbowroom.body.stock import stock_avatar_path
 from elbowroom.control.settings import QUEUE_SIZES
 from elbowroom.errors import InputError
 from elbowroom.server import app as app_module
-from elbowroom.server import avatar_store, reception, uploads
 from elbowroom.server.app import make_app
-from elbowroom.server.codec import plain
-from elbowroom.server.guard import Guard, host_of, is_loopback
-from elbowroom.server.library import Library
-from elbowroom.server.page_key import Sender
+from elbowroom.server.entrance import reception
+from elbowroom.server.entrance.guard import Guard, host_of, is_loopback
+from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.serving import listen, url_of
+from elbowroom.server.stores import avatar_store, uploads
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.codec import plain
 from live_session import running
 from sent_files import add_avatar
 

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from avatar_builder import Recipe, build
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
-from elbowroom.body.proportions import proportional_humanoid
-from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.reports import avatar_message
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
+from elbowroom.server.sessions.reports import avatar_message
+from elbowroom.server.stores.avatar_store import StoredAvatar
 
 
 def stored(humanoid: Humanoid) -> StoredAvatar:

@@ -14,12 +14,12 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.unseen_walk import Effort, walk_unseen
-from elbowroom.server import built_scenes
 from elbowroom.server.apart.jobs import read_scene, walk_scene
 from elbowroom.server.app import make_app
-from elbowroom.server.built_scenes import BuiltScenes
-from elbowroom.server.library import Library
 from elbowroom.server.schema.bounds import MAX_SCENE
+from elbowroom.server.stores import built_scenes
+from elbowroom.server.stores.built_scenes import BuiltScenes
+from elbowroom.server.stores.library import Library
 from elbowroom.world.scene import Scene
 
 LOCAL = "http://127.0.0.1:8765"

@@ -43,7 +43,7 @@ def test_a_signal_ends_the_server_whatever_its_threads_do(sent: signal.Signals, 
 import threading, time
 from concurrent.futures import ThreadPoolExecutor
 from elbowroom.cli import play
-from elbowroom.server.library import Library
+from elbowroom.server.stores.library import Library
 
 def busy(library, url, open_page):
     threading.Thread(target=time.sleep, args=(1000,)).start()

@@ -11,21 +11,21 @@ from animation_builder import animated_glb
 from avatar_builder import Recipe, build
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, local_rotations
+from elbowroom.body.pose.kinematics import body_model, local_rotations
 from elbowroom.clips.files import has_animations, is_motion_only, parse_motion
 from elbowroom.clips.performance import perform
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
-from elbowroom.server.avatar_store import STOCK
-from elbowroom.server.clip_store import MAX_FILES, ClipStore
 from elbowroom.server.clip_walk import ClipWalk
-from elbowroom.server.library import Library
-from elbowroom.server.page_key import Sender
+from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.schema.commands import Configure
-from elbowroom.server.stage import Stage
-from elbowroom.server.walk import WalkSettings
-from elbowroom.server.wanted import Wanted
+from elbowroom.server.sessions.stage import Stage
+from elbowroom.server.sessions.walk import WalkSettings
+from elbowroom.server.sessions.wanted import Wanted
+from elbowroom.server.stores.avatar_store import STOCK
+from elbowroom.server.stores.clip_store import MAX_FILES, ClipStore
+from elbowroom.server.stores.library import Library
 from elbowroom.world.scene import Scene
 from sent_files import add_clips
 

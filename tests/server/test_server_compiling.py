@@ -10,9 +10,9 @@ from typing import Any
 import numba
 import pytest
 
-from elbowroom.cli.bench_compile import compiled_in
-from elbowroom.server import compiling, kernel_cache
-from elbowroom.server.compiling import PARTS, command_for, compile_apart, compile_parts
+from elbowroom.cli.bench.compile import compiled_in
+from elbowroom.server.kernels import compiling, kernel_cache
+from elbowroom.server.kernels.compiling import PARTS, command_for, compile_apart, compile_parts
 
 
 def _printing(monkeypatch: pytest.MonkeyPatch, programs: dict[str, str]) -> None:
@@ -74,8 +74,8 @@ def test_the_parts_process_gets_the_environment(monkeypatch: pytest.MonkeyPatch)
 
 
 _OPEN = """
-from elbowroom.server.library import Library
-from elbowroom.server.warmup import first_steps, listening, warm_up
+from elbowroom.server.stores.library import Library
+from elbowroom.server.kernels.warmup import first_steps, listening, warm_up
 with listening(lambda kernel, number: print(kernel)):
     library = Library.open("traffic")
 """
@@ -105,7 +105,7 @@ def test_the_parts_leave_the_server_nothing_to_compile(tmp_path: Path) -> None:
 
 def test_a_command_names_its_part() -> None:
     for part in PARTS:
-        assert command_for(part)[1:] == ["-m", "elbowroom.server.compiling", part]
+        assert command_for(part)[1:] == ["-m", "elbowroom.server.kernels.compiling", part]
 
 
 def test_kernels_of_other_rooms_than_a_sessions_are_left_out() -> None:

@@ -11,12 +11,12 @@ import pytest
 from uvicorn.protocols.utils import ClientDisconnected
 from websockets.exceptions import ConnectionClosed
 
-from elbowroom.server import connections
-from elbowroom.server.connections import BoundedWebSocket, Doorman, Patience
-from elbowroom.server.library import Library
-from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.entrance import connections
+from elbowroom.server.entrance.connections import BoundedWebSocket, Doorman, Patience
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.menus import Hello
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.pose_frame import PoseFrame
 from live_session import Client, client_of, running
 
 PATIENCE = Patience(request=10.0, reading=15.0, closing=3.0, unread=1000, idle=4)

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from elbowroom.cli.session_cost import memory_budget
+from elbowroom.cli.doctor.session_cost import memory_budget
 from elbowroom.server.heap import settle, share_one_heap
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from elbowroom.server import kernel_files
+from elbowroom.server.kernels import kernel_files
 
 
 def test_a_full_or_missing_place_gives_way_to_a_private_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,17 +19,18 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from elbowroom.clips.style import STYLES
-from elbowroom.control.recording import Recording
-from elbowroom.server import admission, changes, session
+from elbowroom.control.recordings.recording import Recording
 from elbowroom.server.clip_walk import ClipWalk
-from elbowroom.server.library import Library
-from elbowroom.server.pose_frame import PoseFrame
+from elbowroom.server.entrance import admission
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Overlays, Ping, Reset
 from elbowroom.server.schema.menus import Hello, Settings
 from elbowroom.server.schema.picture import AvatarMessage, SceneMessage
 from elbowroom.server.schema.progress import Crossed, Going, Loading, Notice, Plan, Status
-from elbowroom.server.walk import Walk
+from elbowroom.server.sessions import changes, session
+from elbowroom.server.sessions.walk import Walk
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.pose_frame import PoseFrame
 from live_session import LONG, Client, client_at, client_of, running
 
 

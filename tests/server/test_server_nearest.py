@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.geometry import quaternion
-from elbowroom.server.nearest import nearest
+from elbowroom.server.sessions.nearest import nearest
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 

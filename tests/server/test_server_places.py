@@ -10,7 +10,7 @@ import pytest
 
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.server.app import make_app
-from elbowroom.server.library import Library
+from elbowroom.server.stores.library import Library
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
 from place_builder import TWO_ROOMS, glb, write_place

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from elbowroom.planning.command import Command
-from elbowroom.server.library import Library
-from elbowroom.server.planning_thread import PlanningThread
-from elbowroom.server.walk import Walk, WalkSettings
+from elbowroom.server.sessions.planning_thread import PlanningThread
+from elbowroom.server.sessions.walk import Walk, WalkSettings
+from elbowroom.server.stores.library import Library
 
 LONG = 120.0  # seconds: only a hang lasts longer
 WALK, BACK = Command(forward=1.0), Command(forward=-1.0)

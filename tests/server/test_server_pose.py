@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL_GROUPS, limits
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, hips_position, local_rotations
-from elbowroom.body.proportions import proportional_humanoid
+from elbowroom.body.pose.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.formats.gltf import read_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.geometry import quaternion
-from elbowroom.server.pose import Poser, placement
 from elbowroom.server.schema.picture import Placement
+from elbowroom.server.wire.pose import Poser, placement
 from shared_data import SHARED, needs_shared
 
 FILES = [

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from elbowroom.server import pose_frame
-from elbowroom.server.pose_frame import PoseFrame, offsets, pack, parse
+from elbowroom.server.wire import pose_frame
+from elbowroom.server.wire.pose_frame import PoseFrame, offsets, pack, parse
 
 UNSIGNED = {"B": 8, "H": 16, "I": 32}
 CODES = {name: code for name, code, _ in pose_frame.HEAD}

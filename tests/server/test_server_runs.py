@@ -14,15 +14,15 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.replay import library_of
-from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.recording import Recorder, Recording, RecordingHeader
+from elbowroom.control.recordings.avatar_reference import AvatarReference
+from elbowroom.control.recordings.recording import Recorder, Recording, RecordingHeader
 from elbowroom.planning.command import Command
-from elbowroom.server.library import Library
-from elbowroom.server.pose import Poser
-from elbowroom.server.pose_frame import PoseFrame, parse
-from elbowroom.server.run_frames import posed_run
+from elbowroom.server.standalone.frames import posed_run
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.pose import Poser
+from elbowroom.server.wire.pose_frame import PoseFrame, parse
 from elbowroom.world.scene import Scene
 from live_session import running
 

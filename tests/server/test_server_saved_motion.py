@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation, Poses
 from elbowroom.formats.bvh import parse_bvh
 from elbowroom.geometry import quaternion
 from elbowroom.server.app import make_app
-from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.library import Library
-from elbowroom.server.pose import Poser
-from elbowroom.server.saved_motion import save_motion
+from elbowroom.server.stores.avatar_store import StoredAvatar
+from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.saved_motion import save_motion
+from elbowroom.server.wire.pose import Poser
 
 Floats = NDArray[np.float64]
 

@@ -12,12 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.errors import InputError
-from elbowroom.server import typescript
-from elbowroom.server.codec import decode_client, decode_server, encode, tag
-from elbowroom.server.messages import ClientMessage, ServerMessage
 from elbowroom.server.schema.bounds import Length, Range
 from elbowroom.server.schema.commands import Configure, Input
 from elbowroom.server.schema.progress import Notice
+from elbowroom.server.wire import typescript
+from elbowroom.server.wire.codec import decode_client, decode_server, encode, tag
+from elbowroom.server.wire.messages import ClientMessage, ServerMessage
 
 GENERATED = Path(__file__).parents[2] / "web" / "src" / "generated" / "messages.ts"
 
@@ -145,7 +145,7 @@ def test_text_is_sent_as_it_is() -> None:
 @pytest.mark.skipif(not GENERATED.is_file(), reason="the client's sources are not here")
 def test_the_generated_typescript_is_up_to_date() -> None:
     assert GENERATED.read_text(encoding="utf-8") == typescript.generate(), (
-        "the schema has changed: run `python -m elbowroom.server.typescript web/src/generated/messages.ts`"
+        "the schema has changed: run `python -m elbowroom.server.wire.typescript web/src/generated/messages.ts`"
     )
 
 

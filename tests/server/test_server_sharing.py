@@ -11,10 +11,10 @@ import pytest
 from bvh_builder import BvhRecipe, random_motion, write_bvh
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
-from elbowroom.server.library import Library
 from elbowroom.server.schema.commands import Configure
 from elbowroom.server.schema.menus import Settings
-from elbowroom.server.shelf import OwnShelf
+from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.shelf import OwnShelf
 from elbowroom.world.scene import Scene
 from live_session import LONG, client_of, running
 

@@ -17,15 +17,15 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.pace import at_speed
 from elbowroom.planning.root.plan import RootPlanKind
-from elbowroom.server.library import Library
-from elbowroom.server.outbox import MAX_WAITING, Outbox, SlowClientError
-from elbowroom.server.pose_frame import parse
-from elbowroom.server.rate_limit import TokenBucket
+from elbowroom.server.entrance.rate_limit import TokenBucket
+from elbowroom.server.kernels.warmup import warm_up
 from elbowroom.server.schema.commands import ClockMessage, Input, Overlays, Push
 from elbowroom.server.schema.progress import Notice, Plan, Pong
-from elbowroom.server.stage import STEP, Stage
-from elbowroom.server.walk import Walk, WalkSettings
-from elbowroom.server.warmup import warm_up
+from elbowroom.server.sessions.outbox import MAX_WAITING, Outbox, SlowClientError
+from elbowroom.server.sessions.stage import STEP, Stage
+from elbowroom.server.sessions.walk import Walk, WalkSettings
+from elbowroom.server.stores.library import Library
+from elbowroom.server.wire.pose_frame import parse
 from sent_files import add_avatar
 
 MOTION = RootMotionSettings()

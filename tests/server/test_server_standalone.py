@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 
 import elbowroom as er
-from elbowroom.control.recording import Recorder, Recording
+from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.server.app import client_is_built
-from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.codec import plain
-from elbowroom.server.pose_frame import parse
-from elbowroom.server.reports import avatar_message
-from elbowroom.server.run_frames import posed_frames
-from elbowroom.server.standalone_page import page_of_recording
-from elbowroom.server.standalone_run import PER_METRE, RATE, UNIT, Run, pack_run, read_run
+from elbowroom.server.sessions.reports import avatar_message
+from elbowroom.server.standalone.frames import posed_frames
+from elbowroom.server.standalone.packed_run import PER_METRE, RATE, UNIT, Run, pack_run, read_run
+from elbowroom.server.standalone.page import page_of_recording
+from elbowroom.server.stores.avatar_store import StoredAvatar
+from elbowroom.server.wire.codec import plain
+from elbowroom.server.wire.pose_frame import parse
 
 STEP = 1 / 60
 BUILT = pytest.mark.skipif(not client_is_built(), reason="the page is not built")

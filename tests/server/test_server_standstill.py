@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.server.pose_frame import PoseFrame, pack
-from elbowroom.server.standstill import SELDOM, UNSEEN, Standstill
+from elbowroom.server.sessions.standstill import SELDOM, UNSEEN, Standstill
+from elbowroom.server.wire.pose_frame import PoseFrame, pack
 
 RATE = 60
 

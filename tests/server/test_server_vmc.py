@@ -21,14 +21,14 @@ from pythonosc.osc_message import OscMessage
 
 from avatar_builder import Recipe, build
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_humanoid_bytes
+from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
 from elbowroom.geometry import quaternion
-from elbowroom.server.library import Library
-from elbowroom.server.pose import Poser
-from elbowroom.server.vmc import Locomotion, Message, Moment, Puppet, blink, messages, unity_name
-from elbowroom.server.vmc_stream import VmcSettings, VmcStream, packets
+from elbowroom.server.stores.library import Library
+from elbowroom.server.vmc.protocol import Locomotion, Message, Moment, Puppet, blink, messages, unity_name
+from elbowroom.server.vmc.stream import VmcSettings, VmcStream, packets
+from elbowroom.server.wire.pose import Poser
 from godot_judge import GodotJudge
 from live_session import client_of, running
 

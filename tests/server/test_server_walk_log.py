@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elbowroom.control.recording import Recording, RecordingHeader
+from elbowroom.control.recordings.recording import Recording, RecordingHeader
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.server import walk_log
-from elbowroom.server.library import Library
-from elbowroom.server.walk import Walk, WalkSettings
+from elbowroom.server.sessions import walk_log
+from elbowroom.server.sessions.walk import Walk, WalkSettings
+from elbowroom.server.stores.library import Library
 
 STEP = 1 / 60
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.closest_points import closest_points
-from elbowroom.world.obstacles.clusters import clusters_of
-from elbowroom.world.obstacles.mesh_pieces import pieces_of
+from elbowroom.world.obstacles.meshes.clusters import clusters_of
+from elbowroom.world.obstacles.meshes.mesh_pieces import pieces_of
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about, rows_of
 from elbowroom.world.obstacles.shapes import Mesh

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance_of, pairwise_clearance
-from elbowroom.world.obstacles.moving import Moving, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about, bounds_of, is_empty
 from elbowroom.world.obstacles.shapes import Sphere
+from elbowroom.world.obstacles.tracks.moving import Moving, Track
 from shapes import box_hull, some_obstacles
 
 Floats = NDArray[np.float64]

@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from elbowroom.world.obstacles.meshes.solids import enclosing_triangles
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.solids import enclosing_triangles
 from elbowroom.world.places.columns import columns_of
 from elbowroom.world.places.enclosed import enclosed
 from elbowroom.world.places.floors import floors_of

@@ -7,10 +7,10 @@ from scipy.spatial import ConvexHull
 
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.meshes.solids import inner_boxes
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import rows_of
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.solids import inner_boxes
 from shapes import box_mesh
 
 Floats = NDArray[np.float64]

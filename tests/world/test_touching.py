@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.meshes.touching import Touching
 from elbowroom.world.obstacles.rows import rows_of
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.touching import Touching
 from shapes import box_mesh, soup
 
 UPRIGHT = np.array([[0.0, 0.0, 0.0, 1.0]])

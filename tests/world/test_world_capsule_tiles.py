@@ -8,7 +8,7 @@ from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import pairwise_clearance
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.tiles import fill_tile_rows, lower_squares, lower_to_squares
+from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares
 
 Floats = NDArray[np.float64]
 

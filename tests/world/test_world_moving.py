@@ -8,10 +8,10 @@ import pytest
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.moving import Moving, Repeat, Track
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import corners_of
 from elbowroom.world.obstacles.shapes import Box, extents_of
+from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 from elbowroom.world.scene import Scene
 
 

@@ -4,11 +4,11 @@ import json
 import sys
 from pathlib import Path
 
-from elbowroom.body.fitting import fit_capsules
+from elbowroom.body.fitting.fit import fit_capsules
+from elbowroom.body.fitting.stock_fit import fit_document, stock_fit
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.loading import load_with_surface
+from elbowroom.body.loading.avatar_file import load_with_surface
 from elbowroom.body.stock import stock_avatar_path, stock_fit_path
-from elbowroom.body.stock_fit import fit_document, stock_fit
 from make_stock_avatar.assemble import stock_avatar
 
 

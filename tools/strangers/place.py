@@ -13,7 +13,7 @@ from elbowroom.export.layout import RootMotion
 from elbowroom.export.place import place_glb, with_place
 from elbowroom.export.place_x3d import place_x3d
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.moving import Repeat
+from elbowroom.world.obstacles.tracks.moving import Repeat
 from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 from strangers.walk import Walk

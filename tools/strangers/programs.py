@@ -12,7 +12,7 @@ import bvhio
 import numpy as np
 
 from avatar_builder import json_of
-from elbowroom.body.hanim_names import hanim_name
+from elbowroom.body.loading.hanim_names import hanim_name
 from elbowroom.geometry import quaternion
 from gltf_judge import validated
 from strangers.walk import Walk

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.control.recording import Recorder, Recording
+from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.export.animation import Animation
 from elbowroom.export.writers import FORMATS, Wishes

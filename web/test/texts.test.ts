@@ -83,7 +83,7 @@ describe("the phrases", () => {
 
   it("word what an avatar's file permits, and how a plan went", () => {
     const sources = import.meta.glob<string>(
-      ["../../src/elbowroom/body/permissions.py", "../../src/elbowroom/planning/result.py", "../../src/elbowroom/planning/root/plan.py", "../../src/elbowroom/control/frame.py"],
+      ["../../src/elbowroom/body/loading/permissions.py", "../../src/elbowroom/planning/result.py", "../../src/elbowroom/planning/root/plan.py", "../../src/elbowroom/control/frame.py"],
       { query: "?raw", import: "default", eager: true },
     );
     const [permissions = "", ...states] = Object.entries(sources).sort(([a], [b]) => a.localeCompare(b)).map(([, source]) => source);
@@ -132,7 +132,7 @@ describe("what the server says", () => {
   const told = import.meta.glob<string>([
     "../../src/elbowroom/server/{app,reception,changes,session,admission,library,built_scenes,recent,clip_store,avatar_store,clip_walk,walk_log}.py",
     "../../src/elbowroom/server/{standalone_run,saved_motion}.py", "../../src/elbowroom/server/apart/{jobs,process}.py",
-    "../../src/elbowroom/server/walk.py", "../../src/elbowroom/planning/names.py", "../../src/elbowroom/experiment/gauntlet/names.py",
+    "../../src/elbowroom/server/sessions/walk.py", "../../src/elbowroom/planning/names.py", "../../src/elbowroom/experiment/gauntlet/names.py",
     "../../src/elbowroom/planning/navigation/{way,navigator}.py", "../../src/elbowroom/control/{journey,loose,recording}.py",
   ], { query: "?raw", import: "default", eager: true });
   /** What only programs get to hear, or the command line. */

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.load_settings import LoadSettings
-from elbowroom.body.permissions import Permissions
+from elbowroom.body.loading.permissions import Permissions
+from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton
 
@@ -54,7 +54,7 @@ class Humanoid:
 
         Raises `InputError` if the file cannot be read or holds no humanoid.
         """
-        from elbowroom.body.loading import load_humanoid
+        from elbowroom.body.loading.avatar_file import load_humanoid
 
         return load_humanoid(Path(path), settings)
 

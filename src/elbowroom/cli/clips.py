@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli import clip_options
-from elbowroom.cli.output import print_json
+from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.telling.output import print_json
 
 if TYPE_CHECKING:
     from elbowroom.clips.clip import Clip
     from elbowroom.clips.files import MotionFile
     from elbowroom.clips.told import Told
-    from elbowroom.server.library import Library
+    from elbowroom.server.stores.library import Library
 
 EXAMPLES = (
     "Examples:  elbowroom clips walk.bvh  |  elbowroom clips moves.glb#Walk --play  |  elbowroom clips *.bvh --json"
@@ -152,7 +152,7 @@ def _library(rows: list[dict[str, Any]], told: "Told", avatar: Path | None) -> "
     from dataclasses import replace
 
     from elbowroom.clips.files import open_motion
-    from elbowroom.server.library import Library
+    from elbowroom.server.stores.library import Library
 
     library = Library.open("empty", avatar)
     files = {row["path"]: open_motion(Path(row["path"]), told) for row in rows}

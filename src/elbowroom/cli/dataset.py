@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import print_json, print_row
-from elbowroom.cli.time_left import time_left_bar
-from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, print_row
+from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def _show(spec: "DatasetSpec", walk: int) -> None:
     """Walk one walk again and show it on the page, with its timeline, until Ctrl-C."""
     from elbowroom.cli.play import serve_until_interrupted
     from elbowroom.cli.replay import library_of
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.dataset.recorded import record_walk
     from elbowroom.dataset.spec import STOCK
     from elbowroom.dataset.walk import draw

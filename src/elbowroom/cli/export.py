@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import print_json, print_row, progress_bar
-from elbowroom.cli.spoken import said
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.export.animation import Animation
 
 EXAMPLES = (
@@ -44,7 +44,7 @@ def export(
     GLB has the avatar's mesh in it where its licence allows that.
     """
     check_arguments(files=[recording, avatar], written=[out])
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.export.animation import Animation, check_rate
     from elbowroom.export.writers import Wishes, format_of
 
@@ -75,8 +75,8 @@ def export(
 
 
 def _export_page(recording: Path, out: Path, avatar: Path | None, *, json: bool, quiet: bool) -> None:
-    from elbowroom.control.recording import Recording
-    from elbowroom.server.standalone_page import page_of_recording
+    from elbowroom.control.recordings.recording import Recording
+    from elbowroom.server.standalone.page import page_of_recording
 
     recorded = Recording(recording)
     compile_first(quiet=quiet)

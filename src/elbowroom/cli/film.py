@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import print_json, progress_bar
+from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.replay import library_of
-from elbowroom.cli.spoken import said
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, progress_bar
+from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
 
 EXAMPLES = (
@@ -46,7 +46,7 @@ def film(
             raise InputError(f"--{name} {value}: there are {', '.join(known)}")
     if not 0.1 <= speed <= 10.0:
         raise InputError(f"--speed {speed:g}: allowed are 0.1 to 10")
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.film.files import check_output, write_film
     from elbowroom.film.page import Look, filmed_page, served
 

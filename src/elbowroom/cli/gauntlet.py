@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
-from elbowroom.cli.first_run import compile_first
 from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
-from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
-from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
-from elbowroom.cli.time_left import time_left_bar
-from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
+from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
+from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
-    from elbowroom.control.avatar_reference import AvatarReference
+    from elbowroom.control.recordings.avatar_reference import AvatarReference
     from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
     from elbowroom.experiment.gauntlet.runner import GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
@@ -159,7 +159,7 @@ class _Walker(NamedTuple):
 
     def reference(self) -> "AvatarReference | None":
         """How a process finds it; None for the stock avatar as it is."""
-        from elbowroom.control.avatar_reference import AvatarReference
+        from elbowroom.control.recordings.avatar_reference import AvatarReference
 
         return AvatarReference.of(self.load()) if any(option for option in self) else None
 

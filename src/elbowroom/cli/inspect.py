@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.inspect_place import as_json, draw_plan, look_over, print_place
-from elbowroom.cli.output import Bar, print_json, print_row, progress_bar
-from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
+from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
-    from elbowroom.body.inspection import AvatarFacts
-    from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.body.loading.inspection import AvatarFacts
+    from elbowroom.body.loading.settings import LoadSettings
     from elbowroom.world.places.inspection import PlaceFacts
     from elbowroom.world.places.options import PlaceOptions
     from elbowroom.world.places.survey import Survey
@@ -62,7 +62,7 @@ def inspect(
     Of a place: size, triangles, floors, how much of each one can walk on, the narrowest passages, what was left out.
     Exit code 0: all files are avatars or places, 2: one is not (the others are shown).
     """
-    from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.body.loading.settings import LoadSettings
 
     if kind not in (None, "avatar", "place"):
         raise InputError(f"--as {kind!r}: must be avatar or place")
@@ -89,7 +89,7 @@ def inspect(
 
 def _read(paths: list[Path], kind: str | None, settings: "LoadSettings", told: "PlaceOptions", bar: Bar) -> _Found:
     """Read all the files as avatars or places: as told, or else by what they hold."""
-    from elbowroom.body.inspection import inspect_avatar
+    from elbowroom.body.loading.inspection import inspect_avatar
     from elbowroom.formats.models.recognised import is_of_a_place
 
     found = _Found()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from elbowroom.cli.output import Bar, print_row
+from elbowroom.cli.telling.output import Bar, print_row
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:

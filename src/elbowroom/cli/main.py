@@ -19,13 +19,10 @@ from typer.core import TyperGroup
 
 from elbowroom import __version__
 from elbowroom.cli import (
-    bench,
     clips,
     dataset,
-    doctor,
     export,
     film,
-    first_run,
     gauntlet,
     inspect,
     play,
@@ -36,6 +33,9 @@ from elbowroom.cli import (
     verify,
     walk,
 )
+from elbowroom.cli.bench import benches as bench
+from elbowroom.cli.doctor import doctor
+from elbowroom.cli.telling import first_run
 from elbowroom.errors import InputError
 
 WRONG_CALL = 2
@@ -114,7 +114,7 @@ def _told_to_end(sig: int, _frame: FrameType | None) -> None:
 @cache
 def _find_place_for_kernels() -> None:
     """See to it that there is a place for compiled kernels, and say so where there is none."""
-    from elbowroom.server import kernel_files
+    from elbowroom.server.kernels import kernel_files
 
     told = kernel_files.find_place()
     if told is not None:

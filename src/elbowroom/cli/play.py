@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli import clip_options, vmc_options
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
-from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
-from elbowroom.cli.spoken import said
-from elbowroom.cli.vmc_options import stream_to
+from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.options import vmc as vmc_options
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
+from elbowroom.cli.options.vmc import stream_to
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.telling.spoken import said
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from elbowroom.server.library import Library
+    from elbowroom.server.stores.library import Library
 
 _OPEN = (
     "Warning: listening on {0}. Everyone who can reach this machine over the network can open the page, load avatars "
@@ -65,13 +66,13 @@ def play(
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], port=port)
     check_arguments(clips=clip_options.named_by(swing, dodge))
-    from elbowroom.body.load_settings import LoadSettings
+    from elbowroom.body.loading.settings import LoadSettings
     from elbowroom.clips.style import style_named
 
     read = LoadSettings(bones, include_hair, height)
     style_named(style)
-    from elbowroom.server.library import Library
-    from elbowroom.server.walk import WalkSettings
+    from elbowroom.server.sessions.walk import WalkSettings
+    from elbowroom.server.stores.library import Library
 
     settings = WalkSettings(planner=planner, queue_size=queue).in_style(style)
     of_place = is_model(scene)
@@ -98,9 +99,9 @@ def serve_until_interrupted(
 
     from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.heap import share_one_heap
-    from elbowroom.server.planning_thread import let_frames_go_first
+    from elbowroom.server.kernels.warmup import first_steps
     from elbowroom.server.serving import listen, serve, url_of
-    from elbowroom.server.warmup import first_steps
+    from elbowroom.server.sessions.planning_thread import let_frames_go_first
 
     share_one_heap()
     let_frames_go_first()
@@ -131,7 +132,7 @@ def _tell_port(console: "Console", opened: "socket.socket", wanted: int) -> None
 
 def tell_openness(console: "Console", opened: "socket.socket") -> None:
     """Warn of who can come in, where that is more than this machine."""
-    from elbowroom.server.guard import is_loopback
+    from elbowroom.server.entrance.guard import is_loopback
 
     address = opened.getsockname()[0]
     if not is_loopback(address):
@@ -140,7 +141,7 @@ def tell_openness(console: "Console", opened: "socket.socket") -> None:
 
 def _ready(library: "Library", url: str, open_page: bool) -> None:
     from elbowroom.server.heap import settle
-    from elbowroom.server.warmup import warm_up
+    from elbowroom.server.kernels.warmup import warm_up
 
     def load_the_rest() -> None:  # while the page opens
         warm_up(library)

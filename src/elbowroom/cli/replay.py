@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import print_json, progress_bar
+from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.play import serve_until_interrupted
-from elbowroom.cli.spoken import said
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, progress_bar
+from elbowroom.cli.telling.spoken import said
 
 if TYPE_CHECKING:
-    from elbowroom.control.recording import Recording
-    from elbowroom.control.replay import ReplayResult
-    from elbowroom.server.library import Library
+    from elbowroom.control.recordings.recording import Recording
+    from elbowroom.control.recordings.replay import ReplayResult
+    from elbowroom.server.stores.library import Library
 
 EXAMPLES = "Examples:  elbowroom replay --show run.elbow  |  elbowroom replay run.elbow --avatar alice.vrm --json"
 DIFFERENT = 1
@@ -41,8 +41,8 @@ def replay(
     are others, the last bits may differ, and this says so.
     """
     check_arguments(files=[recording, avatar], port=port)
-    from elbowroom.control.recording import Recording
-    from elbowroom.control.replay import replay as run_again
+    from elbowroom.control.recordings.recording import Recording
+    from elbowroom.control.recordings.replay import replay as run_again
 
     recorded = Recording(recording)
     if show:
@@ -59,8 +59,8 @@ def replay(
 
 def library_of(recorded: "Recording", avatar: Path | None) -> "Library":
     """The scene and the avatar of a recording, and the recording to begin with."""
-    from elbowroom.body.load_settings import LoadSettings
-    from elbowroom.server.library import Library
+    from elbowroom.body.loading.settings import LoadSettings
+    from elbowroom.server.stores.library import Library
     from elbowroom.world.scene import Scene
 
     header, path = recorded.header, str(recorded.path)
@@ -100,7 +100,7 @@ def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:
 def _elsewhere(recorded: "Recording") -> dict[str, tuple[str, str]]:
     """By what name the machine and the program of a recording differ from these: theirs and ours."""
     from elbowroom import __version__
-    from elbowroom.control.recording import this_machine
+    from elbowroom.control.recordings.recording import this_machine
 
     theirs = recorded.header.machine | {"elbowroom": recorded.header.version}
     ours = this_machine() | {"elbowroom": __version__}

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.workers import check_cluster
 from elbowroom.cli.play import tell_openness
-from elbowroom.cli.spoken import said
-from elbowroom.cli.workers import check_cluster
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
+from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -54,7 +54,7 @@ def serve(
     from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.serving import listen
-    from elbowroom.server.walk import WalkSettings
+    from elbowroom.server.sessions.walk import WalkSettings
 
     offer = Offer(load_scene(scene), WalkSettings(planner=planner, queue_size=queue), _read(avatar))
     with contextlib.suppress(KeyboardInterrupt), ended_by_signals(lambda: None), listen(host, port) as opened:

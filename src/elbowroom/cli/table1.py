@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import json_text, print_json, progress_bar
-from elbowroom.cli.time_left import time_left_bar
-from elbowroom.cli.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import json_text, print_json, progress_bar
+from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.planning.names import FIGURE6
 
@@ -72,7 +72,7 @@ def table1(
     if json:
         print_json(document | {"files": [str(path) for path in files]})
     else:
-        from elbowroom.cli.table1_text import print_table1
+        from elbowroom.cli.telling.table1_text import print_table1
 
         print_table1(table, about, [str(path) for path in files])
     raise typer.Exit(FELL_SHORT if document["touching_trials"] else 0)

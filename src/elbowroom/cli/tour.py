@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli import clip_options
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.going import told_place
-from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
-from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
-from elbowroom.cli.spoken import said
+from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.going import told_place
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
+from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
 
@@ -83,7 +83,7 @@ def tour(
 def _walked(controller: "Controller", count: int, record: Path | None, quiet: bool) -> "tuple[Shown, TourResult]":
     from contextlib import nullcontext
 
-    from elbowroom.control.recording import Recorder
+    from elbowroom.control.recordings.recording import Recorder
     from elbowroom.experiment.tour.targets import random_targets
     from elbowroom.experiment.tour.tour import Shown, run_tour
     from elbowroom.planning.command import Command

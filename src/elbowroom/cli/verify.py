@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.output import print_json, print_row, progress_bar
-from elbowroom.cli.spoken import said
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.cli.telling.spoken import said
 
 if TYPE_CHECKING:
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.experiment.judge.ledger import Nearness
     from elbowroom.experiment.judge.verdict import BodyVerdict, Verdict
 
@@ -37,7 +37,7 @@ def verify(
     Exit code 0: nothing touches, 1: something does.
     """
     check_arguments(files=[recording, avatar])
-    from elbowroom.control.recording import Recording
+    from elbowroom.control.recordings.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion
     from elbowroom.experiment.judge.verdict import JudgeSettings, judge
 

@@ -6,27 +6,28 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli import clip_options, vmc_options
-from elbowroom.cli.arguments import check_arguments
-from elbowroom.cli.avatar_options import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
-from elbowroom.cli.first_run import compile_first
-from elbowroom.cli.going import TO_HELP, place_of, report_leg
-from elbowroom.cli.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
-from elbowroom.cli.place_options import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
-from elbowroom.cli.spoken import said
-from elbowroom.cli.vmc_options import check_vmc, in_time, stream_to
+from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.options import vmc as vmc_options
+from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.going import TO_HELP, place_of, report_leg
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
+from elbowroom.cli.options.vmc import check_vmc, in_time, stream_to
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.cli.telling.spoken import said
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.controller import Controller
     from elbowroom.control.frame import Frame
-    from elbowroom.control.recording import Recorder
+    from elbowroom.control.recordings.recording import Recorder
     from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, Listener
     from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.command import Command
     from elbowroom.planning.navigation.way import Place, Spot
-    from elbowroom.server.vmc_stream import VmcStream
+    from elbowroom.server.vmc.stream import VmcStream
 
 EXAMPLES = "Examples:  elbowroom walk --scene d --record run.elbow --json  |  elbowroom walk --scene a --to 1,6"
 FELL_SHORT = 1
@@ -78,7 +79,7 @@ def walk(
     of_clips = clip_options.told_by(unit, None if of_place else up, fps)
     told = place_options(scale, up if of_place else None, ground, drop, passable)
     reading = settings_by(bones, height, include_hair)
-    from elbowroom.control.recording import Recorder
+    from elbowroom.control.recordings.recording import Recorder
     from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 
     settings = CrossingSettings(planner, queue, seed, limit)

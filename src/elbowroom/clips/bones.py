@@ -8,8 +8,8 @@ from elbowroom.body.bone_mapping.file_nodes import FileNodes
 from elbowroom.body.bone_mapping.mapping import map_bones
 from elbowroom.body.bone_mapping.override import override_nodes
 from elbowroom.body.bone_mapping.structure import CheckedBones, checked_bones
-from elbowroom.body.file_bones import file_nodes
-from elbowroom.body.rig_repair import repaired
+from elbowroom.body.loading.file_bones import file_nodes
+from elbowroom.body.loading.rig_repair import repaired
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
 from elbowroom.formats.nodes import NodeTree, read_nodes

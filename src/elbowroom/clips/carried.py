@@ -6,8 +6,8 @@ Of the hips' place and heading it is the rates that are kept: they repeat with t
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.carriage import AHEAD, ASIDE, CHEST_LIST, LIST, POSING, TURN
-from elbowroom.body.own_stride import HARMONICS, OwnStride
+from elbowroom.body.gait.carriage import AHEAD, ASIDE, CHEST_LIST, LIST, POSING, TURN
+from elbowroom.body.gait.own_stride import HARMONICS, OwnStride
 from elbowroom.body.root import WITH_FEET
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.root_track import hips_heading, smoothed

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.clips.planning_motion import PlanningMotion
 from elbowroom.clips.swing import resting

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.rest_pose import facing_of, t_pose
+from elbowroom.body.loading.rest_pose import facing_of, t_pose
 from elbowroom.clips.told import UNITS, Told
 from elbowroom.errors import InputError
 from elbowroom.formats.nodes import NodeTree

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.body.bone_mapping.override import override_beside, read_override
-from elbowroom.body.hanim_names import hanim_bones
+from elbowroom.body.loading.hanim_names import hanim_bones
 from elbowroom.clips.body_motion import body_motion
 from elbowroom.clips.bones import gltf_bones, tree_bones
 from elbowroom.clips.clip import Clip

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
+from elbowroom.body.clips.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of, followed, side_by_side
-from elbowroom.body.own_stride import PUBLISHED, OwnStride
-from elbowroom.body.stock_clips import arm_swing_goal, stock_clips
+from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride
 from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.errors import InputError

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
 from elbowroom.body.dof import ARMS, CHILDREN, DofGroup, Turning, clamp, side_by_side
-from elbowroom.body.gait import GaitShape, foot_poses, gait_shape
-from elbowroom.body.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
+from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape
+from elbowroom.body.pose.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.carried import carried
 from elbowroom.clips.root_track import RootTrack, root_track, seen_from_root

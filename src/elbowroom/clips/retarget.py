@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.gait import gait_shape
-from elbowroom.body.hands import relaxed_rotations
+from elbowroom.body.gait.cycle import gait_shape
+from elbowroom.body.pose.hands import relaxed_rotations
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry import quaternion

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.clips.stock_clips import HANGING
 from elbowroom.body.dof import DofGroup, clamp
-from elbowroom.body.manner import PLAIN, Manner
-from elbowroom.body.stock_clips import HANGING
+from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.errors import InputError
 
 Floats = NDArray[np.float64]

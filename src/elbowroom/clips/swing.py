@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
+from elbowroom.body.clips.stock_clips import arm_swing_goal
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, clamp, columns_of
-from elbowroom.body.own_stride import GROWTH, PUBLISHED, WIDEST, OwnStride
-from elbowroom.body.stock_clips import arm_swing_goal
+from elbowroom.body.gait.own_stride import GROWTH, PUBLISHED, WIDEST, OwnStride
 from elbowroom.clips.carried import own_stride
 from elbowroom.clips.planning_motion import PlanningMotion, upper_body
 from elbowroom.errors import InputError

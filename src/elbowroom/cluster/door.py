@@ -16,9 +16,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
-from elbowroom.server.door_word import FOR, WORD
+from elbowroom.server.entrance.door_word import FOR, WORD
+from elbowroom.server.entrance.page_key import page_key
 from elbowroom.server.metrics import CONTENT_TYPE, joined_metrics
-from elbowroom.server.page_key import page_key
 
 LOG = logging.getLogger("elbowroom.cluster")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import ray
 
-from elbowroom.server.shelf import LASTING
+from elbowroom.server.stores.shelf import LASTING
 
 MOST = 2 * 2**30  # bytes
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from elbowroom import __version__
-from elbowroom.control.recording import this_machine
+from elbowroom.control.recordings.recording import this_machine
 from elbowroom.experiment.machine import program_digest
 
 
@@ -42,9 +42,9 @@ class Node(NamedTuple):
 
 def made_ready(own: Kind) -> str:
     """Runs on a node: what is other there than at `own`; if nothing is, all kernels are compiled when it returns."""
-    from elbowroom.server.compiling import compile_apart
-    from elbowroom.server.kernel_cache import is_warm
-    from elbowroom.server.kernel_files import find_place
+    from elbowroom.server.kernels.compiling import compile_apart
+    from elbowroom.server.kernels.kernel_cache import is_warm
+    from elbowroom.server.kernels.kernel_files import find_place
 
     find_place()
     other = Kind.here().difference(own)

@@ -12,11 +12,11 @@ import ray
 from elbowroom.cluster.door import Address
 from elbowroom.cluster.keeper import SharedShelf
 from elbowroom.server.heap import settle, share_one_heap
-from elbowroom.server.library import Library
-from elbowroom.server.planning_thread import let_frames_go_first
+from elbowroom.server.kernels.warmup import first_steps, warm_up
 from elbowroom.server.serving import Front, listen, make_server
-from elbowroom.server.walk import WalkSettings
-from elbowroom.server.warmup import first_steps, warm_up
+from elbowroom.server.sessions.planning_thread import let_frames_go_first
+from elbowroom.server.sessions.walk import WalkSettings
+from elbowroom.server.stores.library import Library
 from elbowroom.world.scene import Scene
 
 _ENDS_IN = 3.0  # seconds

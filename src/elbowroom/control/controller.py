@@ -11,23 +11,23 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
-from elbowroom.control.body_check import BodyCheck, configuration
-from elbowroom.control.desk import ImmediateDesk
-from elbowroom.control.errands import Errands
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.lookahead import STOCK_LOOKAHEAD, Lookahead
-from elbowroom.control.loose import Hand, Thing
-from elbowroom.control.neighbour import Neighbour, Walker
-from elbowroom.control.passing import expected, way_made
-from elbowroom.control.planning_scene import PlanningScene
-from elbowroom.control.prediction import neighbour, slimmer
-from elbowroom.control.pushing import Pushing
-from elbowroom.control.rehearsal import Held
+from elbowroom.control.others.neighbour import Neighbour, Walker
+from elbowroom.control.others.passing import expected, way_made
+from elbowroom.control.others.prediction import neighbour, slimmer
+from elbowroom.control.plans.desk import ImmediateDesk
+from elbowroom.control.plans.errands import Errands
+from elbowroom.control.plans.lookahead import STOCK_LOOKAHEAD, Lookahead
+from elbowroom.control.plans.planning_scene import PlanningScene
+from elbowroom.control.plans.rehearsal import Held
+from elbowroom.control.plans.wayfinder import Answer, Question
 from elbowroom.control.settings import ControlSettings
-from elbowroom.control.showing import Showing
-from elbowroom.control.wayfinder import Answer, Question
+from elbowroom.control.shown.body_check import BodyCheck, configuration
+from elbowroom.control.shown.showing import Showing
+from elbowroom.control.things.loose import Hand, Thing
+from elbowroom.control.things.pushing import Pushing
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command, changed
 from elbowroom.planning.model.fitted_swing import fitted
@@ -37,7 +37,7 @@ from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Place, Spot, Way
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import is_still
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene, on_ground
 
 Floats = NDArray[np.float64]

@@ -6,8 +6,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.footholds import standing
-from elbowroom.body.gait import feet_standing
+from elbowroom.body.gait.cycle import feet_standing
+from elbowroom.body.gait.footholds import standing
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.planning.command import Command

@@ -8,7 +8,7 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, apart, said
-from elbowroom.planning.root.way_ahead import Corners, leg_at
+from elbowroom.planning.root.line.way_ahead import Corners, leg_at
 
 _FAR = 6.0  # metres along the way that are looked ahead
 _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who gets no nearer

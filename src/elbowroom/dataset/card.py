@@ -3,7 +3,7 @@
 from collections import Counter
 from pathlib import Path
 
-from elbowroom.body.permissions import Use
+from elbowroom.body.loading.permissions import Use
 from elbowroom.dataset.columns import COLUMNS
 from elbowroom.dataset.manifest import Manifest
 from elbowroom.dataset.spec import STOCK, DatasetSpec

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom import __version__
-from elbowroom.control.recording import this_machine
+from elbowroom.control.recordings.recording import this_machine
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.errors import InputError
 from elbowroom.experiment.machine import program_digest

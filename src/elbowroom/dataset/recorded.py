@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from elbowroom.control.recording import Recorder
+from elbowroom.control.recordings.recording import Recorder
 from elbowroom.dataset.company import NoRoomError
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.dataset.walk import company_on, controller_of, draw, setting_of, steps_of

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import CARRIAGE, FOOT, HEIGHT, ROOT_STATE, WITH_FEET, RootState
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame

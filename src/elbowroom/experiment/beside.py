@@ -3,8 +3,8 @@
 import math
 from time import perf_counter
 
-from elbowroom.control.desk import Job
-from elbowroom.control.wayfinder import Answer
+from elbowroom.control.plans.desk import Job
+from elbowroom.control.plans.wayfinder import Answer
 
 
 class BesideDesk:

@@ -12,7 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.errors import InputError
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.pacing import is_realtime, late_frames

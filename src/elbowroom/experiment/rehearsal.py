@@ -9,12 +9,12 @@ from functools import lru_cache
 import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
-from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled
+from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
+from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled
+from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
-from elbowroom.body.living import body_of, living
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
-from elbowroom.body.slim_capsule import Wanted, slimmest
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
@@ -42,10 +42,10 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.ground.ground import heights_along
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.meshes.solids import inner_boxes
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.solids import inner_boxes
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.places.columns import surface_keys
 from elbowroom.world.places.layers import link_surfaces
 from elbowroom.world.scene import Scene, on_ground

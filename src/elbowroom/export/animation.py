@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, hips_position, local_rotations
+from elbowroom.body.pose.kinematics import body_model, hips_position, local_rotations
 from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.control.recording import Recording
+from elbowroom.control.recordings.recording import Recording
 from elbowroom.errors import InputError
 from elbowroom.export.shown import ShownFrames, even_moments
 from elbowroom.formats.takes import MAX_FRAMES, MAX_POSES

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.export.place import COLORS, color_of
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.moving import Repeat, Track
 from elbowroom.world.obstacles.shapes import Box, Cylinder, Shape, Sphere
+from elbowroom.world.obstacles.tracks.moving import Repeat, Track
 from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 

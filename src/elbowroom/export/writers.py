@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from elbowroom.body.hanim_names import hanim_name
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.permissions import Use
+from elbowroom.body.loading.hanim_names import hanim_name
+from elbowroom.body.loading.permissions import Use
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.export import tables

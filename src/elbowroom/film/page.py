@@ -13,8 +13,8 @@ from typing import Any
 from elbowroom.errors import InputError
 from elbowroom.film.webm import Packet
 from elbowroom.server.app import HOW_TO_BUILD, client_is_built
-from elbowroom.server.library import Library
 from elbowroom.server.serving import listen, make_server, url_of
+from elbowroom.server.stores.library import Library
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader")

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body import dof
+from elbowroom.body.clips.stock_clips import HANGING, arm_swing, swing_into
 from elbowroom.body.dof import ARMS, LOCAL, LOCAL_GROUPS, DofGroup, clamp, columns_of
-from elbowroom.body.stock_clips import HANGING, arm_swing, swing_into
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.gaze import look

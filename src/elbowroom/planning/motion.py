@@ -15,7 +15,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
 

@@ -17,31 +17,31 @@ from starlette.types import ASGIApp, Scope
 from starlette.websockets import WebSocket
 
 from elbowroom import __version__
-from elbowroom.body.permissions import Use
+from elbowroom.body.loading.permissions import Use
 from elbowroom.errors import InputError
-from elbowroom.server.admission import Admission
 from elbowroom.server.apart.process import ApartError, FullDiskError
-from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.codec import encode, plain
-from elbowroom.server.courses import BusyError
-from elbowroom.server.door_word import BehindDoor
-from elbowroom.server.guard import Guard, is_loopback
+from elbowroom.server.entrance.admission import Admission
+from elbowroom.server.entrance.door_word import BehindDoor
+from elbowroom.server.entrance.guard import Guard, is_loopback
+from elbowroom.server.entrance.open_pages import OpenPages, Tab
+from elbowroom.server.entrance.reception import Reception
+from elbowroom.server.entrance.while_there import while_there
 from elbowroom.server.heap import hand_back
-from elbowroom.server.library import Library
-from elbowroom.server.meter import LATE, PROMPT
 from elbowroom.server.metrics import CONTENT_TYPE as METRICS_TYPE
 from elbowroom.server.metrics import metrics_text
-from elbowroom.server.open_pages import OpenPages, Tab
-from elbowroom.server.reception import Reception
-from elbowroom.server.reports import scene_message
-from elbowroom.server.runs import run_response, shown_run
-from elbowroom.server.scene_desk import SceneDesk
 from elbowroom.server.schema.progress import Notice
-from elbowroom.server.session import Session
-from elbowroom.server.sharing import bring_file, bring_scene, shared_avatar
-from elbowroom.server.uploads import UploadDesk
+from elbowroom.server.sessions.meter import LATE, PROMPT
+from elbowroom.server.sessions.reports import scene_message
+from elbowroom.server.sessions.session import Session
+from elbowroom.server.stores.avatar_store import StoredAvatar
+from elbowroom.server.stores.courses import BusyError
+from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.runs import run_response, shown_run
+from elbowroom.server.stores.scene_desk import SceneDesk
+from elbowroom.server.stores.sharing import bring_file, bring_scene, shared_avatar
+from elbowroom.server.stores.uploads import UploadDesk
 from elbowroom.server.usage import process_usage
-from elbowroom.server.while_there import while_there
+from elbowroom.server.wire.codec import encode, plain
 from elbowroom.world.scene import Scene
 
 LOG = logging.getLogger("elbowroom.server")

@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.clips.performance import Moment, perform
-from elbowroom.control.body_check import BodyCheck, configuration
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.key_frame_queue import KeyFrames
-from elbowroom.control.loose import Thing
+from elbowroom.control.shown.body_check import BodyCheck, configuration
+from elbowroom.control.things.loose import Thing
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.server.avatar_store import StoredAvatar
-from elbowroom.server.clip_store import StoredClip
-from elbowroom.server.pose import NodePose
-from elbowroom.server.walk import WalkSettings
+from elbowroom.server.sessions.walk import WalkSettings
+from elbowroom.server.stores.avatar_store import StoredAvatar
+from elbowroom.server.stores.clip_store import StoredClip
+from elbowroom.server.wire.pose import NodePose
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

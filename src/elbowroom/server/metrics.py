@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from elbowroom.server.admission import Admission
-from elbowroom.server.meter import Histogram, Meter
+from elbowroom.server.entrance.admission import Admission
+from elbowroom.server.sessions.meter import Histogram, Meter
 from elbowroom.server.usage import Usage
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"

@@ -12,13 +12,13 @@ import uvicorn
 
 from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import usable_cores
-from elbowroom.server.admission import AMONG, Admission
 from elbowroom.server.app import make_app
-from elbowroom.server.connections import BoundedWebSocket, looks_after
 from elbowroom.server.ending import end_at_latest
-from elbowroom.server.library import Library
+from elbowroom.server.entrance.admission import AMONG, Admission
+from elbowroom.server.entrance.connections import BoundedWebSocket, looks_after
 from elbowroom.server.ports import HIGHEST, check_port
 from elbowroom.server.schema.bounds import MAX_MESSAGE
+from elbowroom.server.stores.library import Library
 
 _PORTS_TRIED = 50
 _SEND_BUFFER = 128 * 1024  # bytes in the kernel's hands: a slow client must not collect seconds of old frames

@@ -8,7 +8,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, NAME, read_angle
-from elbowroom.world.obstacles.moving import FASTEST, Moving, Repeat, Track
+from elbowroom.world.obstacles.tracks.moving import FASTEST, Moving, Repeat, Track
 from elbowroom.world.shape_format import FIELDS, read_shape, type_of, write_shape
 
 MAX_MOVING = 100

@@ -19,9 +19,9 @@ from elbowroom.world.ground.making import walked_over
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle, read_color
 from elbowroom.world.moving_format import read_moving, write_moving
-from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Hull, Shape
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.place_format import read_place_field, write_place
 from elbowroom.world.places.scene_place import with_more
 from elbowroom.world.scene import Gate, Scene, on_ground

@@ -8,7 +8,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.world.json_place import Place
 from elbowroom.world.limits import LARGEST
-from elbowroom.world.obstacles.hulls import THINNEST, FlatHullError, surface_of
+from elbowroom.world.obstacles.meshes.hulls import THINNEST, FlatHullError, surface_of
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere, Vector
 
 FEWEST_POINTS, MOST_POINTS = 4, 128  # of a hull

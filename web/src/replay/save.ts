@@ -14,7 +14,7 @@ export type SavedAs = (typeof SAVED_AS)[number];
 /** Bytes of a pose frame before its time. */
 const TIME_AT = 8;
 
-/** Numbers of a frame before its rotations, see `server/saved_motion.py`. */
+/** Numbers of a frame before its rotations, see `server/stores/saved_motion.py`. */
 const HEAD = 9;
 
 /** The frames of a take as the server reads them. */

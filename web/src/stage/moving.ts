@@ -1,4 +1,4 @@
-/** Where obstacles on tracks are at a time; the same rule as in elbowroom/world/obstacles/moving.py. */
+/** Where obstacles on tracks are at a time; the same rule as in elbowroom/world/obstacles/tracks/moving.py. */
 
 import type { OrientedBox } from "../camera/spring_arm";
 import type { MovingObstacle } from "../generated/messages";

@@ -1,4 +1,4 @@
-/** Reads a run that is packed in its own page; the same layout as in elbowroom/server/standalone_run.py. */
+/** Reads a run that is packed in its own page; the same layout as in elbowroom/server/standalone/packed_run.py. */
 
 import type { AvatarMessage, PoseFrame, SceneMessage } from "../generated/messages";
 import type { Take } from "../replay/take";

@@ -9,7 +9,7 @@ that is all of the floor: who walks there is proven free as quickly as on the pl
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.kinematics import BodyModel, leg_capsules
+from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.footing import NOWHERE, Footing

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DOF, LOCAL, columns_of, limits
-from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.axis_distances import pair_clearances

@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 _RATES = (2.25, 4.0)  # m/s up and down: as feet go on stairs, and hastily
 _TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
 _SAME = 1e-9  # metres and radians
-_SKIN = 0.01  # metres: nearly all of the surface of a foot is within so much of its capsules (`body/coverage.py`)
+_SKIN = 0.01  # metres: nearly all of a foot's surface is within so much of its capsules (`body/fitting/coverage.py`)
 
 
 class RaisedFeet:

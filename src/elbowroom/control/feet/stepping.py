@@ -1,7 +1,7 @@
 """The avatar's feet and hips under what is played.
 
-Feet step as the root goes, and wait or glide where no step can be shown. Hips, chest and head live (`body/living.py`)
-as far as there is room, and are where they were planned where there is none.
+Feet step as the root goes, and wait or glide where no step can be shown. Hips, chest and head live
+(`body/gait/living.py`) as far as there is room, and are where they were planned where there is none.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
-from elbowroom.body.footholds import UNKNOWN, beside, gliding, onward, settled, standing
-from elbowroom.body.footholds_ahead import steps_ahead
+from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled, standing
+from elbowroom.body.gait.footholds_ahead import steps_ahead
+from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, lower_body
-from elbowroom.body.living import body_of, lively, living
+from elbowroom.body.pose.kinematics import body_model, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs

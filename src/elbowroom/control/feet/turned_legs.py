@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup
-from elbowroom.body.kinematics import BodyModel, lower_body
-from elbowroom.body.legs import leg_rotations
-from elbowroom.body.posing import pose_legs
+from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.pose.kinematics import BodyModel, lower_body
+from elbowroom.body.pose.posing import pose_legs
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.body_check import BodyCheck
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene

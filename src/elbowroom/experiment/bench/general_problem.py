@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command

@@ -17,8 +17,8 @@ from elbowroom.experiment.bench.capsule_inputs import CapsuleInputs, capsule_inp
 from elbowroom.experiment.bench.collision import Speed, checks_per_second
 from elbowroom.experiment.bench.rivals import coal_capsules
 from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.meshes.touching import Touching
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.touching import Touching
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]

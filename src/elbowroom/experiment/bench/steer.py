@@ -12,9 +12,9 @@ import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.control.desk import ImmediateDesk, Job
-from elbowroom.control.lookahead import Lookahead
-from elbowroom.control.wayfinder import Answer
+from elbowroom.control.plans.desk import ImmediateDesk, Job
+from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.control.plans.wayfinder import Answer
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.steer_scenes import SteeredScene, steered_scenes, wanted_way
 from elbowroom.experiment.crossing import DT, start_for, warm_up

@@ -7,7 +7,7 @@ from typing import Any, cast
 import numba
 import numpy as np
 
-from elbowroom.world.obstacles import capsule_box
+from elbowroom.world.obstacles.pairs import capsule_box
 
 _ARITHMETIC = r"\bv(?:fm|fnm|mul|add|sub|min|max)\w*ps\b.*%"
 _ENOUGH = 256  # numbers of a tile, of a row, of sixteen lanes

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.dof import ARMS, LOCAL, LOWERING, DofGroup, clamp, columns_of, followed
-from elbowroom.control.canned import standing_posture
+from elbowroom.control.plans.canned import standing_posture
 from elbowroom.experiment.gauntlet import levels
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw, Range
 from elbowroom.experiment.gauntlet.line import smoothstep

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from elbowroom import __version__
-from elbowroom.control.avatar_reference import AvatarReference
-from elbowroom.control.recording import this_machine
+from elbowroom.control.recordings.avatar_reference import AvatarReference
+from elbowroom.control.recordings.recording import this_machine
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.levels import level_of

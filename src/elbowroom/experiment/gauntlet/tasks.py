@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.frame import Frame
+from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.experiment.crossing import warm_up
 from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
 from elbowroom.experiment.gauntlet.judged import judged_walk

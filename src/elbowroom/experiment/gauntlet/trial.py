@@ -9,7 +9,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course
 from elbowroom.experiment.gauntlet.user import CourseUser

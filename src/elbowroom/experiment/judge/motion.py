@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.control.recording import ASSIST, RESTART, Recording, roots_of
+from elbowroom.control.recordings.recording import ASSIST, RESTART, Recording, roots_of
 from elbowroom.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.hulls import surface_of
-from elbowroom.world.obstacles.moving import Track
-from elbowroom.world.obstacles.parts import above_ground
+from elbowroom.world.obstacles.meshes.hulls import surface_of
+from elbowroom.world.obstacles.meshes.parts import above_ground
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere
+from elbowroom.world.obstacles.tracks.moving import Track
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -1,7 +1,7 @@
-"""Forward kinematics once more, plain NumPy over whole arrays of poses: what `body.kinematics` is judged by.
+"""Forward kinematics once more, plain NumPy over whole arrays of poses: what `body.pose.kinematics` is judged by.
 
 The conventions are those of the body (`body.dof`, `docs/architecture.md`), the arithmetic shares nothing with its
-kernels. Only the tables of the gait (where feet and hips are at a root state, `body.kinematics.lower_body`) and of
+kernels. Only the tables of the gait (where feet and hips are at a root state, `body.pose.kinematics.lower_body`) and of
 relaxed fingers are taken from there: they say what the walk is, not where the body gets to.
 """
 
@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup
-from elbowroom.body.gait import gait_shape
-from elbowroom.body.hands import relaxed_rotations
+from elbowroom.body.gait.cycle import gait_shape
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import lower_body
+from elbowroom.body.pose.hands import relaxed_rotations
+from elbowroom.body.pose.kinematics import lower_body
 from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.motion import Moments, ShownMotion

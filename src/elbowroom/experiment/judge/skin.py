@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.body_mesh import body_mesh, loose_nodes
+from elbowroom.body.fitting.body_mesh import body_mesh, loose_nodes
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.formats.gltf import parse_gltf

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.control.recording import Recording
+from elbowroom.control.recordings.recording import Recording
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness

@@ -7,10 +7,10 @@ from time import thread_time_ns
 import numpy as np
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.footholds import UNKNOWN, beside
+from elbowroom.body.gait.footholds import UNKNOWN, beside
+from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
-from elbowroom.body.living import body_of, living
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import CARRIAGE, ROOT_STATE
 
 MANY = 256

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import gait_shape
+from elbowroom.body.gait.cycle import gait_shape
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.skin import Skin, skin_of

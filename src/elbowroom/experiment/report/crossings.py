@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
 from elbowroom.experiment.opened import Thing

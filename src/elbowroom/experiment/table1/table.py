@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom import __version__
-from elbowroom.control.avatar_reference import AvatarReference
-from elbowroom.control.recording import this_machine
+from elbowroom.control.recordings.avatar_reference import AvatarReference
+from elbowroom.control.recordings.recording import this_machine
 from elbowroom.control.settings import ControlSettings
 from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
 from elbowroom.experiment.machine import machine_kind, program_digest

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, CHILDREN, SEARCH_ORDER, DofGroup, clamp, side_by_side
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model
+from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.clips.swing import KEYS, Swing, resting

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.gait import stood_places
-from elbowroom.body.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
+from elbowroom.body.gait.cycle import stood_places
+from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on

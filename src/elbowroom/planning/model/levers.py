@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.carriage import ASIDE, CHEST_TURN, HEAD_TURN, OF_HIPS, POSING, UP
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of
-from elbowroom.body.gait import hips_sinks
+from elbowroom.body.gait.carriage import ASIDE, CHEST_TURN, HEAD_TURN, OF_HIPS, POSING, UP
+from elbowroom.body.gait.cycle import hips_sinks
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
-from elbowroom.body.posing import Column
+from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
+from elbowroom.body.pose.posing import Column
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.even_points import evenly_spread

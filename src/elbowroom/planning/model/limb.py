@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body import posing
 from elbowroom.body.dof import CHILDREN, DofGroup
-from elbowroom.body.kinematics import BodyModel, chest_frames, group_capsules
+from elbowroom.body.pose import posing
+from elbowroom.body.pose.kinematics import BodyModel, chest_frames, group_capsules
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.self_contact import allowed_distances

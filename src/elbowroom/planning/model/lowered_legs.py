@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, limits
-from elbowroom.body.kinematics import BodyModel, leg_capsules
+from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.footing import Footing
@@ -19,9 +19,9 @@ from elbowroom.planning.root.path import RootPath, ground_covered, interpolate_b
 from elbowroom.world.ground.ground import PLAIN, Ground
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby, Spans
-from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about, is_empty, span_count, span_of
+from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

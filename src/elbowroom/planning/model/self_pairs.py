@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import CHILDREN, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of
-from elbowroom.body.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import kernel
 from elbowroom.planning.goal import GoalFunction, natural_walk

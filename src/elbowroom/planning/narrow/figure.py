@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DOF, LOCAL, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath

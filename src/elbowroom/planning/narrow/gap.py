@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.narrow.figure import Figure
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces, beside
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.world.obstacles.free_map import Window
 
 Floats = NDArray[np.float64]

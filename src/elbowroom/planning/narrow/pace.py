@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.motion import SLOWED_FROM
 
 Floats = NDArray[np.float64]

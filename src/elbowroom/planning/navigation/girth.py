@@ -6,7 +6,7 @@ import numpy as np
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, leg_capsules, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 
 _WALK, _PHASES = 1.1, 32  # m/s; moments of a stride

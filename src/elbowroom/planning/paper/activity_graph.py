@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, clamp, limits
 from elbowroom.errors import InputError
 from elbowroom.jit import exact_kernel

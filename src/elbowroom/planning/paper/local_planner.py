@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import ARMS, LOWERING, DofGroup, columns_of, followed, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, chest_frames, pelvis_frames
+from elbowroom.body.pose.kinematics import body_model, chest_frames, pelvis_frames
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.goal import natural_walk

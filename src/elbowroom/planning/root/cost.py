@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.legs.moving_legs import MovingAround
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.motion import wrapped
-from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlannerSettings
 
 Floats = NDArray[np.float64]

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.line import TravelLine, asked_direction, new_line
+from elbowroom.planning.root.evasion.profile import Profile
+from elbowroom.planning.root.line.line import TravelLine, asked_direction, new_line
+from elbowroom.planning.root.line.way_ahead import Corners, leg_at
 from elbowroom.planning.root.motion import RootMotionSettings
-from elbowroom.planning.root.profile import Profile
-from elbowroom.planning.root.way_ahead import Corners, leg_at
 from elbowroom.planning.root.way_out import WayOut
 
 Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import phase_rate
+from elbowroom.body.gait.cycle import phase_rate
 from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
@@ -55,7 +55,7 @@ class MotionBounds(NamedTuple):
     acceleration: float
     braking: float
     turn_acceleration: float
-    quickness: float = 1.0  # strides of the body for one of an average adult, see `body.gait`
+    quickness: float = 1.0  # strides of the body for one of an average adult, see `body.gait.cycle`
     ground: Ground = PLAIN  # that the root follows
 
 

@@ -11,31 +11,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.gait import quickness
+from elbowroom.body.gait.cycle import quickness
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.gap import gap_ahead
 from elbowroom.planning.narrow.pace import slow_places
 from elbowroom.planning.narrow.places import NarrowPlaces
-from elbowroom.planning.root.ahead import Above, RouteFinder
 from elbowroom.planning.root.cost import SLOW, Figure, crowded, prices_of, seconds_lost
-from elbowroom.planning.root.evasion import EvasionFinder
-from elbowroom.planning.root.hull import route_is_open
-from elbowroom.planning.root.leg_check import LegCheck
-from elbowroom.planning.root.line import TravelLine, straight_route, wanted_speed, wanted_velocities
-from elbowroom.planning.root.lower_body import LowerBody
+from elbowroom.planning.root.evasion.evasion import EvasionFinder
+from elbowroom.planning.root.evasion.profile import Profile
+from elbowroom.planning.root.legs.hull import route_is_open
+from elbowroom.planning.root.legs.leg_check import LegCheck
+from elbowroom.planning.root.legs.lower_body import LowerBody
+from elbowroom.planning.root.legs.moving_legs import MovingAround
+from elbowroom.planning.root.line.ahead import Above, RouteFinder
+from elbowroom.planning.root.line.line import TravelLine, straight_route, wanted_speed, wanted_velocities
+from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.planning.root.line.way_ahead import Corners, line_of, way_ahead
 from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
-from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root.profile import Profile
 from elbowroom.planning.root.query import Answer, Asked, RootQuery
-from elbowroom.planning.root.straight_walk import Stretch, Walker, straight_walk
-from elbowroom.planning.root.way_ahead import Corners, line_of, way_ahead
 from elbowroom.planning.stillness import STILL
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
 
-from elbowroom.planning.root.evasion import WIDE, EvasionSettings
+from elbowroom.planning.root.evasion.evasion import WIDE, EvasionSettings
+from elbowroom.planning.root.line.route import RouteSettings
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.route import RouteSettings
 
 
 class RootPlanKind(Enum):

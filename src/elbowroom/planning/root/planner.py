@@ -14,19 +14,19 @@ from typing import NamedTuple
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.ahead import Above
 from elbowroom.planning.root.cost import SLOW
-from elbowroom.planning.root.evasion import EvasionFinder
-from elbowroom.planning.root.line import TravelLine, wanted_speed
+from elbowroom.planning.root.evasion.evasion import EvasionFinder
+from elbowroom.planning.root.line.ahead import Above
+from elbowroom.planning.root.line.line import TravelLine, wanted_speed
+from elbowroom.planning.root.line.way_ahead import line_of
 from elbowroom.planning.root.memory import Evading, RootMemory
 from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked
-from elbowroom.planning.root.way_ahead import line_of
 from elbowroom.planning.root.way_out import WayOut, WayOutFinder, WayOutSettings
-from elbowroom.world.obstacles.moving import Moving
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 _SLOW = 0.1  # m/s: who walks faster has somewhere to go

@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, ROOT_STATE, RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.ahead import Route, RouteFinder
-from elbowroom.planning.root.evasion import Evasion
-from elbowroom.planning.root.leg_check import FreeLegs, LegCheck
-from elbowroom.planning.root.line import TravelLine
-from elbowroom.planning.root.lower_body import Neighbours
+from elbowroom.planning.root.evasion.evasion import Evasion
+from elbowroom.planning.root.evasion.profile import Course, follow_profile
+from elbowroom.planning.root.legs.leg_check import FreeLegs, LegCheck
+from elbowroom.planning.root.legs.lower_body import Neighbours
+from elbowroom.planning.root.legs.moving_legs import MovingAround
+from elbowroom.planning.root.line.ahead import Route, RouteFinder
+from elbowroom.planning.root.line.line import TravelLine
+from elbowroom.planning.root.line.way_ahead import WayAhead
 from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, gets_nowhere, steer
-from elbowroom.planning.root.moving_legs import MovingAround
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root.profile import Course, follow_profile
-from elbowroom.planning.root.way_ahead import WayAhead
 from elbowroom.planning.stillness import is_still
 
 Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.line import TravelLine
+from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind

@@ -23,7 +23,7 @@ def read_upload(file: str, name: str, glb: str) -> tuple["Humanoid | None", list
     The avatar's file for a viewer is written to `glb`. The format is `PLACE` for the model of what has no bones.
     Raises `InputError`.
     """
-    from elbowroom.body.loading import load_humanoid_bytes
+    from elbowroom.body.loading.avatar_file import load_humanoid_bytes
     from elbowroom.clips.files import has_animations, is_motion_only, parse_motion
 
     data = Path(file).read_bytes()
@@ -109,8 +109,8 @@ def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
 
     `known` tells the avatars of the server: JSON of their references by id.
     """
-    from elbowroom.control.avatar_reference import AvatarReference
-    from elbowroom.server.run_frames import posed_run
+    from elbowroom.control.recordings.avatar_reference import AvatarReference
+    from elbowroom.server.standalone.frames import posed_run
 
     references = {avatar: AvatarReference(**reference) for avatar, reference in json.loads(known).items()}
     try:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, kernel, plain
 from elbowroom.world.obstacles.layout import HALF, LANES, PER_METRE, ROUNDING, ROW, TILE, Nearby
-from elbowroom.world.obstacles.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
+from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.jit import kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
-from elbowroom.world.obstacles.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
+from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
 _FIRST = plain(0)
 _TILES = 32  # tiles that are treated together: they stay in the first-level cache

@@ -8,8 +8,8 @@ convex, and have a file of their own.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.closest_on_mesh import closest_on_mesh
 from elbowroom.world.obstacles.layout import DATA, EDGE, HALF, KIND, LINE, PER_METRE, ROUNDING, TURN, Kind, Nearby
+from elbowroom.world.obstacles.meshes.closest_on_mesh import closest_on_mesh
 
 Floats = NDArray[np.float64]
 

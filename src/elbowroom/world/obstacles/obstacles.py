@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.along import Along, Place, along
 from elbowroom.world.obstacles.around_body import Standing, clearances_around
 from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
 from elbowroom.world.obstacles.clearance import (
@@ -21,13 +20,14 @@ from elbowroom.world.obstacles.clearance import (
 )
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.free_map import FreeMap
-from elbowroom.world.obstacles.kept_parts import kept_parts
 from elbowroom.world.obstacles.layout import Nearby
-from elbowroom.world.obstacles.moving import Moving
-from elbowroom.world.obstacles.packed import Packed, pack
-from elbowroom.world.obstacles.parts import Parts
+from elbowroom.world.obstacles.meshes.kept_parts import kept_parts
+from elbowroom.world.obstacles.meshes.packed import Packed, pack
+from elbowroom.world.obstacles.meshes.parts import Parts
 from elbowroom.world.obstacles.rows import about, bounds_of, corners_of, joined, one_of, rows_of
 from elbowroom.world.obstacles.shapes import Box, Hull, Mesh, Shape, extents_of
+from elbowroom.world.obstacles.tracks.along import Along, Place, along
+from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.obstacles.layout import CENTER, DATA, HALF, KIND, ROUNDING, ROW, TURN, Nearby, Spans
-from elbowroom.world.obstacles.packed import Packed, pack
+from elbowroom.world.obstacles.meshes.packed import Packed, pack
 from elbowroom.world.obstacles.shapes import Shape
 
 Floats = NDArray[np.float64]

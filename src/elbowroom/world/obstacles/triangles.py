@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.hulls import surface_of
+from elbowroom.world.obstacles.meshes.hulls import surface_of
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere
 
 Floats = NDArray[np.float64]

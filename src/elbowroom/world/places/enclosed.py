@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
+from elbowroom.world.obstacles.meshes.solids import enclosing_triangles
 from elbowroom.world.obstacles.shapes import Mesh
-from elbowroom.world.obstacles.solids import enclosing_triangles
 from elbowroom.world.places.place import Place
 
 Floats = NDArray[np.float64]

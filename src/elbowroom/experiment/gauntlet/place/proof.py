@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import followed
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.experiment.gauntlet.body_rows import BodyRows, rows_of
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED
 from elbowroom.planning.goal import natural_walk

@@ -4,10 +4,10 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from elbowroom.control.avatar_reference import AvatarReference
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.control.lookahead import Lookahead
+from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import warm_up

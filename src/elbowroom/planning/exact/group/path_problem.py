@@ -11,7 +11,7 @@ from elbowroom.planning.exact.group.problem import GroupTask, Guide
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.obstacles.along import Along
+from elbowroom.world.obstacles.tracks.along import Along
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

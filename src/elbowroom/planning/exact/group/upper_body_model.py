@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.clip import MotionClip
+from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import BodyModel, body_model
+from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import Postures, postures_of

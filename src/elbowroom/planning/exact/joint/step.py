@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, SEARCH_ORDER
-from elbowroom.body.kinematics import BodyModel, chest_frames
+from elbowroom.body.pose.kinematics import BodyModel, chest_frames
 from elbowroom.jit import kernel
 from elbowroom.planning.exact.joint.bounds import Problem, path_costs
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.exact.group.caches import begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
@@ -30,9 +30,9 @@ from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath, ground_covered
-from elbowroom.world.obstacles.along import Along
-from elbowroom.world.obstacles.moving import Moving
 from elbowroom.world.obstacles.rows import any_in
+from elbowroom.world.obstacles.tracks.along import Along
+from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

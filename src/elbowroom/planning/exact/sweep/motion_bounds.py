@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait import quickness, walk_into
-from elbowroom.body.kinematics import BodyModel
-from elbowroom.body.posing import place_pelvis_into
+from elbowroom.body.gait.cycle import quickness, walk_into
+from elbowroom.body.pose.kinematics import BodyModel
+from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, SEARCH_ORDER, DofGroup
-from elbowroom.body.kinematics import BodyModel
+from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.memory.row_contents import CONTENT

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, DofGroup
+from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures

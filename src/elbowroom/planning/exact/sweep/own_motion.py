@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, columns_of
-from elbowroom.body.kinematics import BodyModel
+from elbowroom.body.pose.kinematics import BodyModel
+from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.body.whole_body import WholeBody, posed_body
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of

@@ -1,0 +1,1 @@
+"""How legs, hips and trunk walk: the cycle, feet that stand, and how a body lives."""

@@ -1,0 +1,438 @@
+"""Feet that stand where they came down, whatever the root does: a state of the feet that goes on from frame to frame.
+
+The walking cycle of `gait` is a function of the root's state, so its feet slide whenever velocities change. Here each
+foot has a state of its own: where it is, flat, in the root's frame, and how it is pitched and lifted. One that stands
+stays where it is in the world. When the cycle wants it to swing it goes, without a jump of its place or its velocity,
+to where it will be under the root in the middle of its stance, as the root is planned; it lands where it is then. At an
+even walk that is the cycle. Who has come to rest puts the feet beside each other, one step after the other, and so
+steps who turns in place.
+
+Hips are where the cycle has them, or lower where a foot would be out of reach.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowroom.body.gait.carriage import carried_hip
+from elbowroom.body.gait.cycle import (
+    GaitShape,
+    Stride,
+    ease_of,
+    flat_place,
+    hips_sink,
+    home_of,
+    roll_of,
+    stride_of,
+    tilt_foot,
+    walk_into,
+)
+from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
+from elbowroom.jit import exact_kernel, helper, kernel
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+# Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
+# its swing is over (0: it stands), and the velocity of x, z and yaw over the ground, in the axes of the root.
+_X, _Z, _YAW, _PITCH, _LIFT, _SWING, _VELOCITY = 0, 1, 2, 3, 4, 5, 6
+
+UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
+_HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
+_STILL = 1e-3  # m/s: below, the root rests
+_FLAT = 1e-9  # radians, metres
+_CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
+_STRETCH = 0.9985  # of a leg: no foot is farther from its hip
+_FAR, _TWISTED = 0.75, 0.9  # of a leg, radians: a standing foot farther off has to follow soon
+_SWINGS = (0.20, 0.36, 0.80)  # seconds of a standard leg's swing: at least, to come to rest, at most
+_TURNING = 0.25  # metres of a standard leg: so much way over the ground is a radian
+_OVER = 0.04  # of the cycle, by which a foot may stand longer than in an even walk
+_LATE = 0.75  # of the cycle's swing: who has not lifted a foot by then leaves it
+_LEAST_LIFT, _STEP_LIFT = 0.5, 0.056  # of the swing of a long stride, metres of a standard leg
+_APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
+_TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
+_ROLL_RATE, _LIFT_RATE = 16.0, 1.5  # rad/s, m/s: no foot tilts or is lifted faster
+_FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
+_NEARLY = 0.12  # metres: so near it lands
+_GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
+_AT_LEAST = 0.2  # of its swing is over, for a foot that does
+_MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
+
+
+@helper
+def _rests(root: Floats) -> bool:
+    return bool(abs(root[3]) + abs(root[4]) + abs(root[5]) < _STILL)
+
+
+@kernel
+def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
+    stride = stride_of(scale, 0.0, 0.0, 0.0)
+    out[:] = 0.0
+    for i in range(ROOT_STATE):
+        out[i] = root[i]
+    for side in range(2):
+        at = ROOT_STATE + FOOT * side
+        out[at + _X], out[at + _Z] = home_of(legs, stride, side)
+
+
+@exact_kernel
+def _carry(before: Floats, root: Floats, out: Floats) -> None:
+    """Both feet where they were in the world, as seen from another root."""
+    turned = before[2] - root[2]
+    c, s, cosine, sine = np.cos(turned), np.sin(turned), np.cos(root[2]), np.sin(root[2])
+    dx, dz = before[0] - root[0], before[1] - root[1]
+    left, ahead = dx * cosine - dz * sine, dx * sine + dz * cosine
+    for i in range(ROOT_STATE):
+        out[i] = root[i]
+    for side in range(2):
+        at = ROOT_STATE + FOOT * side
+        for i in range(FOOT):
+            out[at + i] = before[at + i]
+        x, z, vx, vz = before[at + _X], before[at + _Z], before[at + _VELOCITY], before[at + _VELOCITY + 1]
+        out[at + _X], out[at + _Z] = left + x * c + z * s, ahead - x * s + z * c
+        out[at + _YAW] = before[at + _YAW] + turned
+        out[at + _VELOCITY], out[at + _VELOCITY + 1] = vx * c + vz * s, -vx * s + vz * c
+
+
+@helper
+def _position(phase: float, side: int) -> float:
+    """Where in its cycle a foot is, 0 to 1."""
+    cycle = phase + 0.5 * side
+    return float(cycle - np.floor(cycle))
+
+
+@helper
+def _away(foot: Floats, place: tuple[float, float, float], scale: float) -> float:
+    """How far a foot is from a place (x, z, yaw): above 1 it is worth a step."""
+    apart = np.hypot(foot[_X] - place[0], foot[_Z] - place[1]) / (_CLOSED * scale)
+    return float(max(apart, abs(foot[_YAW] - place[2]) / _TURNED))
+
+
+@helper
+def _overtaken(legs: Floats, side: int, foot: Floats) -> bool:
+    """Whether a foot is so far from its hip, or so twisted, that it has to follow."""
+    far = np.hypot(foot[_X] - legs[side, _HIP], foot[_Z] - legs[side, _HIP + 2])
+    return bool(far > _FAR * (legs[side, _THIGH] + legs[side, _SHIN]) or abs(foot[_YAW]) > _TWISTED)
+
+
+@helper
+def _passed(legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
+    """How long ago the root passed by a standing foot, seconds: half its stance later the cycle lifts it."""
+    x, z = home_of(legs, stride, side)
+    wide = (_TURNING * stride.scale) ** 2
+    way = (x - foot[_X]) * stride.lateral + (z - foot[_Z]) * stride.forward - wide * foot[_YAW] * stride.turn
+    return float(way / max(stride.speed * stride.speed + wide * stride.turn * stride.turn, 1e-12))
+
+
+@helper
+def _urge(
+    legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, goal: tuple[float, float, float]
+) -> float:
+    """How much a standing foot is due to be lifted; 0: it is not. The cycle would have it come down at a `goal` now."""
+    if _overtaken(legs, side, foot):
+        return 1e3 + float(np.hypot(foot[_X] - legs[side, _HIP], foot[_Z] - legs[side, _HIP + 2]))
+    if _rests(root):
+        x, z = home_of(legs, stride, side)
+        away = _away(foot, (x, z, 0.0), stride.scale)
+        return away if away > 1.0 else 0.0
+    u, late = _position(root[6], side), _LATE * (1.0 - stride.duty)
+    due = stride.duty <= u <= stride.duty + late
+    over = _passed(legs, stride, side, foot) / stride.period - (0.5 * stride.duty + _OVER)
+    if not due and over <= 0.0:
+        return 0.0
+    away = _away(foot, goal, stride.scale)
+    return away if away > 2.0 else 0.0
+
+
+@helper
+def _time_left(legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, twin: Floats, dt: float) -> float:
+    """Seconds until a swinging foot lands, `dt` seconds after it was as it is told; its twin stands or swings."""
+    size, rest = np.sqrt(stride.scale), 1.0 - foot[_SWING]
+    least, most = rest * _SWINGS[0] * size, rest * _SWINGS[2] * size
+    u = _position(root[6], side)
+    if _rests(root):
+        return float(rest * _SWINGS[1] * size - dt)
+    left = (1.0 - u) * stride.period if u >= 0.5 * stride.duty else rest * _SWINGS[1] * size - dt
+    if twin[_SWING] <= 0.0:
+        left = min(left, 0.5 * stride.duty * stride.period - _passed(legs, stride, 1 - side, twin))
+        if _overtaken(legs, 1 - side, twin):
+            left = 0.0
+    return float(min(max(left, least - dt), most))
+
+
+@helper
+def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None:
+    """Where the root will be `after` seconds from now, to `out` (7,).
+
+    Straight from `root` (7,) through the `coming` (m, 8), seconds from now and root states; beyond, it keeps its
+    velocities.
+    """
+    since, last = 0.0, coming.shape[0]
+    for i in range(ROOT_STATE):
+        out[i] = root[i]
+    for n in range(last):
+        if since >= after:
+            break
+        share = min((after - since) / max(coming[n, 0] - since, 1e-9), 1.0)
+        for i in range(ROOT_STATE):
+            out[i] += share * (coming[n, 1 + i] - out[i])
+        since = min(coming[n, 0], after)
+    left = after - since
+    c, s = np.cos(out[2] + 0.5 * out[5] * left), np.sin(out[2] + 0.5 * out[5] * left)
+    out[0] += left * (out[4] * c + out[3] * s)
+    out[1] += left * (out[3] * c - out[4] * s)
+    out[2] += left * out[5]
+
+
+@helper
+def _goal(
+    legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
+) -> tuple[float, float, float]:
+    """Where a foot has to land in `left` seconds, seen from the root; `later` (7,) is scratch.
+
+    Under the root in the middle of its stance, and no farther from the root than in an even walk.
+    """
+    _root_later(root, coming, left, later)
+    stride = stride_of(scale, later[3], later[4], later[5])
+    half = 0.0 if _rests(later) else 0.5 * stride.duty * stride.period
+    x, z, heading, most = later[0], later[1], later[2], half * (stride.speed + _MORE * scale)
+    _root_later(root, coming, left + half, later)
+    far = np.hypot(later[0] - x, later[1] - z)
+    part = min(1.0, most / max(far, 1e-9))
+    later[0], later[1] = x + part * (later[0] - x), z + part * (later[1] - z)
+    later[2] = heading + min(max(later[2] - heading, -_TWISTED), _TWISTED)
+    c, s, dx, dz = np.cos(root[2]), np.sin(root[2]), later[0] - root[0], later[1] - root[1]
+    left, ahead, turned = dx * c - dz * s, dx * s + dz * c, later[2] - root[2]
+    x, z = home_of(legs, stride, side)
+    c, s = np.cos(turned), np.sin(turned)
+    return left + x * c + z * s, ahead - x * s + z * c, turned
+
+
+@helper
+def _is_flat(foot: Floats) -> bool:
+    """Whether a foot lies flat on the ground."""
+    return bool(abs(foot[_PITCH]) < _FLAT and foot[_LIFT] < _FLAT)
+
+
+@helper
+def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> tuple[float, float]:
+    """A place (x, z) from the standing twin, moved to the own side if need be, in axes `turned` to the left."""
+    c, s, outward = np.cos(turned), np.sin(turned), 1.0 if side == 0 else -1.0
+    aside, along = outward * (x * c - z * s), x * s + z * c
+    aside = max(aside, _APART * scale * (1.0 - min((along / (_LONG * scale)) ** 2, 1.0)))
+    aside *= outward
+    return aside * c + along * s, -aside * s + along * c
+
+
+@helper
+def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale: float) -> tuple[float, float, float]:
+    """A place (x, z, yaw) moved to the own side of the standing twin, and turned away from it, if need be."""
+    outward = 1.0 if side == 0 else -1.0
+    x, z = _beside_twin(side, goal[0] - twin[_X], goal[1] - twin[_Z], goal[2], scale)
+    yaw = twin[_YAW] + outward * max(outward * (goal[2] - twin[_YAW]), -_TOES_IN)
+    return x + twin[_X], z + twin[_Z], yaw
+
+
+@helper
+def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
+    """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
+    rest, start, slope = 1.0 - part, foot[i], foot[_VELOCITY + i] * time
+    foot[i] = rest * rest * ((1.0 + 2.0 * part) * start + part * slope) + part * part * (3.0 - 2.0 * part) * goal
+    change = 6.0 * part * rest * (goal - start) + rest * (rest - 2.0 * part) * slope
+    foot[_VELOCITY + i] = change / time
+
+
+@helper
+def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float]) -> float:
+    """Seconds that a swinging foot takes at least to where it lands; none where it is nearly there."""
+    way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z])
+    if way < _NEARLY * stride.scale:
+        return 0.0
+    return float(1.5 * way / (_FASTEST * np.sqrt(stride.scale) + 2.2 * stride.speed))
+
+
+@helper
+def _land(foot: Floats) -> None:
+    foot[_SWING] = foot[_LIFT] = 0.0
+    for i in range(3):
+        foot[_VELOCITY + i] = 0.0
+
+
+@helper
+def _swing(
+    stride: Stride, side: int, goal: tuple[float, float, float], left: float, dt: float, foot: Floats, twin: Floats
+) -> float:
+    """Let a foot swing for `dt` seconds, so that it lands `left` seconds after their end; the pitch that it wants."""
+    time, done = left + dt, foot[_SWING]
+    part = dt / time
+    for i in range(3):
+        _towards(foot, i, goal[i], part, time)
+    after = done + (1.0 - done) * part
+    half = 0.5 * stride.duty * stride.period
+    sag = min(max(0.5 * stride.forward * stride.turn * half * half, -0.1 * stride.scale), 0.1 * stride.scale)
+    foot[_X] -= sag * 16.0 * ((after * (1.0 - after)) ** 2 - (done * (1.0 - done)) ** 2)
+    x, z = _beside_twin(side, foot[_X] - twin[_X], foot[_Z] - twin[_Z], 0.0, stride.scale)
+    foot[_X], foot[_Z], foot[_SWING] = twin[_X] + x, twin[_Z] + z, after
+    pitch, lift = roll_of(stride, stride.duty + (1.0 - stride.duty) * after)
+    low = _LEAST_LIFT * _STEP_LIFT * stride.scale * 16.0 * (after * (1.0 - after)) ** 2
+    foot[_LIFT] += min(max(max(lift, low) - foot[_LIFT], -_LIFT_RATE * dt), _LIFT_RATE * dt)
+    if left <= 0.0:
+        _land(foot)
+    return pitch
+
+
+@helper
+def _lifted_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
+    """Seconds, up to `dt`, since a foot was lifted that stood a frame ago."""
+    since = (_position(root[6], side) - stride.duty) * stride.period
+    return float(since if 0.0 < since < dt and not _rests(root) else dt)
+
+
+@helper
+def _pitch_in_stance(legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
+    """How a standing foot wants to be pitched: by how far the root has passed it."""
+    u = 0.5 * stride.duty + _passed(legs, stride, side, foot) / stride.period
+    pitch, _ = roll_of(stride, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
+    return pitch
+
+
+@helper
+def _tilt(foot: Floats, pitch: float, dt: float) -> None:
+    most = _ROLL_RATE * dt
+    foot[_PITCH] += min(max(pitch - foot[_PITCH], -most), most)
+
+
+@exact_kernel
+def step_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, coming: Floats, out: Floats) -> None:
+    """The feet `dt` seconds later: `out` (WITH_FEET,) is for `root` (7,) what `before` (WITH_FEET,) was then.
+
+    They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
+    known of that it keeps its velocities. With `dt` 0 nothing moves over the ground, a swinging foot neither.
+    """
+    _carry(before, root, out)
+    if dt <= 0.0:
+        return
+    stride = stride_of(scale, root[3], root[4], root[5])
+    one, other = out[ROOT_STATE : ROOT_STATE + FOOT], out[ROOT_STATE + FOOT :]
+    standing = one[_SWING] <= 0.0 and other[_SWING] <= 0.0
+    lifted, later = -1, np.empty(ROOT_STATE)
+    if standing:
+        left = _urge(legs, stride, 0, root, one, _goal(legs, scale, 0, root, coming, 0.0, later))
+        right = _urge(legs, stride, 1, root, other, _goal(legs, scale, 1, root, coming, 0.0, later))
+        if max(left, right) > 0.0:
+            lifted = 0 if left >= right else 1
+    for side in range(2):
+        foot, twin = (one, other) if side == 0 else (other, one)
+        if foot[_SWING] > 0.0 or lifted == side:
+            since = _lifted_since(stride, side, root, dt) if lifted == side else dt
+            left = max(_time_left(legs, stride, side, root, foot, twin, since), 0.0)
+            goal = _kept_apart(side, _goal(legs, scale, side, root, coming, left, later), twin, scale)
+            needed = _time_needed(stride, foot, goal)
+            if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
+                left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
+                goal = _kept_apart(side, _goal(legs, scale, side, root, coming, left, later), twin, scale)
+                foot[_SWING] = min(foot[_SWING], max(1.0 - rest, 0.2))
+            pitch = _swing(stride, side, goal, left, since, foot, twin)
+        else:
+            pitch = _pitch_in_stance(legs, stride, side, foot)
+        _tilt(foot, pitch, dt)
+
+
+@exact_kernel
+def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, out: Floats) -> None:
+    """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
+
+    They go as the walking cycle has them, and what they are beside it becomes less. Under a root that rests they end up
+    flat on the ground and stand, wherever in the cycle that is.
+    """
+    for i in range(ROOT_STATE):
+        out[i] = root[i]
+    first, stride = stride_of(scale, before[3], before[4], before[5]), stride_of(scale, root[3], root[4], root[5])
+    for side in range(2):
+        foot, was = out[ROOT_STATE + FOOT * side :], before[ROOT_STATE + FOOT * side :]
+        x0, z0, yaw0, _ = flat_place(legs, first, side, _position(before[6], side))
+        u = _position(root[6], side)
+        x, z, yaw, swung = flat_place(legs, stride, side, u)
+        pitch, lift = roll_of(stride, u)
+        dx, dz, turned = was[_X] - x0, was[_Z] - z0, was[_YAW] - yaw0
+        left = max(1.0 - dt * _GLIDE * np.sqrt(scale) / max(np.hypot(dx, dz), 1e-9), 0.0)
+        twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
+        foot[_X], foot[_Z], foot[_YAW] = x + left * dx, z + left * dz, yaw + twisted * turned
+        foot[_LIFT] = was[_LIFT] + min(max(lift - was[_LIFT], -_LIFT_RATE * dt), _LIFT_RATE * dt)
+        foot[_PITCH] = was[_PITCH]
+        _tilt(foot, pitch, dt)
+        if max(left, twisted) > 0.0:
+            foot[_SWING] = max(swung, _AT_LEAST)
+        else:
+            foot[_SWING] = 0.0 if _rests(root) and _is_flat(foot) else swung
+        for i in range(3):
+            foot[_VELOCITY + i] = 0.0
+
+
+@kernel
+def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
+    """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
+
+    For rows (N, WITH_FEET or SHOWN) and lowerings (N,). Hips come down where a foot would be out of reach.
+    """
+    feet, sinks, drops = np.empty((len(rows), 2, 6)), np.empty((len(rows), 2)), np.empty(len(rows))
+    walk_into(legs, scale, rows, np.empty((0, 2, 6)), drops, np.empty(6))
+    for n in range(len(rows)):
+        down, back = hips_sink(half_leg, drops[n], lowerings[n])
+        for side in range(2):
+            foot = rows[n, ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
+            place, roll = (foot[_X], foot[_Z], foot[_YAW]), (foot[_PITCH], foot[_LIFT])
+            tilt_foot(legs, side, place, roll, ease_of(1.0, foot[_SWING]), feet[n, side])
+            length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
+            x, y, z = carried_hip(legs, rows[n], side)
+            dx, dz = feet[n, side, 0] - x, feet[n, side, 2] - z + back
+            reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
+            down = max(down, y - feet[n, side, 1] - reach)
+        sinks[n, 0], sinks[n, 1] = down, back
+    return feet, sinks
+
+
+@kernel
+def _settled(legs: Floats, scale: float, row: Floats) -> bool:
+    stride, near = stride_of(scale, 0.0, 0.0, 0.0), True
+    for side in range(2):
+        foot = row[ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
+        x, z = home_of(legs, stride, side)
+        still = foot[_SWING] <= 0.0 and _is_flat(foot)
+        near = near and still and _away(foot, (x, z, 0.0), scale) <= 1.0
+    return near
+
+
+def beside(gait: GaitShape, root: Floats) -> Floats:
+    """A root state (7,) with feet that stand beside each other under it: (WITH_FEET,)."""
+    out = np.empty(WITH_FEET)
+    _beside(gait.legs, gait.scale, root, out)
+    return out
+
+
+def onward(gait: GaitShape, before: Floats, root: Floats, dt: float, coming: Floats = UNKNOWN) -> Floats:
+    """`root` (7 or more,) with the feet (WITH_FEET,) that follow on those of `before` within `dt` seconds.
+
+    `coming` (m, 8) are seconds from now and root states that the root is meant to come to.
+    """
+    out = np.empty(WITH_FEET)
+    step_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, coming, out)
+    return out
+
+
+def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float) -> Floats:
+    """`root` (7 or more,) with feet (WITH_FEET,) that go from those of `before` to those of the walking cycle."""
+    out = np.empty(WITH_FEET)
+    glide_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, out)
+    return out
+
+
+def settled(gait: GaitShape, row: Floats) -> bool:
+    """Whether the feet of a row (WITH_FEET,) stand beside each other, so that who rests makes no step."""
+    return bool(_settled(gait.legs, gait.scale, row))
+
+
+def standing(rows: ArrayLike) -> Bools:
+    """Which feet, left and right, stand in rows (..., WITH_FEET or more): (..., 2)."""
+    feet = np.asarray(rows, np.float64)[..., ROOT_STATE:WITH_FEET]
+    stands: Bools = feet[..., _SWING::FOOT] <= 0.0
+    return stands

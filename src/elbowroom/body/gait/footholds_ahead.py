@@ -1,0 +1,52 @@
+"""Where feet will be that step on as the root goes on: the rows that `footholds` makes, one after the other."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.cycle import GaitShape
+from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.root import ROOT_STATE, WITH_FEET
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+
+_PIECE = 0.05  # seconds between two rows, nearly
+
+
+def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float) -> Floats:
+    """Root states with feet (N, WITH_FEET) from `row` (WITH_FEET,) on, as feet step under a root that goes on.
+
+    The root goes straight from one of the states that it is to come to, `ahead` (m, 8) with the seconds from now, to
+    the next, past the first that is `until` seconds away.
+    """
+    return _steps_ahead(gait.legs, gait.scale, row, ahead, until)
+
+
+@exact_kernel
+def _pieces(span: float) -> int:
+    return max(int(np.rint(span / _PIECE)), 1)
+
+
+@exact_kernel
+def _steps_ahead(legs: Floats, scale: float, row: Floats, ahead: Floats, until: float) -> Floats:
+    first, last, since, count = 0, 0, 0.0, 1
+    while first < len(ahead) and ahead[first, 0] <= 0.0:
+        first += 1
+    last = first
+    while last < len(ahead) and since < until:
+        count, since = count + _pieces(ahead[last, 0] - since), ahead[last, 0]
+        last += 1
+    rows, root, coming = np.empty((count, WITH_FEET)), np.empty(ROOT_STATE), ahead.copy()
+    rows[0], since, at = row, 0.0, 0
+    for n in range(first, last):
+        span, begin, pieces = ahead[n, 0] - since, rows[at, :ROOT_STATE].copy(), _pieces(ahead[n, 0] - since)
+        for piece in range(1, pieces + 1):
+            share = piece / pieces
+            for i in range(ROOT_STATE):
+                root[i] = begin[i] + share * (ahead[n, 1 + i] - begin[i])
+            for k in range(n, len(ahead)):
+                coming[k, 0] = ahead[k, 0] - since - share * span
+            step_feet(legs, scale, rows[at], root, span / pieces, coming[n:], rows[at + 1])
+            at += 1
+        since = ahead[n, 0]
+    return rows

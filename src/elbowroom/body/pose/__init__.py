@@ -1,0 +1,1 @@
+"""From degrees of freedom to joints and capsules, and back."""

@@ -1,0 +1,119 @@
+"""The whole posed body for kernels, in one piece.
+
+A kernel takes its arguments apart before it begins, array by array, and that takes longer than to pose a body: so all
+that posing needs lies in few arrays, one part after the other.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOWERING
+from elbowroom.body.gait.cycle import foot_poses, hips_sinks
+from elbowroom.body.gait.footholds import posed_feet
+from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.gait.rises import raise_feet
+from elbowroom.body.pose import posing
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.jit import exact_kernel, helper
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Segments = NDArray[np.float32]
+
+_PARTS = 8  # cuts of the numbers: so many come before those of the places
+
+
+class PosedBy(NamedTuple):
+    """What posing every capsule needs of a `BodyModel`, under the names that these things have there."""
+
+    figure: posing.Figure
+    capsules: posing.CapsuleChain
+    leg_rest: Floats
+    gait_legs: Floats
+    scale: float
+    half_leg: float
+
+
+class WholeBody(NamedTuple):
+    """The same in arrays: for `posed_body` and `posed_capsules`."""
+
+    numbers: Floats
+    places: Indices
+    cuts: Indices  # where each part begins and the last one ends: of the numbers, then of the places
+    gait_legs: Floats
+    scale: float
+
+
+def whole_body(by: PosedBy) -> WholeBody:
+    """The same for kernels, in the order in which `_taken_apart` takes it."""
+    figure, capsules, columns, arms = by.figure, by.capsules, by.figure.columns, by.figure.arms
+    numbers = [
+        figure.base, figure.offsets, columns.shares, arms.mirrors, capsules.ends, by.leg_rest, np.array([by.half_leg]),
+    ]  # fmt: skip
+    places = [
+        figure.parents, columns.joints, columns.begins, columns.first, arms.joints, arms.first, figure.legs,
+        np.array([figure.chest]), capsules.order, capsules.joints,
+    ]  # fmt: skip
+    cuts = [np.cumsum([0, *(part.size for part in parts)]) for parts in (numbers, places)]
+    return WholeBody(
+        np.concatenate([part.ravel() for part in numbers]),
+        np.concatenate([part.ravel() for part in places]),
+        np.concatenate(cuts).astype(np.int64),
+        by.gait_legs,
+        by.scale,
+    )
+
+
+@helper
+def _numbers(body: WholeBody, part: int) -> Floats:
+    return body.numbers[body.cuts[part] : body.cuts[part + 1]]
+
+
+@helper
+def _places(body: WholeBody, part: int) -> Indices:
+    return body.places[body.cuts[_PARTS + part] : body.cuts[_PARTS + part + 1]]
+
+
+@helper
+def _taken_apart(body: WholeBody) -> PosedBy:
+    base, offsets, ends, rest = _numbers(body, 0), _numbers(body, 1), _numbers(body, 4), _numbers(body, 5)
+    arms, legs = _places(body, 4), _places(body, 6)
+    figure = posing.Figure(
+        base.reshape((len(base) // 4, 4)),
+        _places(body, 0),
+        offsets.reshape((len(offsets) // 3, 3)),
+        posing.Columns(_places(body, 1), _numbers(body, 2), _places(body, 2), _places(body, 3)),
+        posing.Arms(arms.reshape((len(arms) // 3, 3)), _numbers(body, 3), _places(body, 5)),
+        legs.reshape((2, len(legs) // 2)),
+        _places(body, 7)[0],
+    )
+    capsules = posing.CapsuleChain(_places(body, 8), _places(body, 9), ends.reshape((len(ends) // 6, 6)))
+    return PosedBy(
+        figure, capsules, rest.reshape((2, len(rest) // 2)), body.gait_legs, body.scale, _numbers(body, 6)[0]
+    )
+
+
+@exact_kernel
+def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
+    """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), or longer ones, in the world.
+
+    And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
+    """
+    by = _taken_apart(body)
+    lowerings = q[:, LOWERING].copy()
+    if roots.shape[1] > ROOT_STATE:
+        feet, sinks = posed_feet(by.gait_legs, by.scale, by.half_leg, roots, lowerings)
+    else:
+        feet, drops = foot_poses(by.gait_legs, by.scale, roots)
+        raise_feet(by.gait_legs, roots, feet, drops)
+        sinks = hips_sinks(by.half_leg, drops, lowerings)
+    legs = leg_rotations(by.leg_rest, feet, sinks, roots)
+    return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
+
+
+@exact_kernel
+def posed_capsules(body: WholeBody, q: Floats, roots: Floats) -> Segments:
+    """The capsules of `posed_body` alone."""
+    return posed_body(body, q, roots)[0]

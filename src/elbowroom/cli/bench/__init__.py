@@ -1,0 +1,1 @@
+"""`elbowroom bench`: what the parts cost."""

@@ -1,0 +1,274 @@
+"""A server under clients that come, go, upload and misbehave: whether its memory stays, and its frames come in time."""
+
+import contextlib
+import json
+import logging
+import os
+import random
+import socket
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from statistics import median
+from typing import NamedTuple
+from urllib.error import HTTPError
+from urllib.parse import urlsplit
+from urllib.request import Request, urlopen
+
+import numpy as np
+from websockets.exceptions import ConnectionClosed
+
+from elbowroom.body.stock import stock_avatar_path
+from elbowroom.cli.doctor.load import ON_TIME, percent
+from elbowroom.cli.doctor.session_cost import client_of, started_server, usage, wait_until_warm, walk_about
+from elbowroom.server.schema.bounds import MAX_MESSAGE
+from elbowroom.server.schema.commands import Configure, Ping
+from elbowroom.server.sessions.meter import LATE
+from elbowroom.server.wire.codec import encode
+
+SLOPE_BUDGET = 10.0  # MB an hour
+_EVERY = 2.0  # seconds between two readings of the memory
+_WARM_UP = 0.3  # of the time: then everything has happened at least once
+_VERDICT = 10.0  # minutes after the warm-up; in less, the noise of the heap is larger than the budget
+_SCENES = ("a", "b", "c", "d", "doorway", "beam", "traffic", "empty")
+_STEADY = 5.0  # seconds of walking between two looks at the clock
+
+# Files that ask for too much: objects of few bytes, and a document type that gives every element 2 MB.
+_OBJECTS = b'{"asset":{"version":"2.0"},"a":[' + b"{}," * 1_000_000 + b"{}]}"
+_TYPES = (
+    b'<!DOCTYPE X3D [<!ATTLIST Group a CDATA "' + b"x" * 2_000_000 + b'">]><X3D><Scene>'
+    + b"<Group/>" * 1000 + b"</Scene></X3D>"
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Soak:
+    """What came of it."""
+
+    minutes: float
+    sessions: int
+    courses: int
+    uploads: int
+    misdeeds: int
+    failures: dict[str, int]  # what went wrong with clients that behave, by name
+    own_first: float  # MB of the server's own, after the warm-up
+    own_last: float
+    own_most: float
+    slope: float  # MB an hour after the warm-up
+    slope_budget: float
+    long_enough: bool  # for a verdict on the slope
+    on_time_percent: float  # of all frames after the warm-up, at most `late_budget_ms` after they were due
+    on_time_budget_percent: float
+    late_budget_ms: float
+    late_ms_p99: float  # of the frames of a client that walks about all the time, in its worst 10 s
+    late_ms_typical: float  # the same in half of the times that it looked
+    frames_per_second: float  # that it got
+
+
+class _Reading(NamedTuple):
+    """What the server tells of itself."""
+
+    at: float  # seconds since the clients began
+    own: float  # MB of memory
+    frames: float  # of all sessions
+    late: float  # of these
+
+
+@dataclass
+class _Yard:
+    """What the clients share."""
+
+    url: str
+    end: float  # of the clock
+    counts: Counter[str] = field(default_factory=Counter)
+    failures: Counter[str] = field(default_factory=Counter)
+    late: list[float] = field(default_factory=list)
+    frames: int = 0
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def over(self) -> bool:
+        return time.monotonic() >= self.end
+
+    def count(self, what: str) -> None:
+        with self.lock:
+            self.counts[what] += 1
+
+    def failed(self, error: Exception) -> None:
+        with self.lock:
+            self.failures[type(error).__name__] += 1
+
+
+def soak(minutes: float, tell: Callable[[str], object] = lambda _: None) -> Soak:
+    """Run a server and its clients for so long; `tell` hears how it goes. Raises `InputError` if there is no server."""
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)  # clients that are cut off are what is wanted
+    with started_server("a", dict(os.environ)) as url:
+        wait_until_warm(url)
+        yard = _Yard(url, time.monotonic() + 60.0 * minutes)
+        began = time.monotonic()
+        with ThreadPoolExecutor(5) as pool:
+            work = [pool.submit(_again, yard, task) for task in (_steady, _guest, _guest, _upload, _misbehave)]
+            readings = _watch(yard, began, tell)
+            for task in work:
+                task.result()
+        return _summary(yard, readings, minutes, time.monotonic() - began)
+
+
+def _summary(yard: _Yard, readings: list[_Reading], minutes: float, seconds: float) -> Soak:
+    after = [reading for reading in readings if reading.at >= _WARM_UP * 60.0 * minutes] or readings[-1:]
+    times, own, frames, late = np.array(after).T
+    return Soak(
+        minutes=minutes,
+        sessions=yard.counts["sessions"],
+        courses=yard.counts["courses"],
+        uploads=yard.counts["uploads"],
+        misdeeds=yard.counts["misdeeds"],
+        failures=dict(yard.failures),
+        own_first=float(own[0]),
+        own_last=float(own[-1]),
+        own_most=float(own.max()),
+        slope=slope_of(times / 3600.0, own),
+        slope_budget=SLOPE_BUDGET,
+        long_enough=bool(times[-1] - times[0] >= 60.0 * _VERDICT),
+        on_time_percent=percent(float(frames[-1] - frames[0]), float(late[-1] - late[0])),
+        on_time_budget_percent=ON_TIME,
+        late_budget_ms=1e3 * LATE,
+        late_ms_p99=max(yard.late, default=0.0),
+        late_ms_typical=median(yard.late or [0.0]),
+        frames_per_second=yard.frames / seconds,
+    )
+
+
+def slope_of(times: "np.ndarray[tuple[int], np.dtype[np.float64]]", values: object) -> float:
+    """The slope that half of all pairs of readings exceed (Theil and Sen): single peaks do not count."""
+    values = np.asarray(values, np.float64)
+    later, sooner = np.triu_indices(len(times), 1)[::-1]
+    return float(np.median((values[later] - values[sooner]) / (times[later] - times[sooner]))) if len(later) else 0.0
+
+
+def _watch(yard: _Yard, began: float, tell: Callable[[str], object]) -> list[_Reading]:
+    """What the server tells of itself until the end."""
+    readings: list[_Reading] = []
+    while not yard.over():
+        with contextlib.suppress(OSError):
+            told = usage(yard.url)
+            own = told["ownBytes"] / 1e6
+            readings.append(_Reading(time.monotonic() - began, own, told["frames"], told["framesLate"]))
+            tell(f"{readings[-1].at / 60.0:.0f} min, {own:.0f} MB, {yard.counts['sessions']} sessions")
+        time.sleep(_EVERY)
+    return readings
+
+
+def _again(yard: _Yard, task: Callable[[_Yard, random.Random], None]) -> None:
+    """Do something until the end, whatever comes of it."""
+    chance = random.Random(task.__name__)
+    while not yard.over():
+        try:
+            task(yard, chance)
+        except (OSError, ConnectionClosed, TimeoutError) as error:
+            yard.failed(error)
+            time.sleep(1.0)
+
+
+# --- clients that behave -----------------------------------------------------------------------------------------
+
+
+def _steady(yard: _Yard, chance: random.Random) -> None:
+    """One who walks about to the end."""
+    del chance
+    with client_of(yard.url) as client:
+        while not yard.over():
+            tally = walk_about(client, _STEADY)
+            yard.frames += tally.frames
+            if tally.status is not None:
+                yard.late.append(tally.status.late_ms_p99)
+
+
+def _guest(yard: _Yard, chance: random.Random) -> None:
+    """Comes, looks at a scene or a random course, walks a little, and goes, sometimes without a word."""
+    with client_of(yard.url) as client:
+        yard.count("sessions")
+        scene = chance.choice(_SCENES)
+        if chance.random() < 0.3:
+            scene = f"gauntlet:{chance.randint(1, 5)}:{chance.randint(1, 10**6)}"
+            yard.count("courses")
+        client.send(encode(Configure(scene=scene, queue_size=chance.choice((3, 5, 7)))))
+        walk_about(client, chance.uniform(1.0, 4.0))
+        if chance.random() < 0.5:
+            client.socket.shutdown(socket.SHUT_RDWR)
+
+
+def _upload(yard: _Yard, chance: random.Random) -> None:
+    """Sends an avatar and walks with it; now and then a file that asks for too much."""
+    told = _post(yard.url, "mine.vrm", stock_avatar_path().read_bytes())
+    yard.count("uploads")
+    with client_of(yard.url) as client:
+        yard.count("sessions")
+        client.send(encode(Configure(avatar=told["avatar"]["id"])))
+        walk_about(client, chance.uniform(1.0, 3.0))
+    if chance.random() < 0.3:
+        for name, data in (("objects.gltf", _OBJECTS), ("types.x3d", _TYPES)):
+            with contextlib.suppress(HTTPError):
+                _post(yard.url, name, data)
+            yard.count("misdeeds")
+
+
+def _post(url: str, name: str, data: bytes) -> dict[str, dict[str, str]]:
+    with urlopen(Request(f"{url}/api/avatars?name={name}", data), timeout=180.0) as answer:
+        told: dict[str, dict[str, str]] = json.load(answer)
+        return told
+
+
+# --- and some that do not ----------------------------------------------------------------------------------------
+
+
+def _misbehave(yard: _Yard, chance: random.Random) -> None:
+    deed = chance.choice((_half_requests, _floods, _too_long, _never_reads, _drips))
+    with contextlib.suppress(OSError, ConnectionClosed):
+        deed(yard)
+    yard.count("misdeeds")
+    time.sleep(1.0)
+
+
+def _half_requests(yard: _Yard) -> None:
+    with contextlib.ExitStack() as stack:
+        for _ in range(30):
+            stack.enter_context(_opened(yard.url)).sendall(b"GET /api/health HTTP/1.1\r\nHost: 127")
+        time.sleep(3.0)
+
+
+def _floods(yard: _Yard) -> None:
+    with client_of(yard.url) as client:
+        for number in range(20_000):
+            client.send(encode(Ping(float(number))))
+
+
+def _too_long(yard: _Yard) -> None:
+    with client_of(yard.url) as client:
+        client.send("x" * (MAX_MESSAGE + 1))
+        client.recv(timeout=5.0)
+
+
+def _never_reads(yard: _Yard) -> None:
+    with _opened(yard.url) as held:
+        key = "dGhlIHNhbXBsZSBub25jZQ=="
+        lines = ["GET /ws HTTP/1.1", f"Host: {urlsplit(yard.url).netloc}", "Connection: Upgrade", "Upgrade: websocket"]
+        lines += ["Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+        held.sendall("\r\n".join([*lines, "", ""]).encode())
+        time.sleep(5.0)
+
+
+def _drips(yard: _Yard) -> None:
+    with _opened(yard.url) as held:
+        head = f"POST /api/avatars HTTP/1.1\r\nHost: {urlsplit(yard.url).netloc}\r\nContent-Length: 100000\r\n\r\n"
+        held.sendall(head.encode())
+        for _ in range(5):
+            held.sendall(b"x")
+            time.sleep(0.5)
+
+
+def _opened(url: str) -> socket.socket:
+    at = urlsplit(url)
+    return socket.create_connection((at.hostname or "", at.port or 0), timeout=20.0)

@@ -1,0 +1,1 @@
+"""Other avatars: what they are told, and how two pass each other."""

@@ -1,0 +1,1 @@
+"""Runs as recordings, and recordings run again."""

@@ -1,0 +1,1 @@
+"""What is shown: a pose at a time, each proven free on the way from the last."""

@@ -1,0 +1,272 @@
+"""The last word before a pose is shown: how far the whole body is from every obstacle, and from every other avatar."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOWERING, DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
+from elbowroom.control.feet.above_soles import AboveSoles
+from elbowroom.control.feet.turned_legs import turned_legs
+from elbowroom.control.others.neighbour import Neighbour
+from elbowroom.planning.halving import begun, due, settle
+from elbowroom.planning.model.footing import Footing
+from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.stillness import STILL
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.tracks.moving import Moving
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
+
+_HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
+_LOOKS = 8  # at once
+THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
+_REMEMBERED = 4  # poses
+_LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
+
+
+def configuration(root: Floats, upper: Floats) -> Floats:
+    """The configuration `q` (DOF,) of a root state (7,) and an upper body (LOCAL,)."""
+    return np.concatenate([root[:3], upper])
+
+
+class Frames(NamedTuple):
+    """Two frames that are shown one after the other."""
+
+    roots: tuple[Floats, Floats]  # (SHOWN,)
+    uppers: tuple[Floats, Floats]  # (LOCAL,)
+    times: tuple[float, float]  # seconds
+
+
+class _Pose(NamedTuple):
+    """A pose that was asked about, and where it puts the body."""
+
+    root: Floats  # (ROOT_STATE,), (WITH_FEET,) or (SHOWN,)
+    upper: Floats  # (LOCAL,)
+    axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
+    floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
+    standing: list[Floats32]  # how far each capsule is from what stands (C,), once that is known
+
+
+class BodyCheck:
+    """Clearance of a humanoid's whole collision body in a scene, at a time; what moves stands where it is then.
+
+    The same pose is asked about several times in a frame and in the next: the last few are remembered, and known by
+    their arrays, which nobody may change. Playback and planning may ask at once, each in its thread.
+    """
+
+    def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
+        self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
+        self._radii = humanoid.capsules.radii.astype(np.float32)
+        self._soles = AboveSoles(self.model, scene.ground)
+        self._levers = body_levers(humanoid)
+        moving = scene.obstacles.moving
+        self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
+        self._moving, self._loose = Obstacles(moving=moving), Obstacles()
+        self._around = self._that_can_move()
+        self._empty = not len(scene.obstacles)
+        self._poses: tuple[_Pose, ...] = ()  # latest first
+        self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
+
+    @property
+    def footing(self) -> Footing:
+        """How feet stand on the ground here."""
+        return self._soles.footing
+
+    @property
+    def alone(self) -> bool:
+        """Whether there is nothing and nobody else: then no pose has to be looked at."""
+        return self._empty and not self.accompanied
+
+    @property
+    def loose(self) -> Moving:
+        """What was taken in hand, as it moves from the frame that is shown to the next."""
+        return self._loose.moving
+
+    @loose.setter
+    def loose(self, things: Moving) -> None:
+        self._loose = Obstacles(moving=things)
+        self._around = self._that_can_move()
+
+    @property
+    def restless(self) -> bool:
+        """Whether anything moves that is not the avatar's own."""
+        return bool(len(self._moving) or self.others) or self.loose.fastest > STILL
+
+    def clearance(self, root: Floats, upper: Floats, time: float) -> float:
+        """Metres from the nearest obstacle, negative where the body touches, for root (7,) and upper body (LOCAL,).
+
+        The root may be followed by feet and carriage, here and below, and tells what feet stand on (`standing`). That
+        is left out as `above_soles.py` tells.
+
+        The avatar is put at the origin and the obstacles move instead, so that single precision holds anywhere.
+        """
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, time)
+
+    def body(self, root: Floats, upper: Floats) -> Floats:
+        """The ends of the capsules as seen from the root's place, and their radii, (C, 7) metres."""
+        return np.column_stack([self.axes(root, upper)[:, :, 0], self._radii]).astype(np.float64)
+
+    def axes(self, root: Floats, upper: Floats) -> Floats32:
+        """The capsules' axes (C, 6, 1) as seen from the root's place."""
+        return self._pose(root, upper).axes
+
+    def room_of_legs(self, root: Floats, upper: Floats, time: float) -> float:
+        """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body."""
+        legs = self.model.roots.indices
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf, legs)
+
+    def room_along(self, roots: Floats, upper: Floats) -> float:
+        """Metres from the legs to what stands about feet on the plane, the least of root states (N, WITH_FEET)."""
+        if self._empty:
+            return np.inf
+        legs, near = self.model.roots, roots.copy()
+        near[:, :2] -= roots[0, :2]
+        axes = leg_capsules(self.model, near, upper[_LOWERING])
+        lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
+        radii = np.tile(legs.radii, len(roots))
+        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, np.full(len(radii), -np.inf))
+        return float(found.min(initial=np.inf))
+
+    def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
+        """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf)
+
+    def clearance_from(self, moving: Moving, root: Floats, upper: Floats, time: float) -> float:
+        """The same from some moving obstacles alone."""
+        return Obstacles(moving=moving).clearance(self.axes(root, upper), self._radii, root[:2], time)
+
+    def leaves_alone(self, thing: Moving, body: tuple[Floats, Floats], span: tuple[float, float], way: float) -> bool:
+        """Whether a thing that moves `way` metres in a span of time keeps its margin from a body: root and upper body.
+
+        Who has less than the margin already may not come nearer. All in between is free too: gaps change by no more
+        than the way.
+        """
+        before, after = (self.clearance_from(thing, *body, time) for time in span)
+        return after >= min(before, THING_MARGIN) and before + after > way
+
+    def free_between(self, frames: Frames) -> bool:
+        """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
+
+        Each capsule by itself of what stands, the whole body of what moves. Where others move as they mean to, until
+        the second frame. Where feet are raised quickly `turned_legs.py` has more moments.
+        """
+        if self.alone:
+            return True
+        ways, (first, last) = self._levers.travel(frames.roots, frames.uppers), frames.times
+        if self.accompanied:
+            farthest = float(ways.max())
+            movers = [around.moving.fastest * (last - first) for around in self._around]
+            movers += [other.travel(first, last) for other in self.others]
+            ways = np.append(ways, [farthest + way for way in movers])
+        floors, ends = self._soles.floors(*frames.roots), zip(*frames, strict=True)
+        poses = [(self._pose(root, upper), time) for root, upper, time in ends]
+        if self._soles.change(*frames.roots):
+            poses = [(pose._replace(floors=floors, standing=[]), time) for pose, time in poses]
+        if self._soles.raised(*frames.roots) and not self._turns_free(frames, floors):
+            return False
+        gaps = np.array([self._gaps(pose, time) for pose, time in poses])
+        if (gaps[0] + gaps[1] - ways).min() >= 0.0:
+            return True
+        proof = begun(gaps, ways[None], 1, 0.0, _HALVINGS)
+        parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
+        while (count := due(proof, parts, shares)) > 0:
+            settle(proof, self._gaps_at(frames, shares[:count], floors), count)
+        return bool(proof.least.min() >= 0.0)
+
+    def _turns_free(self, frames: Frames, floors: Floats) -> bool:
+        """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
+        legs, parts = turned_legs(self.model, frames.roots, frames.uppers), self.model.roots
+        lifted = self._soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
+        axes = np.repeat(self._pose(frames.roots[0], frames.uppers[0]).axes, len(legs.states), axis=2)
+        axes[parts.indices] = lifted
+        if self._soles.soles_above(axes, floors) < 0.0:
+            return False
+        gaps = self._soles.clearances(self._standing, axes, frames.roots[0][:2], floors)
+        return bool(gaps[:, parts.indices].min() >= 0.0)
+
+    @property
+    def accompanied(self) -> bool:
+        """Whether there is anything that can move."""
+        return bool(self.others or self._around)
+
+    def _that_can_move(self) -> list[Obstacles]:
+        """The obstacles that can move: the scene's own, and what is loose."""
+        return [each for each in (self._moving, self._loose) if len(each)]
+
+    def _gaps_at(self, frames: Frames, shares: Floats, floors: Floats) -> Floats32:
+        """The gaps (k, P) at shares (k,) of the time between two frames, above the `floors` (2,) of both."""
+        (first, last), (begin, end), (before, after) = frames
+        part = shares[:, None]
+        roots, uppers = first + part * (last - first), begin + part * (end - begin)
+        roots[:, :2] -= first[:2]
+        axes = self._capsules(np.concatenate([roots[:, :3], uppers], axis=1), roots)
+        gaps = self._soles.clearances(self._standing, axes, first[:2], floors)
+        if not self.accompanied:
+            return gaps
+        times = before + shares * (after - before)
+        moving = [self._from_moving(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
+        return np.concatenate([gaps, np.array(moving, np.float32)], axis=1)
+
+    def _gaps(self, pose: _Pose, time: float) -> Floats32:
+        """The clearances of a pose at a time: of each capsule from what stands.
+
+        Where anything can move, from that too, from what is loose, and from each of the others: one more for each.
+        """
+        gaps = self._from_standing(pose)
+        if not self.accompanied:
+            return gaps
+        return np.append(gaps, np.array(self._from_moving(pose.axes, pose.root, time), np.float32))
+
+    def _from_moving(self, axes: Floats32, root: Floats, time: float) -> list[float]:
+        """The clearances of the axes (C, 6, 1) about a root's place from all that can move, and from each other."""
+        moving = [around.clearance(axes, self._radii, root[:2], time) for around in self._around]
+        return moving + [other.clearance(axes, self._radii, root, time) for other in self.others]
+
+    def _pose(self, root: Floats, upper: Floats) -> _Pose:
+        """A pose, remembered."""
+        for pose in self._poses:
+            if pose.root is root and pose.upper is upper:
+                return pose
+        pose = _Pose(root, upper, self._posed(root, upper), self._soles.floors(root), [])
+        self._poses = (pose, *self._poses[: _REMEMBERED - 1])
+        return pose
+
+    def _posed(self, root: Floats, upper: Floats) -> Floats32:
+        """The axes (C, 6, 1) of a pose, as seen from the root's place."""
+        near = root.copy()
+        near[:2] = 0.0
+        return self._capsules(configuration(root, upper)[None], near[None])
+
+    def _from_standing(self, pose: _Pose) -> Floats32:
+        """How far each capsule is from what stands, (C,); of the nearest that, of others at least so much."""
+        if not pose.standing:
+            pose.standing.append(self._soles.clearances(self._standing, pose.axes, pose.root[:2], pose.floors)[0])
+        return pose.standing[0]
+
+    def standing(self, root: Floats) -> Floats:
+        """A root state (ROOT_STATE,) with what the feet stand on."""
+        stood: Floats = root if self._soles.footing.plain else self._soles.footing.stood(root[None])[0][0]
+        return stood
+
+    def _capsules(self, postures: Floats, roots: Floats) -> Floats32:
+        """The capsules' axes (C, 6, N), those of the feet as high as they are held against what they stand on."""
+        segments = posture_capsules(self.model, postures, roots)
+        return self._soles.footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
+
+    def _least(self, pose: _Pose, time: float, others_at: float, parts: Indices | None = None) -> float:
+        """The least clearance of a pose, or of some `parts` of it; from others as they are at a time of theirs."""
+        some = slice(None) if parts is None else parts
+        found, axes, radii = [float(self._from_standing(pose)[some].min())], pose.axes, self._radii
+        if self.accompanied:
+            axes, radii = np.ascontiguousarray(axes[some]), radii[some]
+            found += [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]
+            found += [other.clearance(axes, radii, pose.root, others_at) for other in self.others]
+        return min(found)

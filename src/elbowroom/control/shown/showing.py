@@ -1,0 +1,156 @@
+"""What is shown: one pose after the other, each proven free on the way from the last; where none is, that is held."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.footholds import UNKNOWN
+from elbowroom.body.root import RootState
+from elbowroom.control.feet.feet import Around, Moment
+from elbowroom.control.key_frame_queue import Playback
+from elbowroom.control.plans.canned import standing_posture
+from elbowroom.control.plans.planning_scene import PlanningScene
+from elbowroom.control.shown.body_check import Frames
+from elbowroom.control.shown.ducking import ducked
+from elbowroom.control.shown.holding import Holding
+from elbowroom.planning.stillness import UNMOVED, is_still
+
+Floats = NDArray[np.float64]
+
+_SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
+_BREATHES = 1 / 31  # seconds: who rests need not move in every frame
+
+
+class Showing:
+    """The pose that one avatar shows, and how it goes on."""
+
+    def __init__(self, around: PlanningScene, root: Floats, *, assist: bool) -> None:
+        """Stand in a root state (ROOT_STATE,); its `clearance` tells whether that touches.
+
+        Without `assist` poses are shown as they were planned, touching what they touch.
+        """
+        self.assist = assist
+        self.holding = Holding()
+        self._around, self._now = around, 0.0
+        upper, stood = standing_posture(root), around.check.standing(root)
+        standing = Playback(around.feet.standing(root), upper, np.zeros_like(upper))
+        self._pose = self._before = self._free = standing
+        self._clearance, self._posed_at = around.check.clearance(stood, upper, 0.0), 0.0
+
+    @property
+    def pose(self) -> Playback:
+        """What is shown: its root state is followed by feet and carriage on the plane."""
+        return self._pose
+
+    @property
+    def clearance(self) -> float:
+        """Metres about what is shown, negative where it touches."""
+        return self._clearance
+
+    def go_among(self, around: PlanningScene) -> None:
+        """Something else stands about it from now on."""
+        self._around = around
+
+    def leave_touch(self) -> bool:
+        """Show the last pose that was free, if what is shown touches; whether that was so."""
+        if self._clearance >= 0.0:
+            return False
+        self._show(self._free, self._clearance_of(self._free.root, self._free.upper))
+        return True
+
+    def play(self, planned: Playback, ahead: Floats, now: float, dt: float) -> bool:
+        """Show a planned pose as feet, hips and stance allow, if that is free; whether it is.
+
+        It is `now` seconds, `dt` after the last time. `ahead` (m, 8) is what the root is to come to, seconds from now.
+        """
+        self._now = now
+        played = self.holding.over(planned, dt)
+        for posed, stance in self._around.feet.under(self._moment(dt, ahead), played):
+            clearance = self._clearance_of(posed.root, posed.upper)
+            if not self.assist or self._is_free(posed, clearance):
+                self.holding.end(stance)
+                self._show(posed, clearance)
+                return True
+        return False
+
+    def hold(self, now: float, dt: float) -> None:
+        """Stay in the last good pose; the legs come to a stand where they can."""
+        self._now = now
+        for still in self._settling(dt):
+            clearance = self._clearance_of(still.root, still.upper)
+            if not self.assist or self._is_free(still, clearance):
+                break
+        else:
+            still = still._replace(root=self._pose.root)
+            restless = self._around.check.restless
+            clearance = self._clearance_of(still.root, still.upper) if restless else self._clearance
+        self._show(still, clearance)
+
+    def rest(self, now: float, dt: float) -> None:
+        """Who rests lives on where that touches nothing: breathes, and shifts its weight."""
+        self._now, since = now, now - self._posed_at
+        if not self.assist or dt <= 0.0 or since < _BREATHES:
+            return
+        posed = self._around.feet.resting(self._moment(since))
+        if posed is self._pose:
+            return
+        clearance = self._clearance_of(posed.root, posed.upper)
+        if self._is_free(posed, clearance):
+            self._show(posed, clearance)
+
+    def follow(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
+        """How a pose will be shown `dt` seconds after what is `shown` then, if that is free."""
+        return self._around.feet.next(self._moment(dt, ahead)._replace(shown=shown), planned)
+
+    def changes_nothing(self, states: Floats, uppers: Floats) -> bool:
+        """Whether a motion (n, ROOT_STATE), (n, LOCAL) stands as what is shown does, in the same pose."""
+        shown = self._pose
+        if not self._around.feet.are_still(self._before.root, shown.root):
+            return False
+        if not all(map(is_still, (states[:, 3:6], shown.root[3:6], self.holding.stance, shown.upper_velocity))):
+            return False
+        return bool(np.abs(uppers - shown.upper).max() < UNMOVED)
+
+    def _settling(self, dt: float) -> Iterator[Playback]:
+        """How the pose that is shown can be held, with what it stands on: best first; at last lower, to be able to."""
+        parts = [part * dt for part in (_SETTLING if self.assist else _SETTLING[:1])]
+        held = [self.holding.settle(self._pose, part) for part in parts]
+        for pose in held:
+            yield from self._around.feet.settling(self._moment(dt), pose)
+        root = RootState.of(self._pose.root)._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
+        for pose, part in zip(held, parts, strict=True):
+            lower = ducked(pose, self._around.check.standing(root), part, self._clearance_of)
+            if lower is not None:
+                yield from self._around.feet.settling(self._moment(dt), lower)
+
+    def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
+        """What feet go by; without assistance nothing is looked at, and hips are as planned."""
+        room = max(self._clearance, 0.0) if self.assist else -1.0
+        return Moment(self._pose, dt, ahead, room, self._look, self._around.check.room_along)
+
+    def _look(self, root: Floats, upper: Floats) -> Around:
+        """What stands and moves about a body."""
+        check = self._around.check
+        return Around(check.room_of_legs(root, upper, self._now), check.axes(root, upper), not check.accompanied)
+
+    def _clearance_of(self, root: Floats, upper: Floats) -> float:
+        """Of a pose, now."""
+        return self._around.check.shown_clearance(root, upper, self._now)
+
+    def _is_free(self, posed: Playback, clearance: float) -> bool:
+        """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
+        check, shown = self._around.check, self._pose
+        if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
+            return True  # away from what has come upon it
+        if clearance < 0.0:
+            return False
+        return check.free_between(
+            Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
+        )
+
+    def _show(self, pose: Playback, clearance: float) -> None:
+        self._before = self._pose
+        self._pose, self._clearance, self._posed_at = pose, clearance, self._now
+        if clearance >= 0.0:
+            self._free = pose

@@ -1,0 +1,1 @@
+"""Obstacles that are pushed while somebody walks."""

@@ -1,0 +1,1 @@
+"""Legs and pelvis, which cannot bend: where they go and how far they are free."""

@@ -1,0 +1,77 @@
+"""Legs and pelvis among what moves: each moment of a path is held against what is swept around it."""
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.pose.kinematics import leg_capsules
+from elbowroom.planning.root.legs.hull import ground_below
+from elbowroom.planning.root.legs.lower_body import LowerBody, Neighbours
+from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.from_above import ball_radii, gaps_from_above, places_of
+from elbowroom.world.obstacles.layout import Spans
+from elbowroom.world.obstacles.rows import corners_of, first_spans, grown_aside, some_of, span_count, span_of
+from elbowroom.world.obstacles.tracks.moving import Moving
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_AFTER = 6  # key intervals beyond a path's end in which a stop may last
+_STAYS = 0.25  # metres: what moves less during a plan stands
+_POLITE = 0.08  # metres that are kept from what may move
+_LATE = 1e-6  # of a key interval
+
+
+class MovingAround:
+    """What moves during one plan, in spans of a key interval."""
+
+    def __init__(self, body: LowerBody, moving: Moving, begin: float, horizon: int, interval: float) -> None:
+        self._body, self._moving, self._begin, self._horizon, self._interval = body, moving, begin, horizon, interval
+
+    def __bool__(self) -> bool:
+        return len(self._moving) > 0
+
+    @cached_property
+    def _swept(self) -> Spans:
+        """What each obstacle sweeps in each span: boxes."""
+        return self._moving.swept(self._begin + self._interval * np.arange(self._horizon + _AFTER + 1.0))
+
+    @cached_property
+    def _reach(self) -> Floats:
+        """How far from an obstacle's middle legs may be that touch it, (spans, B) metres."""
+        reach: Floats = ball_radii(self._swept) + self._body.reach
+        return reach
+
+    def clearance(self, states: Floats, after: Floats) -> Floats32:
+        """Clearance (N,) of legs and pelvis at root states (N, 7), `after` (N,) seconds from the plan's beginning."""
+        out = np.full(len(states), np.inf, np.float32)
+        if not len(states) or not self:
+            return out
+        spans = np.clip((after / self._interval - _LATE).astype(np.int64), 0, span_count(self._swept) - 1)
+        away = np.hypot(*np.moveaxis(places_of(self._swept)[spans] - states[:, None, :2], -1, 0))  # (N, B)
+        near = np.flatnonzero((away < self._reach[spans]).any(axis=1))
+        if not len(near):
+            return out
+        segments = leg_capsules(self._body.model, states[near])
+        for span in np.unique(spans[near]):
+            lanes = spans[near] == span
+            out[near[lanes]] = clearance(segments[:, :, lanes], self._body.radii, span_of(self._swept, span))
+        return out
+
+    @cached_property
+    def standing(self) -> Neighbours:
+        """What could move but stays where it is for now, a little larger: there are detours it as round walls."""
+        stays = np.all(np.ptp(places_of(self._swept), axis=0) < _STAYS, axis=1)
+        staying = some_of(span_of(grown_aside(self._swept, _POLITE), 0), stays)
+        corners = corners_of(staying)
+        low = corners[:, :, 1].min(axis=1) < self._body.height
+        return Neighbours(some_of(staying, low), ground_below(corners[low], self._body.height))
+
+    def gap(self, states: Floats, radius: float, height: float) -> float:
+        """The least distance, metres, of an upright cylinder from what moves, at the key states (n+1, 7) of a path.
+
+        It is checked from above; what passes overhead is left out. Infinite where nothing moves.
+        """
+        gaps = gaps_from_above(first_spans(self._swept, len(states) - 1), states[1:, :2], height)
+        return float(gaps.min(initial=np.inf)) - radius

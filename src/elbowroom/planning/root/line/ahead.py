@@ -1,0 +1,124 @@
+"""The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.root import RootState
+from elbowroom.planning.root.legs.hull import route_is_open
+from elbowroom.planning.root.legs.lower_body import Grid, LowerBody, Neighbours
+from elbowroom.planning.root.line.line import TravelLine, straight_route
+from elbowroom.planning.root.line.route import find_route, route_points, shortened_route
+from elbowroom.planning.root.plan import RootPlannerSettings
+from elbowroom.world.walkable import WalkableMap
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+_BEHIND = 0.64  # metres behind the start that a detour may use
+_MORE = 1e-3  # metres
+_SPACING = 0.04  # metres between samples along a route
+
+
+class Route(NamedTuple):
+    """Where to walk."""
+
+    corners: Floats  # (m, 2) x and z
+    detour: bool  # whether it leads round something
+    ends: bool  # whether it ends before an obstacle
+    checks: int  # places whose clearance was computed
+
+
+class Above(Protocol):
+    """What is carried above legs and pelvis, for whoever does not leave all of it to the upper body's planner."""
+
+    def clearance(self, places: Floats, facing: float) -> Floats32:
+        """Metres that it can keep at places (N, 2) on the ground if the body faces so, (N,)."""
+
+
+class RouteFinder:
+    """Finds routes for the standing figure of one body."""
+
+    def __init__(self, settings: RootPlannerSettings, body: LowerBody, above: Above | None = None) -> None:
+        """Routes also lead round what is in the way of what is carried `above`, if anything is given."""
+        self._settings, self._body, self.above = settings, body, above
+        self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
+
+    def ahead(
+        self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float, way: Floats | None = None
+    ) -> Route:
+        """The route from a start along a line of travel among `obstacles`, `sight` metres of it.
+
+        Or along a `way` (m, 2), corner points x and z, that leads along the line and then elsewhere.
+        """
+        straight = straight_route(float(start.x), float(start.z), line, sight) if way is None else way
+        if self.above is None and route_is_open(straight, start.height, self.half, obstacles.ground):
+            return Route(straight, detour=False, ends=False, checks=0)
+        free, checks = self._free_length(straight, line, obstacles, start.height)
+        if free >= sight:
+            return Route(straight, detour=False, ends=False, checks=checks)
+        return self._round(straight, free, line, obstacles, (sight, start.height), checks)
+
+    def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours, height: float) -> tuple[float, int]:
+        """Metres along the route before the standing figure would touch, infinite if never; how many places it saw.
+
+        The route begins at a `height`.
+        """
+        points, along = route_points(route, _SPACING)
+        clear = self._body.standing_clearance(obstacles, points, height)
+        if self.above is not None:
+            clear = np.minimum(clear, self.above.clearance(points, line.facing))
+        leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
+        blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
+        return float(along[blocked[0]]) if len(blocked) else math.inf, len(points)
+
+    def _round(
+        self,
+        straight: Floats,
+        free: float,
+        line: TravelLine,
+        obstacles: Neighbours,
+        seen: tuple[float, float],
+        checks: int,
+    ) -> Route:
+        """The detour what stands `free` metres on in the straight route, of which so much is `seen` from a height."""
+        s, (ahead, left), sight = self._settings, line.coordinates(*straight[0].tolist()), seen[0]
+        windows: dict[float, WalkableMap] = {}
+        for margin, cell in s.searches:
+            if cell not in windows:
+                windows[cell] = self._window(line, ahead, cell, obstacles, seen)
+                checks += windows[cell].clearance.size
+            behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
+            route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
+            gained = line.coordinates(*route[-1])[0] - ahead
+            if gained > free + s.worth_it:
+                return Route(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
+        return Route(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
+
+    def _window(
+        self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, seen: tuple[float, float]
+    ) -> WalkableMap:
+        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
+        s, (sight, height) = self._settings, seen
+        behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
+        shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
+        origin = line.point(ahead - behind, -middle)
+        roomy = max(margin for margin, _ in s.searches) + s.route.roomy
+        first = round(behind / cell)
+        window = self._body.window(obstacles, Grid(origin, line.heading, shape, cell, roomy, height, first))
+        if self.above is None:
+            return window
+        cells: Floats = np.indices(shape, np.float64).reshape(2, -1) * cell
+        rows: Floats = cells[0] + ahead - behind
+        columns: Floats = cells[1] - middle
+        places: Floats = np.stack(line.point(rows, columns), axis=1)
+        above = self.above.clearance(places, line.facing).reshape(shape)
+        return replace(window, clearance=np.minimum(window.clearance, above))
+
+
+def _cells(length: float, cell: float) -> float:
+    """`length` rounded up to whole cells, metres."""
+    return math.ceil(length / cell - 1e-9) * cell

@@ -1,0 +1,49 @@
+"""How punctual a session is: frames against the clock, answers to commands. Times are arguments, in seconds."""
+
+from collections import deque
+
+from elbowroom.server.percentiles import percentiles
+from elbowroom.server.sessions.meter import Meter
+
+_FRAMES = 600  # that are remembered
+_ANSWERS = 1000
+
+
+class Punctuality:
+    """Remembers how late the last frames were, and how long the last commands waited for a motion of their own."""
+
+    def __init__(self, meter: Meter | None = None) -> None:
+        """`meter` counts what all sessions of a server come to."""
+        self._meter = meter or Meter()
+        self._late: deque[float] = deque(maxlen=_FRAMES)
+        self._answers: deque[float] = deque(maxlen=_ANSWERS)
+        self._asked: float | None = None
+
+    def shown(self, late: float) -> None:
+        """A frame was ready so long after it was due."""
+        self._late.append(late)
+        self._meter.frames.add(late)
+
+    def asked(self, now: float) -> None:
+        """A command wants something else than the motion that is shown."""
+        self._asked = now if self._asked is None else self._asked
+
+    def answered(self, now: float) -> None:
+        """The motion that is shown is what the command wants."""
+        if self._asked is not None:
+            self._answers.append(now - self._asked)
+            self._meter.answers.add(now - self._asked)
+            self._asked = None
+
+    @property
+    def late_ms(self) -> float:
+        """99th percentile of the frames' lateness, milliseconds."""
+        return 1e3 * percentiles(self._late, 99)[0]
+
+    @property
+    def answer_ms(self) -> tuple[float, float, float] | None:
+        """Median, 99th percentile and longest wait of the commands, milliseconds; None where there was none."""
+        if not self._answers:
+            return None
+        half, most, longest = percentiles(self._answers, 50, 99, 100)
+        return 1e3 * half, 1e3 * most, 1e3 * longest

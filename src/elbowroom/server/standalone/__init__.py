@@ -1,0 +1,1 @@
+"""Runs that play without a server."""

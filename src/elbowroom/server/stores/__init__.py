@@ -1,0 +1,1 @@
+"""What sessions share and clients have sent: scenes, avatars, clips, runs."""

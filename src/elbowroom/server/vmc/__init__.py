@@ -1,0 +1,1 @@
+"""Poses by the Virtual Motion Capture protocol."""

@@ -1,0 +1,1 @@
+"""Messages and poses as they go over the wire."""

@@ -1,0 +1,1 @@
+"""Meshes and hulls: cut, packed, filled, looked up."""

@@ -1,0 +1,1 @@
+"""Squared distances of capsules' axes from each shape, sixteen at a time."""

@@ -1,0 +1,1 @@
+"""Obstacles on tracks: where they are, and what they sweep."""
