@@ -73,6 +73,12 @@ def test_every_folder_with_code_is_a_room() -> None:
     assert folders == set(ROOMS)
 
 
+def test_every_folder_is_named_on_the_architecture_page() -> None:
+    page = (Path(__file__).parents[1] / "docs" / "architecture.md").read_text("utf-8")
+    for init in PACKAGE.rglob("*/__init__.py"):
+        assert f"{init.parent.name}/`" in page, init.parent.relative_to(PACKAGE)
+
+
 def test_only_the_page_server_knows_the_network() -> None:
     wire = {"starlette", "uvicorn", "websockets", "socket", "asyncio"}
     for room in ROOMS[: ROOMS.index("server")]:
