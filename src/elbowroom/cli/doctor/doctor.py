@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from elbowroom.cli.doctor.soak_text import soak_faults, soak_rows, telling
 from elbowroom.cli.telling.output import print_json
 
 EXAMPLES = """Examples:  elbowroom doctor  |  elbowroom doctor --session --scene d --sessions 4 --seconds 20 --json  |
@@ -32,6 +33,9 @@ def doctor(
         float | None,
         typer.Option(metavar="MINUTES", min=0.2, max=1440.0, help="Whether memory stays, with clients good and bad."),
     ] = None,
+    clients: Annotated[
+        int, typer.Option(min=1, max=8, help="How many come and go at a time in a soak; 2 take half a core.")
+    ] = 2,
     load: Annotated[
         int | None, typer.Option(metavar="N", min=1, max=1000, help="Whether N users who steer are served in time.")
     ] = None,
@@ -55,8 +59,8 @@ def doctor(
     if soak is not None:
         from elbowroom.cli.doctor.soak import soak as soaked
 
-        with Console(stderr=True).status(f"Clients come and go for {soak:g} minutes ...") as status:
-            facts["soak"] = asdict(soaked(soak, lambda how: status.update(f"Clients come and go: {how}")))
+        with telling(soak) as tell:
+            facts["soak"] = asdict(soaked(soak, clients, tell))
     if load is not None:
         from elbowroom.cli.doctor.load import measure_load
 
@@ -159,20 +163,7 @@ def _faults(facts: dict[str, Any]) -> list[str]:
         faults.append("the first plan of a program comes later than its budget")
     if start and (start["first_run_seconds"] or 0.0) > start["first_run_budget_seconds"]:
         faults.append("the first run takes longer than its budget")
-    return faults + _soak_faults(facts.get("soak")) + _load_faults(facts.get("load"))
-
-
-def _soak_faults(soaked: dict[str, Any] | None) -> list[str]:
-    if soaked is None:
-        return []
-    faults = [f"clients that behave were failed: {soaked['failures']}"] if soaked["failures"] else []
-    if soaked["long_enough"] and soaked["slope"] > soaked["slope_budget"]:
-        faults.append("the server's memory grows faster than its budget")
-    if soaked["on_time_percent"] < soaked["on_time_budget_percent"]:
-        faults.append(
-            f"more frames than 1 in 100 were over {soaked['late_budget_ms']:g} ms late while clients misbehaved"
-        )
-    return faults
+    return faults + soak_faults(facts.get("soak")) + _load_faults(facts.get("load"))
 
 
 def _load_faults(load: dict[str, Any] | None) -> list[str]:
@@ -192,7 +183,7 @@ def _as_text(facts: dict[str, Any]) -> str:
         ("wheel", f"{wheel['file'] or 'packed from here'}, {wheel['megabytes']} MB (budget {WHEEL_BUDGET_MB:g})"),
         *_session_rows(facts.get("session")),
         *_startup_rows(facts.get("startup")),
-        *_soak_rows(facts.get("soak")),
+        *soak_rows(facts.get("soak")),
         *_load_rows(facts.get("load")),
         *(("fault", fault) for fault in facts["faults"]),
     ]
@@ -251,20 +242,3 @@ def _startup_rows(start: dict[str, Any] | None) -> list[tuple[str, str]]:
         first = f"{start['first_run_seconds']:.0f} s, budget {start['first_run_budget_seconds']:g} s"
         rows.append(("", f"the same with all kernels to compile: {first}"))
     return rows
-
-
-def _soak_rows(soaked: dict[str, Any] | None) -> list[tuple[str, str]]:
-    if soaked is None:
-        return []
-    clients = f"{soaked['sessions']} sessions, {soaked['courses']} courses, {soaked['uploads']} uploads"
-    own = f"own memory {soaked['own_first']:.0f} MB after the warm-up, {soaked['own_last']:.0f} in the end"
-    slope = f"{soaked['slope']:+.1f} MB an hour (budget {soaked['slope_budget']:g})"
-    short = "" if soaked["long_enough"] else "; too short for a verdict: 15 minutes or more"
-    frames = f"{soaked['frames_per_second']:.1f} frames/s, 99 % within {soaked['late_ms_typical']:.0f} ms of their time"
-    share = f"{soaked['on_time_percent']:.2f} % of all frames at most {soaked['late_budget_ms']:g} ms late"
-    return [
-        ("soak", f"{soaked['minutes']:g} minutes: {clients}, {soaked['misdeeds']} misdeeds"),
-        ("", f"{own}, {soaked['own_most']:.0f} at most: {slope}{short}"),
-        ("", f"{share} (budget {soaked['on_time_budget_percent']:g} %)"),
-        ("", f"one who walked on all the time: {frames}, {soaked['late_ms_p99']:.0f} ms in the worst 10 s"),
-    ]

@@ -9,7 +9,7 @@ import socket
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from statistics import median
@@ -30,11 +30,13 @@ from elbowroom.server.sessions.meter import LATE
 from elbowroom.server.wire.codec import encode
 
 SLOPE_BUDGET = 10.0  # MB an hour
+CLIENTS = 2  # who come and go at a time
 _EVERY = 2.0  # seconds between two readings of the memory
 _WARM_UP = 0.3  # of the time: then everything has happened at least once
 _VERDICT = 10.0  # minutes after the warm-up; in less, the noise of the heap is larger than the budget
 _SCENES = ("a", "b", "c", "d", "doorway", "beam", "traffic", "empty")
 _STEADY = 5.0  # seconds of walking between two looks at the clock
+_TOLD = 200  # characters of an error
 
 # Files that ask for too much: objects of few bytes, and a document type that gives every element 2 MB.
 _OBJECTS = b'{"asset":{"version":"2.0"},"a":[' + b"{}," * 1_000_000 + b"{}]}"
@@ -48,7 +50,8 @@ _TYPES = (
 class Soak:
     """What came of it."""
 
-    minutes: float
+    minutes: float  # that were wanted
+    ran: float  # minutes: fewer where it was cut short
     sessions: int
     courses: int
     uploads: int
@@ -66,6 +69,8 @@ class Soak:
     late_ms_p99: float  # of the frames of a client that walks about all the time, in its worst 10 s
     late_ms_typical: float  # the same in half of the times that it looked
     frames_per_second: float  # that it got
+    cpu_percent: float  # of one core: the server, after the warm-up
+    clients_cpu_percent: float  # the same of all clients, from their start
 
 
 class _Reading(NamedTuple):
@@ -75,6 +80,7 @@ class _Reading(NamedTuple):
     own: float  # MB of memory
     frames: float  # of all sessions
     late: float  # of these
+    processor: float  # seconds
 
 
 @dataclass
@@ -92,35 +98,56 @@ class _Yard:
     def over(self) -> bool:
         return time.monotonic() >= self.end
 
+    @contextlib.contextmanager
+    def ended_early(self) -> Iterator[None]:
+        """Who interrupts the block, or tells the process to end, ends the clients' time: there is a verdict still."""
+        try:
+            yield
+        except (KeyboardInterrupt, SystemExit):
+            self.end = 0.0
+
     def count(self, what: str) -> None:
         with self.lock:
             self.counts[what] += 1
 
     def failed(self, error: Exception) -> None:
+        if self.over():
+            return  # what a cut takes along
         with self.lock:
-            self.failures[type(error).__name__] += 1
+            self.failures[f"{type(error).__name__}: {error}"[:_TOLD]] += 1
 
 
-def soak(minutes: float, tell: Callable[[str], object] = lambda _: None) -> Soak:
-    """Run a server and its clients for so long; `tell` hears how it goes. Raises `InputError` if there is no server."""
+def soak(minutes: float, clients: int = CLIENTS, tell: Callable[[str], object] = lambda _: None) -> Soak:
+    """Run a server and its clients for so long, or until it is interrupted; `tell` hears how it goes.
+
+    `clients`: how many come and go at a time, beside one who walks on, one who uploads and one who misbehaves.
+    Raises `InputError` if there is no server.
+    """
     logging.getLogger("websockets").setLevel(logging.CRITICAL)  # clients that are cut off are what is wanted
+    tasks = [_steady, _upload, _misbehave, *[_guest] * clients]
     with started_server("a", dict(os.environ)) as url:
         wait_until_warm(url)
         yard = _Yard(url, time.monotonic() + 60.0 * minutes)
-        began = time.monotonic()
-        with ThreadPoolExecutor(5) as pool:
-            work = [pool.submit(_again, yard, task) for task in (_steady, _guest, _guest, _upload, _misbehave)]
-            readings = _watch(yard, began, tell)
+        began, spent = time.monotonic(), time.process_time()
+        readings = [_reading(yard, began)]
+        with ThreadPoolExecutor(len(tasks)) as pool:
+            work = [pool.submit(_again, yard, task, number) for number, task in enumerate(tasks)]
+            with yard.ended_early():
+                _watch(yard, readings, began, tell)
+            seconds = time.monotonic() - began
             for task in work:
                 task.result()
-        return _summary(yard, readings, minutes, time.monotonic() - began)
+        return summary(yard, readings, minutes, (seconds, time.process_time() - spent))
 
 
-def _summary(yard: _Yard, readings: list[_Reading], minutes: float, seconds: float) -> Soak:
-    after = [reading for reading in readings if reading.at >= _WARM_UP * 60.0 * minutes] or readings[-1:]
-    times, own, frames, late = np.array(after).T
+def summary(yard: _Yard, readings: list[_Reading], minutes: float, took: tuple[float, float]) -> Soak:
+    """What came of it by some readings, one at least; `took`: seconds by the clock and of the clients' processor."""
+    seconds, spent = took
+    after = [reading for reading in readings if reading.at >= _WARM_UP * min(60.0 * minutes, seconds)] or readings[-1:]
+    times, own, frames, late, processor = np.array(after).T
     return Soak(
         minutes=minutes,
+        ran=seconds / 60.0,
         sessions=yard.counts["sessions"],
         courses=yard.counts["courses"],
         uploads=yard.counts["uploads"],
@@ -138,6 +165,8 @@ def _summary(yard: _Yard, readings: list[_Reading], minutes: float, seconds: flo
         late_ms_p99=max(yard.late, default=0.0),
         late_ms_typical=median(yard.late or [0.0]),
         frames_per_second=yard.frames / seconds,
+        cpu_percent=100.0 * float(processor[-1] - processor[0]) / max(float(times[-1] - times[0]), _EVERY),
+        clients_cpu_percent=100.0 * spent / seconds,
     )
 
 
@@ -148,22 +177,33 @@ def slope_of(times: "np.ndarray[tuple[int], np.dtype[np.float64]]", values: obje
     return float(np.median((values[later] - values[sooner]) / (times[later] - times[sooner]))) if len(later) else 0.0
 
 
-def _watch(yard: _Yard, began: float, tell: Callable[[str], object]) -> list[_Reading]:
-    """What the server tells of itself until the end."""
-    readings: list[_Reading] = []
+def _watch(yard: _Yard, readings: list[_Reading], began: float, tell: Callable[[str], object]) -> None:
+    """Gather what the server tells of itself until the end."""
     while not yard.over():
         with contextlib.suppress(OSError):
-            told = usage(yard.url)
-            own = told["ownBytes"] / 1e6
-            readings.append(_Reading(time.monotonic() - began, own, told["frames"], told["framesLate"]))
-            tell(f"{readings[-1].at / 60.0:.0f} min, {own:.0f} MB, {yard.counts['sessions']} sessions")
+            readings.append(_reading(yard, began))
+            tell(_told(yard, readings))
         time.sleep(_EVERY)
-    return readings
 
 
-def _again(yard: _Yard, task: Callable[[_Yard, random.Random], None]) -> None:
+def _reading(yard: _Yard, began: float) -> _Reading:
+    told = usage(yard.url)
+    own, at = told["ownBytes"] / 1e6, time.monotonic() - began
+    return _Reading(at, own, told["frames"], told["framesLate"], told["cpuSeconds"])
+
+
+def _told(yard: _Yard, readings: list[_Reading]) -> str:
+    """All that is known so far, in a line."""
+    first, last = readings[0], readings[-1]
+    on_time = percent(last.frames - first.frames, last.late - first.late)
+    counts = ", ".join(f"{yard.counts[what]} {what}" for what in ("sessions", "courses", "uploads", "misdeeds"))
+    failures = f", failures: {dict(yard.failures)}" if yard.failures else ""
+    return f"{last.at / 60.0:.1f} min, {last.own:.1f} MB, {on_time:.3f} % of frames in time, {counts}{failures}"
+
+
+def _again(yard: _Yard, task: Callable[[_Yard, random.Random], None], number: int) -> None:
     """Do something until the end, whatever comes of it."""
-    chance = random.Random(task.__name__)
+    chance = random.Random(number)
     while not yard.over():
         try:
             task(yard, chance)
