@@ -15,7 +15,8 @@ from elbowroom.cluster.connection import connected  # noqa: E402
 from elbowroom.cluster.node import Kind, made_ready  # noqa: E402
 from elbowroom.cluster.workers import RayWorkers  # noqa: E402
 from elbowroom.errors import InputError  # noqa: E402
-from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet  # noqa: E402
+from elbowroom.experiment.gauntlet.runner import run_gauntlet  # noqa: E402
+from elbowroom.experiment.gauntlet.settings import GauntletSettings  # noqa: E402
 from elbowroom.experiment.parallel import Processes  # noqa: E402
 
 NODE: dict[str, Any] = {"num_cpus": 1, "object_store_memory": 100 * 2**20}

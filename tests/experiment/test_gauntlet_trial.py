@@ -16,7 +16,8 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import Course, NoCourseError
-from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
+from elbowroom.experiment.gauntlet.runner import run_gauntlet
+from elbowroom.experiment.gauntlet.settings import GauntletSettings
 from elbowroom.experiment.gauntlet.summary import GauntletSummary
 from elbowroom.experiment.gauntlet.sweep import STEERING
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of

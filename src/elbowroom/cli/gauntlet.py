@@ -21,10 +21,13 @@ from elbowroom.planning.names import DEFAULT_PLANNER
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.recordings.avatar_reference import AvatarReference
-    from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
-    from elbowroom.experiment.gauntlet.runner import GauntletSettings
+    from elbowroom.experiment.gauntlet.place.settings import PlaceGauntletSettings
+    from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace
+    from elbowroom.experiment.gauntlet.runner import Progress
+    from elbowroom.experiment.gauntlet.settings import Gauntlet, GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
-    from elbowroom.experiment.gauntlet.trial import TrialResult
+    from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
+    from elbowroom.experiment.parallel import Workers
     from elbowroom.world.scene import Scene
 
 EXAMPLES = (
@@ -33,8 +36,6 @@ EXAMPLES = (
     "elbowroom gauntlet --place house.glb --drop 'IfcDoor_*' --courses 10"
 )
 FELL_SHORT = 1
-_NO_COURSE = "no course for this body from {}: its arms stand out too little beside its trunk and legs"
-_NO_WAY = "no course for this body from {}: no way of 3 m and more was found that furniture leaves free"
 _LISTED = 12  # seeds that are named
 
 
@@ -82,63 +83,65 @@ def gauntlet(
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
     check_cluster(cluster)
     furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
-    from elbowroom.experiment.gauntlet.place.tasks import PlaceGauntletSettings
-    from elbowroom.experiment.gauntlet.runner import GauntletSettings, run_gauntlet
-    from elbowroom.experiment.gauntlet.summary import GauntletSummary
     from elbowroom.experiment.gauntlet.trial import TrialSettings
 
     walker = _Walker(avatar, bones, height, include_hair)
-    trial = TrialSettings(planner, queue)
-    of_level = GauntletSettings(level, courses, seed, trial, judge, shapes=shapes)
-    of_place = None if furnished is None else PlaceGauntletSettings(furnished, courses, seed, trial, judge)
+    gauntlet = _gauntlet(furnished, level, courses, seed, TrialSettings(planner, queue), judge=judge, shapes=shapes)
     compile_first(quiet=quiet)
-    settings: GauntletSettings | PlaceGauntletSettings = replace(of_place or of_level, avatar=walker.reference())
+    gauntlet = replace(gauntlet, avatar=walker.reference())
     if save is not None:
-        return _save(_course(settings, walker, save[0], quiet), save[1])
+        return _save(_course(gauntlet, walker, save[0], quiet), save[1])
     if show is not None:
-        return _show(_course(settings, walker, show, quiet), settings, walker)
+        return _show(_course(gauntlet, walker, show, quiet), gauntlet, walker)
     with chosen_workers(cluster, jobs, courses) as workers, time_left_bar("Courses", quiet) as move:
-        (results, without), processes = run_gauntlet(settings, workers, out, move), workers.at_once
-    if not results:
-        raise InputError(f"{_about(settings)[0]}: {_without(settings, without)}; try others")
-    summary = GauntletSummary.of(results)
-    document = _document(settings, processes, summary) | {"without_course": list(without)}
-    whole = document | _trials(results)
-    if out is not None:
-        _write(out / f"gauntlet-{level if place is None else 'place'}.json", json_text(whole) + "\n")
-    print_json(whole) if json else _print(settings, summary)
-    if without:
-        typer.echo(f"elbowroom: {_without(settings, without)}; the figures are of the others", err=True)
+        summary = _walk_all(gauntlet, workers, out, move, json=json)
     raise typer.Exit(0 if _is_good(summary) else FELL_SHORT)
+
+
+def _gauntlet(
+    place: "FurnishedPlace | None",
+    level: int,
+    courses: int,
+    seed: int,
+    trial: "TrialSettings",
+    *,
+    judge: bool,
+    shapes: bool,
+) -> "GauntletSettings | PlaceGauntletSettings":
+    """The courses that the options ask for."""
+    from elbowroom.experiment.gauntlet.place.settings import PlaceGauntletSettings
+    from elbowroom.experiment.gauntlet.settings import GauntletSettings
+
+    if place is not None:
+        return PlaceGauntletSettings(place, courses, seed, trial, judge)
+    return GauntletSettings(level, courses, seed, trial, judge, shapes=shapes)
+
+
+def _walk_all(
+    gauntlet: "Gauntlet", workers: "Workers", out: Path | None, move: "Progress", *, json: bool
+) -> "GauntletSummary":
+    """Walk, and say what came of it; raises `InputError` where no seed gives a course."""
+    from elbowroom.experiment.gauntlet.runner import run_gauntlet
+    from elbowroom.experiment.gauntlet.summary import GauntletSummary
+
+    results, without = run_gauntlet(gauntlet, workers, out, move)
+    missing = gauntlet.no_course.format(_listed(without))
+    if not results:
+        raise InputError(f"{gauntlet.title}: {missing}; try others")
+    summary = GauntletSummary.of(results)
+    document = _document(gauntlet, workers.at_once, summary) | {"without_course": list(without)} | _trials(results)
+    if out is not None:
+        _write(out / f"gauntlet-{gauntlet.name}.json", json_text(document) + "\n")
+    print_json(document) if json else _print(gauntlet, summary)
+    if without:
+        typer.echo(f"elbowroom: {missing}; the figures are of the others", err=True)
+    return summary
 
 
 def _is_good(summary: "GauntletSummary") -> bool:
     """Whether all courses were crossed and nothing touched."""
     touching = summary.touching_frames or summary.judged_touching or summary.mesh_touching
     return summary.crossed == summary.courses and not touching
-
-
-def _without(settings: "GauntletSettings | PlaceGauntletSettings", seeds: tuple[int, ...]) -> str:
-    """That some seeds give no course, and why."""
-    from elbowroom.experiment.gauntlet.runner import GauntletSettings
-
-    return (_NO_COURSE if isinstance(settings, GauntletSettings) else _NO_WAY).format(_listed(seeds))
-
-
-def _about(settings: "GauntletSettings | PlaceGauntletSettings") -> tuple[str, dict[str, Any]]:
-    """What the courses are of, in words and as data."""
-    from dataclasses import asdict
-
-    from elbowroom.experiment.gauntlet.levels import level_of
-    from elbowroom.experiment.gauntlet.place.course import MARGIN
-    from elbowroom.experiment.gauntlet.runner import GauntletSettings
-
-    if isinstance(settings, GauntletSettings):
-        level = level_of(settings.level)
-        return f"level {settings.level} ({100 * level.margin:.0f} cm)", {"level": asdict(level)}
-    place = settings.place
-    about = {"file": place.path.name, "pieces": place.pieces, "margin": MARGIN}
-    return f"{place.path.name} with {place.pieces} pieces of furniture ({100 * MARGIN:.0f} cm)", {"place": about}
 
 
 def _listed(seeds: tuple[int, ...]) -> str:
@@ -164,25 +167,12 @@ class _Walker(NamedTuple):
         return AvatarReference.of(self.load()) if any(option for option in self) else None
 
 
-def _course(settings: "GauntletSettings | PlaceGauntletSettings", walker: _Walker, k: int, quiet: bool) -> "Scene":
+def _course(gauntlet: "Gauntlet", walker: _Walker, k: int, quiet: bool) -> "Scene":
     """Course `k` as a scene."""
-    from elbowroom.experiment.gauntlet.course import CourseMaker
-    from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
-    from elbowroom.experiment.gauntlet.runner import GauntletSettings
-    from elbowroom.experiment.gauntlet.shapes import in_shapes
-
     if k < 0:
         raise InputError(f"course {k}: courses are counted from 0")
     with progress_bar("Making the course", None, quiet):
-        if not isinstance(settings, GauntletSettings):
-            place = settings.place
-            return (
-                PlaceCourseMaker.open(walker.load(), place.path, place.options, place.pieces)
-                .course(settings.seed + k)
-                .scene
-            )
-        course = CourseMaker.of(walker.load()).course(settings.level, settings.seed + k)
-        return (in_shapes(course) if settings.shapes else course).scene
+        return gauntlet.scene(walker.load(), k)
 
 
 def _save(course: "Scene", path: Path) -> None:
@@ -197,7 +187,7 @@ def _write(path: Path, text: str) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 
 
-def _show(course: "Scene", settings: "GauntletSettings | PlaceGauntletSettings", walker: _Walker) -> None:
+def _show(course: "Scene", gauntlet: "Gauntlet", walker: _Walker) -> None:
     from elbowroom.cli.play import play
 
     with TemporaryDirectory() as folder:
@@ -209,14 +199,12 @@ def _show(course: "Scene", settings: "GauntletSettings | PlaceGauntletSettings",
             open_page=True,
             scene=str(path),
             **walker._asdict(),
-            planner=settings.trial.planner,
-            queue=settings.trial.queue_size,
+            planner=gauntlet.trial.planner,
+            queue=gauntlet.trial.queue_size,
         )
 
 
-def _document(
-    settings: "GauntletSettings | PlaceGauntletSettings", jobs: int, summary: "GauntletSummary"
-) -> dict[str, Any]:
+def _document(gauntlet: "Gauntlet", jobs: int, summary: "GauntletSummary") -> dict[str, Any]:
     from dataclasses import asdict
 
     from elbowroom.experiment.gauntlet.runner import identity
@@ -231,12 +219,12 @@ def _document(
         "plan_ms": times,
         "intervals_95": rates,
         "settings": {
-            **_about(settings)[1],
+            **gauntlet.about(),
             "speeds": asdict(HumanSpeeds()),
-            "courses": settings.courses,
-            "seed": settings.seed,
+            "courses": gauntlet.courses,
+            "seed": gauntlet.seed,
             "jobs": jobs,
-            **{name: value for name, value in identity(settings).items() if name != "place"},
+            **{name: value for name, value in identity(gauntlet).items() if name != "place"},
         },
     }
 
@@ -248,7 +236,7 @@ def _trials(results: list["TrialResult"]) -> dict[str, Any]:
     return {"trials": [asdict(result) | {"plan_ms": max(result.plan_ms, default=0.0)} for result in results]}
 
 
-def _print(settings: "GauntletSettings | PlaceGauntletSettings", summary: "GauntletSummary") -> None:
+def _print(gauntlet: "Gauntlet", summary: "GauntletSummary") -> None:
     def share(count: int) -> str:
         from elbowroom.experiment.statistics import wilson
 
@@ -275,7 +263,7 @@ def _print(settings: "GauntletSettings | PlaceGauntletSettings", summary: "Gaunt
         rows["poses in which the mesh touches"] = f"{summary.mesh_touching} of {summary.judged_poses}{deepest}"
         if summary.mesh_clearance is not None:
             rows["least clearance of the mesh"] = f"{1e3 * summary.mesh_clearance:.1f} mm"
-    last = settings.seed + settings.courses - 1
-    about = f"{_about(settings)[0]}, seeds {settings.seed} to {last}"
-    trial = settings.trial
+    last = gauntlet.seed + gauntlet.courses - 1
+    about = f"{gauntlet.title}, seeds {gauntlet.seed} to {last}"
+    trial = gauntlet.trial
     print_row(f"Gauntlet, {about}, {trial.planner}, |Q| {trial.queue_size}", rows)

@@ -8,21 +8,18 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.control.recordings.avatar_reference import AvatarReference
-from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import warm_up
 from elbowroom.experiment.gauntlet.course import NoCourseError
 from elbowroom.experiment.gauntlet.judged import judged_walk
-from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
 from elbowroom.experiment.gauntlet.place.trial import NO_LEVEL, walk_place_course
 from elbowroom.experiment.gauntlet.tasks import NO_COURSE, CourseWalker, Record
 from elbowroom.experiment.gauntlet.trial import TrialSettings
 from elbowroom.experiment.opened import Thing, opened
-from elbowroom.planning.names import check_planner
 from elbowroom.world.places.options import PlaceOptions
 
-MOST_PIECES, MOST_COURSES = 100, 1_000_000
+MOST_PIECES = 100
 
 
 @dataclass(frozen=True)
@@ -89,32 +86,3 @@ class PlaceTask:
         if self.judge and shown:
             result = replace(result, judge=judged_walk(maker.humanoid, course.scene, shown))
         return asdict(result)
-
-
-@dataclass(frozen=True)
-class PlaceGauntletSettings:
-    """Which courses of a place are walked, and how. Course k has the seed `seed + k`."""
-
-    place: FurnishedPlace
-    courses: int = 20
-    seed: int = 0
-    trial: TrialSettings = field(default_factory=TrialSettings)
-    judge: bool = False  # whether another library judges every walk
-    avatar: AvatarReference | None = None  # None: the stock one
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.courses <= MOST_COURSES:
-            raise InputError(f"courses: {self.courses} is not a whole number from 1 to {MOST_COURSES}")
-        if not 0 <= self.seed <= LARGEST_SEED + 1 - self.courses:
-            raise InputError(f"seed: {self.seed} is not a whole number from 0 to {LARGEST_SEED + 1 - self.courses}")
-        check_planner(self.trial.planner)
-        ControlSettings(queue_size=self.trial.queue_size)
-
-    def tasks(self) -> list[PlaceTask]:
-        """A task for every course."""
-        seeds = range(self.seed, self.seed + self.courses)
-        return [PlaceTask(self.place, seed, self.trial, self.judge, self.avatar) for seed in seeds]
-
-    def told(self) -> dict[str, Any]:
-        """What tells these courses from others, as JSON has it."""
-        return {"place": {"sha256": self.place.sha256, **self.place.options.to_dict(), "pieces": self.place.pieces}}
