@@ -13,7 +13,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help env run test test-long lint types unit web-test browser docs fuzz pictures strangers clean format
+.PHONY: help env run test test-long lint types unit web-test browser browser-tools docs fuzz pictures strangers clean format
 
 help:
 	@sed -n '1,4s/^# //p' Makefile
@@ -42,7 +42,10 @@ $(VENV)/developer: $(VENV)/installed
 	@$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
 
-test: lint types unit web-test browser
+# What keeps one processor busy, or waits for a registry, goes side by side; tests that use both come after it.
+test: $(VENV)/developer
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target types lint web-test browser-tools
+	@$(MAKE) --no-print-directory --jobs 1 unit browser
 	@echo "==> All tests passed"
 
 lint: $(VENV)/developer
@@ -71,10 +74,12 @@ web-test: $(VENV)/developer
 	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
 	@$(BIN)/python hatch_build.py test
 
-browser: $(VENV)/developer
-	@echo "==> Tests in a real browser"
+browser-tools: $(VENV)/developer
 	@sh tools/install_browser.sh
 	@sh tools/install_judges.sh $(BIN)/python
+
+browser: browser-tools
+	@echo "==> Tests in a real browser"
 	@$(BIN)/python -m pytest -m "browser and not long" -n 2 --dist loadfile $(ARGS)
 
 docs: $(VENV)/developer
@@ -94,10 +99,8 @@ pictures: $(VENV)/developer
 	@if test -n "$(HOUSE)"; then $(BIN)/elbowroom inspect --quiet --drop 'IfcDoor_*' --plan docs/images/floors.png $(HOUSE); \
 	else echo "floors.png stays as it is: name its house, make pictures HOUSE=AC14-FZK-Haus.glb"; fi
 
-strangers: $(VENV)/developer
+strangers: browser-tools
 	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
-	@sh tools/install_browser.sh
-	@sh tools/install_judges.sh $(BIN)/python
 	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
 	@$(BIN)/python tools/strangers $(ARGS)
 
