@@ -1,88 +1,39 @@
 """Two who walk towards each other where there is little room: each keeps to its half, nobody is driven back."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import RootState
-from elbowroom.control.controller import Controller
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
-from elbowroom.planning.command import Command
+from elbowroom.experiment.meeting.meeting import Kind, Start, corridor, drawn, meet
+from elbowroom.experiment.meeting.meetings import WIDTHS
 from elbowroom.world.obstacles.tracks.moving import Moving
-from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
-AVATAR = Humanoid.default()
-DT = 1 / 60
-FORWARD, NOTHING = Command(forward=1.0), Command()
-STEP = 0.3  # metres
 BODY = np.array([[-0.2, 0.0, 0.0, 0.2, 1.7, 0.0, 0.05]])  # one capsule as broad as shoulders
-
-
-def corridor(width: float) -> Scene:
-    middle = 0.5 * width + 0.1
-    walls = [{"type": "box", "center": [side * middle, 1.1, 3.0], "size": [0.2, 2.2, 30.0]} for side in (-1, 1)]
-    return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": walls})
-
-
-class Meeting(NamedTuple):
-    """How it ended."""
-
-    passed: bool
-    touched: bool
-    back: float  # metres, the farthest that one was driven back
-
-
-def meeting(width: float, left: tuple[float, float], second: Command = FORWARD, seconds: float = 12.0) -> Meeting:
-    """Two in a corridor, `left` of its middle as seen by the first; the first walks, the second does as it is told."""
-    one = Controller(AVATAR, corridor(width), start=RootState(left[0], 0.0, 0.0))
-    two = Controller(AVATAR, corridor(width), start=RootState(left[1], 5.0, math.pi))
-    farthest, back, touched = np.full(2, -np.inf), 0.0, False
-    for _ in range(round(seconds / DT)):
-        one.others, two.others = (two.prediction(),), (one.prediction(),)
-        mine, yours = one.step(FORWARD, DT), two.step(second, DT)
-        touched |= mine.touching or yours.touching
-        come = np.array([mine.root[1], 5.0 - yours.root[1]])
-        farthest = np.maximum(farthest, come)
-        back = max(back, float((farthest - come).max()))
-        if mine.root[1] > yours.root[1] + 0.8:
-            return Meeting(True, touched, back)
-    return Meeting(False, touched, back)
 
 
 @pytest.mark.parametrize(
     ("width", "left"), [(1.2, (0.0, 0.0)), (0.95, (0.0, 0.0)), (1.4, (0.02, 0.0)), (0.95, (0.121, 0.02))]
 )
 def test_two_who_meet_head_on_share_the_way(width: float, left: tuple[float, float]) -> None:
-    met = meeting(width, left)
-    assert met.passed
-    assert not met.touched
-    assert met.back < STEP
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("width", [0.95, 1.05, 1.2, 1.35, 1.5])
-def test_wherever_two_meet_they_share_the_way(width: float) -> None:
-    rng, room = np.random.default_rng(round(100 * width)), 0.5 * width - 0.32
-    for _ in range(6):
-        met = meeting(width, (float(rng.uniform(-room, room)), float(rng.uniform(-room, room))))
-        assert met.passed
-        assert not met.touched
-        assert met.back < STEP
+    assert meet(Start(width, left, 5.0, (1.0, 1.0))).well
 
 
 @pytest.mark.parametrize("width", [0.95, 1.0, 1.1, 1.2, 1.6])
 def test_who_stands_is_passed_and_not_driven_back(width: float) -> None:
-    met = meeting(width, (0.0, 0.0), NOTHING)
-    assert met.passed
-    assert not met.touched
-    assert met.back < STEP
+    assert meet(Start(width, (0.0, 0.0), 5.0, (1.0, 0.0))).well
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("kind", list(Kind))
+def test_wherever_two_meet_they_share_the_way(width: float, kind: Kind) -> None:
+    assert [met.start for seed in range(20) if not (met := meet(drawn(width, kind, seed))).well] == []
 
 
 def seen(x: float, z: float, wanted: tuple[float, float]) -> Neighbour:

@@ -135,6 +135,14 @@ def test_crossing_counts_once_until_the_avatar_was_back_at_the_start(walk: Walk)
     assert walk.crossed == 2
 
 
+def test_who_hardly_moves_at_the_start_has_not_set_off(walk: Walk) -> None:
+    walk.step(Command(), 1.0)
+    for speed, began in ((1e-19, walk.frame.time), (0.1, -1.0)):
+        walk._started = -1.0
+        walk._wait_for_start(walk.place._replace(forward=speed, lateral=-1e-44))
+        assert walk._started == began
+
+
 def test_status_and_plan_tell_what_the_controller_did(stage: Stage) -> None:
     stage.overlays = Overlays(capsules=True, plan=True)
     stage.obey(Input(seq=1, forward=1.0), 0.0)

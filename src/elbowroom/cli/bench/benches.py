@@ -8,6 +8,7 @@ from elbowroom.cli.bench import cluster as bench_cluster
 from elbowroom.cli.bench import collision as bench_collision
 from elbowroom.cli.bench import compile as bench_compile
 from elbowroom.cli.bench import crowd as bench_crowd
+from elbowroom.cli.bench import meet as bench_meet
 from elbowroom.cli.bench import motion as bench_motion
 from elbowroom.cli.bench import plan as bench_plan
 from elbowroom.cli.bench import planners as bench_planners
@@ -46,5 +47,6 @@ bench.command("planners", epilog=bench_planners.EXAMPLES)(bench_planners.planner
 bench.command("crowd", epilog=bench_crowd.EXAMPLES)(bench_crowd.crowd)
 bench.command("cluster", epilog=bench_cluster.EXAMPLES)(bench_cluster.cluster)
 bench.command("steer", epilog=bench_steer.EXAMPLES)(bench_steer.steer)
+bench.command("meet", epilog=bench_meet.EXAMPLES)(bench_meet.meet)
 bench.command("motion", epilog=bench_motion.EXAMPLES)(bench_motion.motion)
 bench.command("compile", epilog=bench_compile.EXAMPLES)(bench_compile.compile_)

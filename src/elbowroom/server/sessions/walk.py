@@ -21,6 +21,7 @@ from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Way
 from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.pace import at_speed
+from elbowroom.planning.stillness import is_still
 from elbowroom.server.schema.bounds import WALK_SPEEDS
 from elbowroom.server.sessions.walk_log import WalkLog
 from elbowroom.server.stores.avatar_store import StoredAvatar
@@ -225,6 +226,5 @@ class Walk:
 
     def _wait_for_start(self, root: RootState) -> None:
         """Time and counters of a crossing run from the moment when the avatar sets off."""
-        standing = root.forward == 0.0 and root.lateral == 0.0
-        if not self._armed or standing:
+        if not self._armed or is_still(root.as_array()[3:5]):
             self._armed, self._stuck_since_start, self._started = True, 0, self.frame.time

@@ -1,0 +1,76 @@
+"""`elbowroom bench meet`: two avatars who meet in a corridor, and whether they get past each other."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from elbowroom.cli.options.workers import Jobs, chosen_workers
+from elbowroom.cli.telling.first_run import compile_first
+from elbowroom.cli.telling.output import print_json, progress_bar
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.meeting.meetings import WidthResult
+
+EXAMPLES = "Examples:  elbowroom bench meet  |  elbowroom bench meet --widths 0.95,1.2 --starts 5 --json"
+FELL_SHORT = 1
+
+_LEGEND = """passed of the meetings, within 15 s; back: metres, the farthest that one was driven back (0.3 is a step);
+seconds until they had passed, in half of the meetings; ms: processor time of the longest step, its plan included."""
+
+
+def meet(
+    *,
+    widths: Annotated[str | None, typer.Option(help="Of the corridors, in metres (0.95 to 1.6).")] = None,
+    starts: Annotated[
+        int, typer.Option(help="Meetings in each corridor, of each kind; meeting K has the seed S + K.")
+    ] = 20,
+    seed: Annotated[int, typer.Option(help="S, the seed of meeting 0.")] = 0,
+    jobs: Jobs = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Let two avatars meet in corridors, from random places and at random paces: both walk, or one of them stands.
+
+    Exit code 0: all passed, nobody touched or was driven back by more than a step, 1: not.
+    """
+    from elbowroom.experiment.machine import machine_kind
+    from elbowroom.experiment.meeting.meetings import WIDTHS, MeetingSettings, as_dict, run_meetings
+
+    settings = MeetingSettings(WIDTHS if widths is None else _numbers(widths), starts, seed)
+    compile_first(quiet=quiet)
+    count = len(settings.tasks())
+    with chosen_workers(None, jobs, count) as workers, progress_bar("Meeting", count, quiet) as bar:
+        results = run_meetings(settings, workers, bar.move)
+    if json:
+        print_json({"machine": machine_kind()} | as_dict(results))
+    else:
+        _show(results)
+    if not all(result.well for result in results):
+        raise typer.Exit(FELL_SHORT)
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    from elbowroom.errors import InputError
+
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"widths {text[:40]!r}: numbers with commas between them, such as 0.95,1.2") from None
+
+
+def _show(results: "list[WidthResult]") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from elbowroom.experiment.machine import machine_kind
+
+    table = Table(title=f"Meeting in corridors ({machine_kind()})", title_justify="left", box=None)
+    for column in ("who", "width, m", "passed", "touching", "driven back", "back", "seconds", "ms"):
+        table.add_column(column, justify="left" if column == "who" else "right")
+    for row in results:
+        table.add_row(
+            row.kind, f"{row.width:g}", f"{row.passed} of {row.starts}", f"{row.touched}", f"{row.driven_back}",
+            f"{row.back:.2f}", f"{row.seconds:.1f}", f"{row.frame_ms:.0f}",
+        )  # fmt: skip
+    Console().print(table)
+    print(_LEGEND)

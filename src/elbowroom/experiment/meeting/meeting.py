@@ -1,0 +1,99 @@
+"""Two in a corridor: one walks, the other comes towards it or stands in its way; nobody is driven back or touched."""
+
+import math
+from enum import StrEnum
+from time import thread_time_ns
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import RootState
+from elbowroom.control.controller import Controller
+from elbowroom.planning.command import Command
+from elbowroom.world.scene import Scene
+
+STEP = 0.3  # metres: the longest step back, and who goes farther was driven
+_DT = 1 / 60
+_PAST = 0.8  # metres that are between both when they have passed
+_BODY = 0.32  # metres from the middle of one who stands to the wall, at least
+_LENGTH, _HEIGHT, _THICK = 40.0, 2.2, 0.2  # metres, of the walls
+
+
+class Kind(StrEnum):
+    """What the other does."""
+
+    WALKS = "both walk"
+    STANDS = "one stands"
+
+
+class Start(NamedTuple):
+    """Where both begin, metres, and what they want."""
+
+    width: float  # of the corridor
+    left: tuple[float, float]  # of its middle, as the first sees it
+    apart: float
+    paces: tuple[float, float]  # forward of their commands; 0 of who stands
+
+
+class Met(NamedTuple):
+    """How it ended."""
+
+    start: Start
+    passed: bool
+    touched: bool
+    seconds: float  # until then
+    back: float  # metres, the farthest that one was driven back
+    frame_ms: float  # processor time of the longest step of one, its plan included
+
+    @property
+    def driven_back(self) -> bool:
+        """Whether somebody was, by more than a step."""
+        return self.back > STEP
+
+    @property
+    def well(self) -> bool:
+        """Whether both may be content."""
+        return self.passed and not self.touched and not self.driven_back
+
+
+def corridor(width: float) -> Scene:
+    """Two walls that are so far apart, along Z."""
+    middle = 0.5 * (width + _THICK)
+    walls = [
+        {"type": "box", "center": [side * middle, 0.5 * _HEIGHT, 3.0], "size": [_THICK, _HEIGHT, _LENGTH]}
+        for side in (-1, 1)
+    ]
+    return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": walls})
+
+
+def drawn(width: float, kind: Kind, seed: int) -> Start:
+    """Both somewhere across the corridor, some metres apart, each with a pace of its own."""
+    rng = np.random.default_rng([seed, round(1000 * width), list(Kind).index(kind)])
+    room = 0.5 * width - _BODY
+    left = float(rng.uniform(-room, room)), float(rng.uniform(-room, room))
+    paces = float(rng.uniform(0.6, 1.0)), float(rng.uniform(0.6, 1.0)) * (kind is Kind.WALKS)
+    return Start(width, left, float(rng.uniform(3.0, 6.0)), paces)
+
+
+def meet(start: Start, seconds: float = 15.0) -> Met:
+    """Let them walk until they have passed, or for so long."""
+    humanoid, scene = Humanoid.default(), corridor(start.width)
+    one = Controller(humanoid, scene, start=RootState(start.left[0], 0.0, 0.0))
+    two = Controller(humanoid, scene, start=RootState(start.left[1], start.apart, math.pi))
+    farthest, back, touched, longest = np.full(2, -np.inf), 0.0, False, 0
+    for turn in range(1, round(seconds / _DT) + 1):
+        one.others, two.others = (two.prediction(),), (one.prediction(),)
+        frames = []
+        for walker, pace in zip((one, two), start.paces, strict=True):
+            began = thread_time_ns()
+            frames.append(walker.step(Command(forward=pace), _DT))
+            longest = max(longest, thread_time_ns() - began)
+        mine, yours = frames
+        touched |= mine.touching or yours.touching
+        come = np.array([mine.root[1], start.apart - yours.root[1]])
+        farthest = np.maximum(farthest, come)
+        back = max(back, float((farthest - come).max()))
+        if mine.root[1] > yours.root[1] + _PAST:
+            return Met(start, True, touched, turn * _DT, back, longest / 1e6)
+    return Met(start, False, touched, seconds, back, longest / 1e6)
