@@ -7,7 +7,8 @@ import pytest
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.gait.cycle import foot_poses, home_of, stride_of
-from elbowroom.body.gait.footholds import gliding, onward, posed_feet, settled, standing
+from elbowroom.body.gait.footholds import gliding, onward, settled, standing
+from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from feet_walks import DT, GAIT, WANTED, Velocities, in_world, path, random_wish, walked

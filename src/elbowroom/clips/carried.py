@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import AHEAD, ASIDE, CHEST_LIST, LIST, POSING, TURN
-from elbowroom.body.gait.own_stride import HARMONICS, OwnStride
+from elbowroom.body.gait.own_stride import OwnStride, harmonics_of, within
 from elbowroom.body.root import WITH_FEET
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.root_track import hips_heading, smoothed
@@ -17,7 +17,13 @@ Floats = NDArray[np.float64]
 
 _HEADING = 0.5  # seconds: standard deviation of the filter that takes the turns of the hips out of the heading
 _RATES = tuple(column - WITH_FEET for column in (ASIDE, AHEAD, TURN))
-_MOST = {ASIDE: 0.08, AHEAD: 0.04, TURN: 0.35, LIST: 0.25, CHEST_LIST: 0.25}  # metres of a standard leg, radians
+_MOST = {
+    ASIDE: 0.08,
+    AHEAD: 0.1,
+    TURN: 0.35,
+    LIST: 0.25,
+    CHEST_LIST: 0.25,
+}  # metres of a standard leg, radians
 _LEFT = np.array([1.0, 0.0, 0.0])
 
 
@@ -30,32 +36,41 @@ def carried(motion: BodyMotion, hips: Floats, beside: Floats) -> Floats:
     rows[:, LIST - WITH_FEET], rows[:, CHEST_LIST - WITH_FEET] = _raised(hips), _raised(beside)
     if len(motion) < 2:
         return rows
-    turned = hips_heading(motion)
-    heading = smoothed(turned, motion.frame_time, _HEADING)
-    middle = 0.5 * (motion.position("leftUpperLeg") + motion.position("rightUpperLeg"))  # about which hips are turned
-    x, z = np.gradient(middle[:, [0, 2]], motion.frame_time, axis=0).T
+    turned, heading = hips_heading(motion), facing(motion)
+    x, z = np.gradient(middle_of_hips(motion)[:, [0, 2]], motion.frame_time, axis=0).T
     sine, cosine = np.sin(heading), np.cos(heading)
     rows[:, ASIDE - WITH_FEET], rows[:, AHEAD - WITH_FEET] = x * cosine - z * sine, x * sine + z * cosine
     rows[:, TURN - WITH_FEET] = np.gradient(turned, motion.frame_time)
     return rows
 
 
-def own_stride(rows: Floats, pace: float, scale: float, speed: float) -> OwnStride:
-    """The stride whose `carried` rows (n, POSING) are, at even phases, those of a walk at so many m/s.
+def facing(motion: BodyMotion) -> Floats:
+    """Heading (F,) without the turns of the hips, radians."""
+    return smoothed(hips_heading(motion), motion.frame_time, _HEADING)
 
-    `pace` is in strides a second, `scale` that of the recorded legs.
-    """
-    waves = np.fft.rfft(rows, axis=0)[: HARMONICS + 1] / len(rows)
-    number = np.arange(1, HARMONICS + 1)
+
+def middle_of_hips(motion: BodyMotion) -> Floats:
+    """The middle (F, 3) between the joints of the legs, about which hips are turned."""
+    middle: Floats = 0.5 * (motion.position("leftUpperLeg") + motion.position("rightUpperLeg"))
+    return middle
+
+
+def displaced(rows: Floats, pace: float) -> Floats:
+    """`carried` rows (n, POSING) at even phases of a stride with places for rates; `pace` is in strides a second."""
+    waves = np.fft.rfft(rows, axis=0)
+    number = np.arange(1, len(waves))
     for column in _RATES:
         waves[0, column] = 0.0
         waves[1:, column] /= 2j * np.pi * pace * number
-    harmonics = np.zeros((1 + 2 * HARMONICS, POSING))
-    harmonics[0], harmonics[1::2], harmonics[2::2] = waves[0].real, 2.0 * waves[1:].real, -2.0 * waves[1:].imag
+    return np.fft.irfft(waves, len(rows), axis=0)
+
+
+def own_stride(rows: Floats, scale: float, speed: float) -> OwnStride:
+    """The stride whose `displaced` rows (n, POSING) are those of a walk at so many m/s on legs of this `scale`."""
+    harmonics = harmonics_of(rows)
     harmonics[:, :3] /= scale
     for column, most in _MOST.items():
-        row = harmonics[:, column - WITH_FEET]
-        row *= min(1.0, most / max(float(np.hypot(row[1::2], row[2::2]).sum() + abs(row[0])), 1e-9))
+        harmonics[:, column - WITH_FEET] = within(harmonics[:, column - WITH_FEET], most)
     return OwnStride(harmonics, speed)
 
 

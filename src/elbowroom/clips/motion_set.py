@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.clips.stock_clips import arm_swing_goal, stock_clips
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of, followed, side_by_side
+from elbowroom.body.gait.cycle import GaitShape
+from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride
 from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import KEYS, Swing
@@ -19,6 +21,7 @@ Floats = NDArray[np.float64]
 
 _SPEEDS = (0.4, 0.8, 2.2)  # m/s; with the stock clip at 1.2 m/s every width of the swing is near a vertex
 _MOST_CLIPS, _MOST_KEYS = 1_000, 10_000  # that are read from a recording
+_MOST_CARRIED, _MOST_DUTY = 1.5, 0.3  # metres and radians; parts of a stride
 _LOWERS = LOWERING - DofGroup.WAIST.at.start
 
 
@@ -35,10 +38,14 @@ class MotionSet:
         """Whether head and arms go as in the stock walk, and the waist is upright."""
         return self.swing is None and self.style.posture is None
 
+    def own_stride(self, gait: GaitShape) -> OwnStride:
+        """How hips and chest are carried on some legs: as in the recorded walk, or as published."""
+        return PUBLISHED if self.swing is None else self.swing.own_on(gait)
+
     @property
-    def own_stride(self) -> OwnStride:
-        """How hips and chest are carried: as in the recorded walk, or as published."""
-        return PUBLISHED if self.swing is None else self.swing.own
+    def own_steps(self) -> OwnSteps:
+        """How feet go: as in the recorded walk, or in the walking cycle."""
+        return CYCLE if self.swing is None else self.swing.steps
 
     def goal(self, group: DofGroup, phases: ArrayLike, speeds: ArrayLike) -> Floats:
         """What a local group would like to do at gait phases (n,) and forward speeds (n,): (n, size)."""
@@ -88,6 +95,15 @@ class MotionSet:
                 "speed": swing.speed,
                 "keys": {group.name: keys.tolist() for group, keys in swing.keys.items()},
                 "carried": {"harmonics": swing.own.harmonics.tolist(), "speed": swing.own.speed},
+                "legs": None
+                if swing.heights is None
+                else {
+                    "heights": swing.heights.tolist(),
+                    "speed": swing.steps.speed,
+                    "duty": swing.steps.duty,
+                    "homes": swing.steps.homes.tolist(),
+                    "cycle": swing.steps.cycle.tolist(),
+                },
             },
             "dodges": [
                 {"name": c.name, "group": c.group.name, "times": c.times.tolist(), "keys": c.configurations.tolist()}
@@ -131,14 +147,35 @@ def _swing(data: Mapping[str, Any]) -> Swing:
     speed = float(data["speed"])
     if any(len(rows) != KEYS + 1 for rows in keys.values()) or not 0.0 < speed < 100.0:
         raise ValueError("swing")
-    return Swing(str(data["name"]), speed, keys, PUBLISHED if "carried" not in data else _own_stride(data["carried"]))
+    own, legs = data.get("carried"), data.get("legs")
+    beside = () if legs is None else (_table(legs["heights"], (KEYS,)), _own_steps(legs))
+    return Swing(str(data["name"]), speed, keys, PUBLISHED if own is None else _own_stride(own), *beside)
 
 
 def _own_stride(data: Mapping[str, Any]) -> OwnStride:
-    harmonics, speed = np.array(data["harmonics"], np.float64), float(data["speed"])
-    if harmonics.shape != PUBLISHED.harmonics.shape or not np.abs(harmonics).max() < 1.0 or not 0.0 <= speed < 100.0:
+    return OwnStride(_table(data["harmonics"], PUBLISHED.harmonics.shape), _walking_speed(data["speed"]))
+
+
+def _own_steps(data: Mapping[str, Any]) -> OwnSteps:
+    homes, cycle = (_table(data[name], shape.shape) for name, shape in (("homes", CYCLE.homes), ("cycle", CYCLE.cycle)))
+    duty = float(data["duty"])
+    if not abs(duty) < _MOST_DUTY:
+        raise ValueError("duty")
+    return OwnSteps(_walking_speed(data["speed"]), duty, homes, cycle)
+
+
+def _table(data: Any, shape: tuple[int, ...]) -> Floats:
+    table = np.array(data, np.float64)
+    if table.shape != shape or not np.abs(table).max() < _MOST_CARRIED:
         raise ValueError("carried")
-    return OwnStride(harmonics, speed)
+    return table
+
+
+def _walking_speed(data: Any) -> float:
+    speed = float(data)
+    if not 0.0 <= speed < 100.0:
+        raise ValueError("speed")
+    return speed
 
 
 def _clip(data: Mapping[str, Any]) -> MotionClip:

@@ -11,6 +11,7 @@ from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape
 from elbowroom.body.pose.posture_of import arm_angles, arm_directions, chest_rotation, waist_angles
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.carried import carried
+from elbowroom.clips.recorded_steps import legs_seen
 from elbowroom.clips.root_track import RootTrack, root_track, seen_from_root
 from elbowroom.geometry import quaternion
 
@@ -27,6 +28,9 @@ class PlanningMotion:
     track: RootTrack  # root states (F, 7) and strides
     groups: dict[DofGroup, Floats]  # (F, size) of each local group, within the limits
     carried: Floats  # (F, POSING) how hips and chest go beside that, see `carried`
+    heights: Floats  # (F,) of the hips beside those over a straight standing leg, metres
+    feet: Floats  # (F, 2, PATH) where feet are, see `legs_seen`
+    spans: Floats  # (F, 2, SPAN) from hip to ankle
     trunk_error: Floats  # (F,) radians between the chest and what bend and twist make of it
     arm_error: Floats  # (F, 4) radians between the directions of left upper arm, forearm, right ...; and theirs
 
@@ -56,8 +60,10 @@ def planning_motion(motion: BodyMotion) -> PlanningMotion:
             errors.append(_angle(quaternion.rotate(rotation, outwards), direction))
     trunk_error = np.linalg.norm(quaternion.to_rotation_vector(quaternion.multiply(back, chest)), axis=1)
     beside = carried(motion, turns[:, 0], quaternion.multiply(chest, back))
-    arm_error = np.stack(errors, axis=1)
-    return PlanningMotion(motion.name, motion.frame_time, gait, track, groups, beside, trunk_error, arm_error)
+    return PlanningMotion(
+        motion.name, motion.frame_time, gait, track, groups, beside, *legs_seen(motion, gait),
+        trunk_error, np.stack(errors, axis=1),
+    )  # fmt: skip
 
 
 def _waist(motion: BodyMotion, gait: GaitShape, chest: Floats, states: Floats) -> Floats:

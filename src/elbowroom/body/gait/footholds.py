@@ -6,26 +6,20 @@ stays where it is in the world. When the cycle wants it to swing it goes, withou
 to where it will be under the root in the middle of its stance, as the root is planned; it lands where it is then. At an
 even walk that is the cycle. Who has come to rest puts the feet beside each other, one step after the other, and so
 steps who turns in place.
-
-Hips are where the cycle has them, or lower where a foot would be out of reach.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.gait.carriage import carried_hip
 from elbowroom.body.gait.cycle import (
     GaitShape,
     Stride,
-    ease_of,
     flat_place,
-    hips_sink,
     home_of,
     roll_of,
     stride_of,
-    tilt_foot,
-    walk_into,
 )
+from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_of
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel, helper, kernel
 
@@ -41,7 +35,6 @@ _HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
 _STILL = 1e-3  # m/s: below, the root rests
 _FLAT = 1e-9  # radians, metres
 _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
-_STRETCH = 0.9985  # of a leg: no foot is farther from its hip
 _FAR, _TWISTED = 0.75, 0.9  # of a leg, radians: a standing foot farther off has to follow soon
 _SWINGS = (0.20, 0.36, 0.80)  # seconds of a standard leg's swing: at least, to come to rest, at most
 _TURNING = 0.25  # metres of a standard leg: so much way over the ground is a radian
@@ -50,7 +43,7 @@ _LATE = 0.75  # of the cycle's swing: who has not lifted a foot by then leaves i
 _LEAST_LIFT, _STEP_LIFT = 0.5, 0.056  # of the swing of a long stride, metres of a standard leg
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
-_ROLL_RATE, _LIFT_RATE = 16.0, 1.5  # rad/s, m/s: no foot tilts or is lifted faster
+_ROLL_RATE, _LIFT_RATE, _HASTE = 16.0, 1.5, 2.0  # rad/s, m/s: no foot tilts or is lifted faster; a recorded one is
 _FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
 _NEARLY = 0.12  # metres: so near it lands
 _GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
@@ -115,9 +108,9 @@ def _overtaken(legs: Floats, side: int, foot: Floats) -> bool:
 
 
 @helper
-def _passed(legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
+def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How long ago the root passed by a standing foot, seconds: half its stance later the cycle lifts it."""
-    x, z = home_of(legs, stride, side)
+    x, z, _ = own_home(own, legs, stride, side)
     wide = (_TURNING * stride.scale) ** 2
     way = (x - foot[_X]) * stride.lateral + (z - foot[_Z]) * stride.forward - wide * foot[_YAW] * stride.turn
     return float(way / max(stride.speed * stride.speed + wide * stride.turn * stride.turn, 1e-12))
@@ -125,7 +118,13 @@ def _passed(legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
 
 @helper
 def _urge(
-    legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, goal: tuple[float, float, float]
+    own: OwnSteps,
+    legs: Floats,
+    stride: Stride,
+    side: int,
+    root: Floats,
+    foot: Floats,
+    goal: tuple[float, float, float],
 ) -> float:
     """How much a standing foot is due to be lifted; 0: it is not. The cycle would have it come down at a `goal` now."""
     if _overtaken(legs, side, foot):
@@ -136,7 +135,7 @@ def _urge(
         return away if away > 1.0 else 0.0
     u, late = _position(root[6], side), _LATE * (1.0 - stride.duty)
     due = stride.duty <= u <= stride.duty + late
-    over = _passed(legs, stride, side, foot) / stride.period - (0.5 * stride.duty + _OVER)
+    over = _passed(own, legs, stride, side, foot) / stride.period - (0.5 * stride.duty + _OVER)
     if not due and over <= 0.0:
         return 0.0
     away = _away(foot, goal, stride.scale)
@@ -144,7 +143,9 @@ def _urge(
 
 
 @helper
-def _time_left(legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, twin: Floats, dt: float) -> float:
+def _time_left(
+    own: OwnSteps, legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, twin: Floats, dt: float
+) -> float:
     """Seconds until a swinging foot lands, `dt` seconds after it was as it is told; its twin stands or swings."""
     size, rest = np.sqrt(stride.scale), 1.0 - foot[_SWING]
     least, most = rest * _SWINGS[0] * size, rest * _SWINGS[2] * size
@@ -153,7 +154,7 @@ def _time_left(legs: Floats, stride: Stride, side: int, root: Floats, foot: Floa
         return float(rest * _SWINGS[1] * size - dt)
     left = (1.0 - u) * stride.period if u >= 0.5 * stride.duty else rest * _SWINGS[1] * size - dt
     if twin[_SWING] <= 0.0:
-        left = min(left, 0.5 * stride.duty * stride.period - _passed(legs, stride, 1 - side, twin))
+        left = min(left, 0.5 * stride.duty * stride.period - _passed(own, legs, stride, 1 - side, twin))
         if _overtaken(legs, 1 - side, twin):
             left = 0.0
     return float(min(max(left, least - dt), most))
@@ -185,14 +186,14 @@ def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None
 
 @helper
 def _goal(
-    legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
+    own: OwnSteps, legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
 ) -> tuple[float, float, float]:
     """Where a foot has to land in `left` seconds, seen from the root; `later` (7,) is scratch.
 
     Under the root in the middle of its stance, and no farther from the root than in an even walk.
     """
     _root_later(root, coming, left, later)
-    stride = stride_of(scale, later[3], later[4], later[5])
+    stride = own_stride_of(own, scale, later[3], later[4], later[5])
     half = 0.0 if _rests(later) else 0.5 * stride.duty * stride.period
     x, z, heading, most = later[0], later[1], later[2], half * (stride.speed + _MORE * scale)
     _root_later(root, coming, left + half, later)
@@ -202,9 +203,9 @@ def _goal(
     later[2] = heading + min(max(later[2] - heading, -_TWISTED), _TWISTED)
     c, s, dx, dz = np.cos(root[2]), np.sin(root[2]), later[0] - root[0], later[1] - root[1]
     left, ahead, turned = dx * c - dz * s, dx * s + dz * c, later[2] - root[2]
-    x, z = home_of(legs, stride, side)
+    x, z, yaw = own_home(own, legs, stride, side)
     c, s = np.cos(turned), np.sin(turned)
-    return left + x * c + z * s, ahead - x * s + z * c, turned
+    return left + x * c + z * s, ahead - x * s + z * c, turned + yaw
 
 
 @helper
@@ -259,22 +260,32 @@ def _land(foot: Floats) -> None:
 
 @helper
 def _swing(
-    stride: Stride, side: int, goal: tuple[float, float, float], left: float, dt: float, foot: Floats, twin: Floats
+    own: OwnSteps,
+    stride: Stride,
+    side: int,
+    goal: tuple[float, float, float],
+    times: tuple[float, float],
+    foot: Floats,
+    twin: Floats,
 ) -> float:
-    """Let a foot swing for `dt` seconds, so that it lands `left` seconds after their end; the pitch that it wants."""
-    time, done = left + dt, foot[_SWING]
-    part = dt / time
-    for i in range(3):
-        _towards(foot, i, goal[i], part, time)
+    """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants."""
+    (dt, left), done = times, foot[_SWING]
+    part = dt / (left + dt)
     after = done + (1.0 - done) * part
+    before, then = own_detour(own, stride, side, done), own_detour(own, stride, side, after)
+    for i in range(3):
+        foot[i] -= before[i]
+        _towards(foot, i, goal[i], part, left + dt)
+        foot[i] += then[i]
     half = 0.5 * stride.duty * stride.period
     sag = min(max(0.5 * stride.forward * stride.turn * half * half, -0.1 * stride.scale), 0.1 * stride.scale)
     foot[_X] -= sag * 16.0 * ((after * (1.0 - after)) ** 2 - (done * (1.0 - done)) ** 2)
     x, z = _beside_twin(side, foot[_X] - twin[_X], foot[_Z] - twin[_Z], 0.0, stride.scale)
     foot[_X], foot[_Z], foot[_SWING] = twin[_X] + x, twin[_Z] + z, after
-    pitch, lift = roll_of(stride, stride.duty + (1.0 - stride.duty) * after)
+    pitch, lift = own_roll(own, stride, side, stride.duty + (1.0 - stride.duty) * after)
     low = _LEAST_LIFT * _STEP_LIFT * stride.scale * 16.0 * (after * (1.0 - after)) ** 2
-    foot[_LIFT] += min(max(max(lift, low) - foot[_LIFT], -_LIFT_RATE * dt), _LIFT_RATE * dt)
+    most = _LIFT_RATE * dt if own.speed <= 0.0 else _HASTE * _LIFT_RATE * dt
+    foot[_LIFT] += min(max(max(lift, low) - foot[_LIFT], -most), most)
     if left <= 0.0:
         _land(foot)
     return pitch
@@ -288,10 +299,10 @@ def _lifted_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
 
 
 @helper
-def _pitch_in_stance(legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
+def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How a standing foot wants to be pitched: by how far the root has passed it."""
-    u = 0.5 * stride.duty + _passed(legs, stride, side, foot) / stride.period
-    pitch, _ = roll_of(stride, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
+    u = 0.5 * stride.duty + _passed(own, legs, stride, side, foot) / stride.period
+    pitch, _ = own_roll(own, stride, side, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
     return pitch
 
 
@@ -302,7 +313,16 @@ def _tilt(foot: Floats, pitch: float, dt: float) -> None:
 
 
 @exact_kernel
-def step_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, coming: Floats, out: Floats) -> None:
+def step_feet(
+    legs: Floats,
+    scale: float,
+    own: OwnSteps,
+    before: Floats,
+    root: Floats,
+    dt: float,
+    coming: Floats,
+    out: Floats,
+) -> None:
     """The feet `dt` seconds later: `out` (WITH_FEET,) is for `root` (7,) what `before` (WITH_FEET,) was then.
 
     They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
@@ -311,29 +331,29 @@ def step_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: floa
     _carry(before, root, out)
     if dt <= 0.0:
         return
-    stride = stride_of(scale, root[3], root[4], root[5])
+    stride = own_stride_of(own, scale, root[3], root[4], root[5])
     one, other = out[ROOT_STATE : ROOT_STATE + FOOT], out[ROOT_STATE + FOOT :]
     standing = one[_SWING] <= 0.0 and other[_SWING] <= 0.0
     lifted, later = -1, np.empty(ROOT_STATE)
     if standing:
-        left = _urge(legs, stride, 0, root, one, _goal(legs, scale, 0, root, coming, 0.0, later))
-        right = _urge(legs, stride, 1, root, other, _goal(legs, scale, 1, root, coming, 0.0, later))
+        left = _urge(own, legs, stride, 0, root, one, _goal(own, legs, scale, 0, root, coming, 0.0, later))
+        right = _urge(own, legs, stride, 1, root, other, _goal(own, legs, scale, 1, root, coming, 0.0, later))
         if max(left, right) > 0.0:
             lifted = 0 if left >= right else 1
     for side in range(2):
         foot, twin = (one, other) if side == 0 else (other, one)
         if foot[_SWING] > 0.0 or lifted == side:
             since = _lifted_since(stride, side, root, dt) if lifted == side else dt
-            left = max(_time_left(legs, stride, side, root, foot, twin, since), 0.0)
-            goal = _kept_apart(side, _goal(legs, scale, side, root, coming, left, later), twin, scale)
+            left = max(_time_left(own, legs, stride, side, root, foot, twin, since), 0.0)
+            goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, left, later), twin, scale)
             needed = _time_needed(stride, foot, goal)
             if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
-                goal = _kept_apart(side, _goal(legs, scale, side, root, coming, left, later), twin, scale)
+                goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, left, later), twin, scale)
                 foot[_SWING] = min(foot[_SWING], max(1.0 - rest, 0.2))
-            pitch = _swing(stride, side, goal, left, since, foot, twin)
+            pitch = _swing(own, stride, side, goal, (since, left), foot, twin)
         else:
-            pitch = _pitch_in_stance(legs, stride, side, foot)
+            pitch = _pitch_in_stance(own, legs, stride, side, foot)
         _tilt(foot, pitch, dt)
 
 
@@ -369,29 +389,6 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
 
 
 @kernel
-def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
-    """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
-
-    For rows (N, WITH_FEET or SHOWN) and lowerings (N,). Hips come down where a foot would be out of reach.
-    """
-    feet, sinks, drops = np.empty((len(rows), 2, 6)), np.empty((len(rows), 2)), np.empty(len(rows))
-    walk_into(legs, scale, rows, np.empty((0, 2, 6)), drops, np.empty(6))
-    for n in range(len(rows)):
-        down, back = hips_sink(half_leg, drops[n], lowerings[n])
-        for side in range(2):
-            foot = rows[n, ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
-            place, roll = (foot[_X], foot[_Z], foot[_YAW]), (foot[_PITCH], foot[_LIFT])
-            tilt_foot(legs, side, place, roll, ease_of(1.0, foot[_SWING]), feet[n, side])
-            length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
-            x, y, z = carried_hip(legs, rows[n], side)
-            dx, dz = feet[n, side, 0] - x, feet[n, side, 2] - z + back
-            reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-            down = max(down, y - feet[n, side, 1] - reach)
-        sinks[n, 0], sinks[n, 1] = down, back
-    return feet, sinks
-
-
-@kernel
 def _settled(legs: Floats, scale: float, row: Floats) -> bool:
     stride, near = stride_of(scale, 0.0, 0.0, 0.0), True
     for side in range(2):
@@ -409,13 +406,16 @@ def beside(gait: GaitShape, root: Floats) -> Floats:
     return out
 
 
-def onward(gait: GaitShape, before: Floats, root: Floats, dt: float, coming: Floats = UNKNOWN) -> Floats:
+def onward(
+    gait: GaitShape, before: Floats, root: Floats, dt: float, coming: Floats = UNKNOWN, own: OwnSteps = CYCLE
+) -> Floats:
     """`root` (7 or more,) with the feet (WITH_FEET,) that follow on those of `before` within `dt` seconds.
 
-    `coming` (m, 8) are seconds from now and root states that the root is meant to come to.
+    `coming` (m, 8) are seconds from now and root states that the root is meant to come to. Steps ahead are a walker's
+    `own`.
     """
     out = np.empty(WITH_FEET)
-    step_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, coming, out)
+    step_feet(gait.legs, gait.scale, own, before, root[:ROOT_STATE].copy(), dt, coming, out)
     return out
 
 

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel
 
@@ -13,13 +14,13 @@ Floats = NDArray[np.float64]
 _PIECE = 0.05  # seconds between two rows, nearly
 
 
-def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float) -> Floats:
+def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, own: OwnSteps = CYCLE) -> Floats:
     """Root states with feet (N, WITH_FEET) from `row` (WITH_FEET,) on, as feet step under a root that goes on.
 
     The root goes straight from one of the states that it is to come to, `ahead` (m, 8) with the seconds from now, to
     the next, past the first that is `until` seconds away.
     """
-    return _steps_ahead(gait.legs, gait.scale, row, ahead, until)
+    return _steps_ahead(gait.legs, gait.scale, own, row, ahead, until)
 
 
 @exact_kernel
@@ -28,7 +29,7 @@ def _pieces(span: float) -> int:
 
 
 @exact_kernel
-def _steps_ahead(legs: Floats, scale: float, row: Floats, ahead: Floats, until: float) -> Floats:
+def _steps_ahead(legs: Floats, scale: float, own: OwnSteps, row: Floats, ahead: Floats, until: float) -> Floats:
     first, last, since, count = 0, 0, 0.0, 1
     while first < len(ahead) and ahead[first, 0] <= 0.0:
         first += 1
@@ -46,7 +47,7 @@ def _steps_ahead(legs: Floats, scale: float, row: Floats, ahead: Floats, until: 
                 root[i] = begin[i] + share * (ahead[n, 1 + i] - begin[i])
             for k in range(n, len(ahead)):
                 coming[k, 0] = ahead[k, 0] - since - share * span
-            step_feet(legs, scale, rows[at], root, span / pieces, coming[n:], rows[at + 1])
+            step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
             at += 1
         since = ahead[n, 0]
     return rows

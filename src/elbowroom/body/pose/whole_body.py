@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING
 from elbowroom.body.gait.cycle import foot_poses, hips_sinks
-from elbowroom.body.gait.footholds import posed_feet
 from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.pose import posing
 from elbowroom.body.root import ROOT_STATE

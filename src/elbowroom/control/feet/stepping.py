@@ -25,7 +25,7 @@ from elbowroom.planning.shared import Shared
 Floats = NDArray[np.float64]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
-_CLEAR = 0.008  # metres about the legs that have to stay, where there are less, as far ahead as is known
+_CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _FORESEEN = 0.75  # seconds that are looked ahead
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
@@ -41,7 +41,8 @@ class Stepping:
     def __init__(self, humanoid: Humanoid, motions: MotionSet) -> None:
         """`motions` are those that it walks with."""
         model = body_model(humanoid)
-        self._gait, self._body = model.gait, body_of(model.gait, motions.style.manner, motions.own_stride)
+        self._gait, self._own = model.gait, motions.own_steps
+        self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
         self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
 
     def standing(self, root: Floats) -> Floats:
@@ -66,7 +67,8 @@ class Stepping:
         Arms make way for legs that come to a stand; if that touches they stay.
         """
         moment = moment._replace(ahead=UNKNOWN)
-        steps, glides = (follow(self._gait, moment.shown.root, held.root, moment.dt) for follow in (onward, gliding))
+        before, after, dt = moment.shown.root, held.root, moment.dt
+        steps, glides = onward(self._gait, before, after, dt, own=self._own), gliding(self._gait, before, after, dt)
         roots = [steps, glides] if moment.look(steps, held.upper).room >= _ROOM else [glides, steps]
         made = [self._alive(moment, root, held) for root in roots]
         if any(lively(pose.root) for pose in made):
@@ -105,11 +107,12 @@ class Stepping:
 
     def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
         """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
-        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN)
+        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own)
         return moment.room_along(rows, upper) >= _CLEAR
 
     def _steps(self, moment: Moment, posed: Playback) -> Playback:
-        return self._alive(moment, onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead), posed)
+        after = onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead, self._own)
+        return self._alive(moment, after, posed)
 
     def _glides(self, moment: Moment, posed: Playback) -> Playback:
         return self._alive(moment, gliding(self._gait, moment.shown.root, posed.root, moment.dt), posed)
