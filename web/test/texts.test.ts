@@ -130,10 +130,10 @@ function sentencesOf(source: string): string[] {
 
 describe("what the server says", () => {
   const told = import.meta.glob<string>([
-    "../../src/elbowroom/server/{app,reception,changes,session,admission,library,built_scenes,recent,clip_store,avatar_store,clip_walk,walk_log}.py",
-    "../../src/elbowroom/server/{standalone_run,saved_motion}.py", "../../src/elbowroom/server/apart/{jobs,process}.py",
-    "../../src/elbowroom/server/sessions/walk.py", "../../src/elbowroom/planning/names.py", "../../src/elbowroom/experiment/gauntlet/names.py",
-    "../../src/elbowroom/planning/navigation/{way,navigator}.py", "../../src/elbowroom/control/{journey,loose,recording}.py",
+    "../../src/elbowroom/server/**/{app,reception,changes,session,admission,library,built_scenes,recent,clip_store,avatar_store,clip_walk,walk_log}.py",
+    "../../src/elbowroom/server/**/{packed_run,saved_motion,walk}.py", "../../src/elbowroom/server/apart/{jobs,process}.py",
+    "../../src/elbowroom/planning/names.py", "../../src/elbowroom/experiment/gauntlet/names.py",
+    "../../src/elbowroom/planning/navigation/{way,navigator}.py", "../../src/elbowroom/control/**/{journey,loose,recording}.py",
   ], { query: "?raw", import: "default", eager: true });
   /** What only programs get to hear, or the command line. */
   const NOT_HERE = /^(7 nor |7: (cannot be|exists and)|goto: |message: |its licence)/;
