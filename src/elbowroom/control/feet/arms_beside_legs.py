@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import ARMS, DOF, LOCAL, columns_of, limits
 from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.control.feet.following import ArmsAndLegs, arm_gaps
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.self_pairs import self_pairs
 
 Floats = NDArray[np.float64]
@@ -34,22 +34,23 @@ class ArmsBesideLegs:
         first, second = (np.isin(side, np.concatenate(arms)) for side in (pairs.first, pairs.second))
         legs = np.isin(pairs.first, model.roots.indices) | np.isin(pairs.second, model.roots.indices)
         chosen = (first | second) & legs
-        self._first, self._second = pairs.first[chosen], pairs.second[chosen]
-        right = np.isin(self._first, arms[1]) | np.isin(self._second, arms[1])
-        self._kinds, self._limits = right.astype(np.int64), pairs.limits[chosen]
+        first, second = pairs.first[chosen], pairs.second[chosen]
+        right = np.isin(first, arms[1]) | np.isin(second, arms[1])
+        self.pairs = ArmsAndLegs(first, second, right.astype(np.int64), pairs.limits[chosen])
         self._columns = [columns_of(arm).start + _ABDUCTION for arm in ARMS]
         self._most = [float(limits(arm)[_ABDUCTION, 1]) for arm in ARMS]
         self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about
 
-    def apart(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Floats:
+    def apart(self, root: Floats, upper: Floats, known: Floats32 | None = None) -> Floats:
         """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET or SHOWN,).
 
-        What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near. `axes` (C, 6, 1)
-        are those of the body's capsules, where they are known, as seen from anywhere.
+        What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near. The gaps as
+        `arm_gaps` has them may be `known`.
         """
-        gaps = self._gaps(self._axes(root, upper) if axes is None else axes)
-        if gaps.min() >= _NEAR:
+        both = self._gaps(root, upper) if known is None else known
+        if both[0, 0] >= _NEAR and both[1, 0] >= _NEAR:
             return upper
+        gaps = both[:, 0].astype(np.float64)
         wanted, angles, slopes = _widened(gaps), np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
         spread, found = upper, gaps
         for _ in range(_ROUNDS):
@@ -58,20 +59,15 @@ class ArmsBesideLegs:
             spread[self._columns] = np.maximum(
                 upper[self._columns], np.minimum(upper[self._columns] + angles, self._most)
             )
-            found = self._gaps(self._axes(root, spread))
+            found = self._gaps(root, spread)[:, 0].astype(np.float64)
             opened = np.divide(found - gaps, angles, out=np.full(len(ARMS), self._reach), where=angles > 0.0)
             slopes = np.clip(opened, _LEAST * self._reach, self._reach)
         return spread
 
-    def _axes(self, root: Floats, upper: Floats) -> Floats32:
+    def _gaps(self, root: Floats, upper: Floats) -> Floats32:
         here, q = root[None].copy(), np.zeros((1, DOF))
         here[0, :3], q[0, DOF - LOCAL :] = 0.0, upper
-        return posture_capsules(self._model, q, here)
-
-    def _gaps(self, axes: Floats32) -> Floats:
-        """How much nearer the left and the right arm may come to the legs, metres (2,)."""
-        gaps = pair_clearances(axes, self._first, self._second, self._kinds, self._limits, len(ARMS))
-        return gaps[:, 0].astype(np.float64)
+        return arm_gaps(posture_capsules(self._model, q, here), self.pairs)
 
 
 def _widened(gaps: Floats) -> Floats:

@@ -16,11 +16,17 @@ class Around(NamedTuple):
     """What is about a body."""
 
     room: float  # metres from the legs to the nearest obstacle
-    axes: Floats32  # (C, 6, 1) of its capsules
     lasts: bool  # whether all of it stands and can only stand
 
 
-Look = Callable[[Floats, Floats], Around]  # for a root with feet and an upper body
+class Look(Protocol):
+    """How what is about a body is asked for."""
+
+    def __call__(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
+        """About a root with feet and an upper body; `axes` (C, 6, 1) seen from the root's place, where they are known."""
+        ...
+
+
 RoomAlong = Callable[[Floats, Floats], float]  # metres from legs to what stands: roots with feet (N, WITH_FEET), upper
 
 

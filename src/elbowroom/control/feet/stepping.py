@@ -19,6 +19,7 @@ from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
 from elbowroom.control.feet.feet import Moment
+from elbowroom.control.feet.following import Followed, Follower, followed
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.shared import Shared
 
@@ -44,6 +45,7 @@ class Stepping:
         self._gait, self._own = model.gait, motions.own_steps
         self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
         self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
+        self._follower = Follower(model.whole, self._own, self._body, self._arms.pairs)
 
     def standing(self, root: Floats) -> Floats:
         """A root state (7,) with feet beside each other, carried as planned, (SHOWN,)."""
@@ -77,12 +79,12 @@ class Stepping:
 
     def next(self, moment: Moment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
-        after = self._steps(moment, posed)
-        around = moment.look(after.root, posed.upper)
+        after = self._followed(moment, posed, glides=False)
+        around = moment.look(after.root, posed.upper, after.axes)
         if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
-            after = self._glides(moment, posed)
-            around = moment.look(after.root, posed.upper)
-        return after._replace(upper=self._arms.apart(after.root, posed.upper, around.axes))
+            after = self._followed(moment, posed, glides=True)
+        upper = self._arms.apart(after.root, posed.upper, after.gaps)
+        return Playback(after.root, upper, posed.upper_velocity)
 
     def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
@@ -97,9 +99,9 @@ class Stepping:
             yield alive, stance
             if lively(moment.shown.root) or lively(alive.root):
                 yield self.next(still, posed), stance
-        for follow in (self._glides, self._steps):
+        for glides in (True, False):
             for posed, stance in played:
-                yield follow(still, posed), stance
+                yield posed._replace(root=self._followed(still, posed, glides=glides).root), stance
         for posed, stance in played:
             root = onward(self._gait, moment.shown.root, posed.root, 0.0)
             if not self._is_strained(root, posed.upper):
@@ -110,12 +112,10 @@ class Stepping:
         rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own)
         return moment.room_along(rows, upper) >= _CLEAR
 
-    def _steps(self, moment: Moment, posed: Playback) -> Playback:
-        after = onward(self._gait, moment.shown.root, posed.root, moment.dt, moment.ahead, self._own)
-        return self._alive(moment, after, posed)
-
-    def _glides(self, moment: Moment, posed: Playback) -> Playback:
-        return self._alive(moment, gliding(self._gait, moment.shown.root, posed.root, moment.dt), posed)
+    def _followed(self, moment: Moment, posed: Playback, *, glides: bool) -> Followed:
+        """A pose on feet that step or glide, with hips, chest and head that live."""
+        before, coming, root, upper = moment.shown.root, moment.ahead, posed.root, posed.upper
+        return Followed(*followed(self._follower, before, root, upper, coming, moment.dt, moment.room, glides))
 
     def _alive(self, moment: Moment, root: Floats, posed: Playback) -> Playback:
         """A pose on a root with feet (WITH_FEET,), with hips, chest and head that live."""

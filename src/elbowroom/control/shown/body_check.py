@@ -118,10 +118,13 @@ class BodyCheck:
         """The capsules' axes (C, 6, 1) as seen from the root's place."""
         return self._pose(root, upper).axes
 
-    def room_of_legs(self, root: Floats, upper: Floats, time: float) -> float:
-        """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body."""
+    def room_of_legs(self, root: Floats, upper: Floats, time: float, axes: Floats32 | None = None) -> float:
+        """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body.
+
+        `axes` are those of the pose, where they are known.
+        """
         legs = self.model.roots.indices
-        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf, legs)
+        return np.inf if self.alone else self._least(self._pose(root, upper, axes), time, -np.inf, legs)
 
     def room_along(self, roots: Floats, upper: Floats) -> float:
         """Metres from the legs to what stands about feet on the plane, the least of root states (N, WITH_FEET)."""
@@ -230,12 +233,13 @@ class BodyCheck:
         moving = [around.clearance(axes, self._radii, root[:2], time) for around in self._around]
         return moving + [other.clearance(axes, self._radii, root, time) for other in self.others]
 
-    def _pose(self, root: Floats, upper: Floats) -> _Pose:
-        """A pose, remembered."""
+    def _pose(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> _Pose:
+        """A pose, remembered; its `axes` may be known."""
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
-        pose = _Pose(root, upper, self._posed(root, upper), self._soles.floors(root), [])
+        posed = self._posed(root, upper) if axes is None else axes
+        pose = _Pose(root, upper, posed, self._soles.floors(root), [])
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 

@@ -17,6 +17,7 @@ from elbowroom.control.shown.holding import Holding
 from elbowroom.planning.stillness import UNMOVED, is_still
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _BREATHES = 1 / 31  # seconds: who rests need not move in every frame
@@ -129,10 +130,12 @@ class Showing:
         room = max(self._clearance, 0.0) if self.assist else -1.0
         return Moment(self._pose, dt, ahead, room, self._look, self._around.check.room_along)
 
-    def _look(self, root: Floats, upper: Floats) -> Around:
+    def _look(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
         """What stands and moves about a body."""
         check = self._around.check
-        return Around(check.room_of_legs(root, upper, self._now), check.axes(root, upper), not check.accompanied)
+        if check.alone:
+            return Around(np.inf, lasts=True)
+        return Around(check.room_of_legs(root, upper, self._now, axes), not check.accompanied)
 
     def _clearance_of(self, root: Floats, upper: Floats) -> float:
         """Of a pose, now."""

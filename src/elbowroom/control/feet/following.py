@@ -1,0 +1,80 @@
+"""How a body follows a pose that is played, all of it in one kernel: feet, hips, chest and head, and where that is.
+
+A kernel that is entered takes its arguments apart first, which takes as long as what it computes for one body; so what
+is always done together is done at once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
+from elbowroom.body.gait.footholds import glide_feet, step_feet
+from elbowroom.body.gait.living import Body, live
+from elbowroom.body.gait.own_steps import OwnSteps
+from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
+from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.model.axis_distances import pair_clearances
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
+
+_TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
+_ARMS = 2
+
+
+class ArmsAndLegs(NamedTuple):
+    """P pairs of capsules, one of an arm and one of a leg."""
+
+    first: Indices  # (P,)
+    second: Indices  # (P,)
+    arms: Indices  # (P,) 0 left, 1 right
+    allowed: Floats32  # (P,) metres: as near the axes may come
+
+
+class Follower(NamedTuple):
+    """What is to be known of one body."""
+
+    whole: WholeBody
+    own: OwnSteps
+    body: Body
+    pairs: ArmsAndLegs
+
+
+class Followed(NamedTuple):
+    """A body that has followed."""
+
+    root: Floats  # (SHOWN,) with feet and carriage
+    axes: Floats32  # (C, 6, 1) of its capsules, as seen from the root's place
+    gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
+
+
+@exact_kernel
+def arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
+    """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs, metres (2, 1)."""
+    return pair_clearances(axes, pairs.first, pairs.second, pairs.arms, pairs.allowed, _ARMS)
+
+
+@exact_kernel
+def followed(
+    who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, glides: bool
+) -> tuple[Floats, Floats32, Floats32]:
+    """How a root state (7 or more,) with an upper body (LOCAL,) is shown `dt` seconds after `before` (SHOWN,).
+
+    As `Followed`. Feet step to where the root is to come, or glide into the walking cycle. `coming` (m, 8) is as in
+    `step_feet`, `room` as in `live`.
+    """
+    row, planned, legs, scale = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.whole.gait_legs, who.whole.scale
+    if glides:
+        glide_feet(legs, scale, before, planned, dt, row[:WITH_FEET])
+    else:
+        step_feet(legs, scale, who.own, before, planned, dt, coming, row[:WITH_FEET])
+    live(who.body, before, dt, room, coming, upper[_TWIST] + upper[_HEAD_TURN], row)
+    q, near = np.zeros((1, DOF)), row.copy().reshape((1, SHOWN))
+    q[0, DOF - LOCAL :] = upper
+    near[0, :2] = 0.0
+    axes = posed_capsules(who.whole, q, near)
+    return row, axes, arm_gaps(axes, who.pairs)
