@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, hips_position, local_rotations
+from elbowroom.body.pose.kinematics import body_model, joint_pose
 from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.recordings.recording import Recording
@@ -121,6 +121,7 @@ def check_rate(fps: float) -> None:
 def posed_frames(humanoid: Humanoid, q: Floats, roots: Floats) -> tuple[Floats, Floats]:
     """Normalised local rotations (N, J, 4) and hips (N, 3) in the root's frame of frames (N, DOF), (N, 7)."""
     model = body_model(humanoid)
-    frames = list(zip(q, roots, strict=True))
-    rotations = np.stack([local_rotations(model, q, root) for q, root in frames])
-    return rotations, np.stack([hips_position(model, q, root) for q, root in frames])
+    rotations, hips = zip(
+        *(joint_pose(model, posture, root) for posture, root in zip(q, roots, strict=True)), strict=True
+    )
+    return np.stack(rotations), np.stack(hips)

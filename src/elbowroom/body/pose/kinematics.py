@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, LOWERING, DofGroup, Turning, followers_of
+from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup, Turning, followers_of
 from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape, hips_sinks
 from elbowroom.body.gait.legs import leg_rest, leg_rotations
 from elbowroom.body.gait.posed_feet import posed_feet
@@ -21,7 +21,7 @@ from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose import posing
 from elbowroom.body.pose.hands import relaxed_rotations
-from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, whole_body
+from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, posed_joints, whole_body
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.skeleton import Skeleton
 
@@ -239,26 +239,23 @@ def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floa
     return feet, hips_sinks(gait.half_leg, drops, lowerings)
 
 
-def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
-    """Normalised local rotations (J, 4) of every joint for `q` (DOF,) and a root state (7,).
+def joint_pose(model: BodyModel, q: ArrayLike, root: ArrayLike) -> tuple[Floats, Floats]:
+    """Normalised local rotations (J, 4) of every joint, and the hips joint (3,) in the root frame.
 
-    The hips' own is in the root's axes: the root's heading turns the whole body.
+    For `q` (DOF,) and a root state (7,). The hips' own rotation is in the root's axes: the root's heading turns the
+    whole body. Their place is where T-pose has it, less what gait and lowering take, and as it is carried.
     """
-    posture, states = np.ascontiguousarray(q, np.float64), _states(root)
-    legs = _lower_body(model, states, posture[LOWERING : LOWERING + 1])[0][0]
-    return posing.pose_local(model.figure, posture, legs, states[0])
+    return posed_joints(model.whole, np.ascontiguousarray(q, np.float64), np.ascontiguousarray(root, np.float64))
+
+
+def local_rotations(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
+    """The rotations (J, 4) of `joint_pose`."""
+    return joint_pose(model, q, root)[0]
 
 
 def hips_position(model: BodyModel, q: ArrayLike, root: ArrayLike) -> Floats:
-    """The hips joint (3,) in the root frame for `q` (DOF,) and a root state (7,).
-
-    It is where T-pose has it, less what the gait and the waist's lowering take, and as it is carried.
-    """
-    lowering, states = np.ascontiguousarray(q, np.float64)[LOWERING : LOWERING + 1], _states(root)
-    _, sinks = lower_body(model.gait, states, lowering.copy())
-    shift = posing.hips_shift(model.figure, states[0])
-    position: Floats = model.offsets[0] + np.array(shift) - np.array([0.0, sinks[0, 0], sinks[0, 1]])
-    return position
+    """The hips joint (3,) of `joint_pose`."""
+    return joint_pose(model, q, root)[1]
 
 
 def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segments:

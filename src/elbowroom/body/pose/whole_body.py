@@ -95,6 +95,32 @@ def _taken_apart(body: WholeBody) -> PosedBy:
     )
 
 
+@helper
+def _lower_body(by: PosedBy, roots: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
+    """Local rotations (N, 2, 4, 4) of the legs' joints, and sinks (N, 2) of the hips."""
+    if roots.shape[1] > ROOT_STATE:
+        feet, sinks = posed_feet(by.gait_legs, by.scale, by.half_leg, roots, lowerings)
+    else:
+        feet, drops = foot_poses(by.gait_legs, by.scale, roots)
+        raise_feet(by.gait_legs, roots, feet, drops)
+        sinks = hips_sinks(by.half_leg, drops, lowerings)
+    return leg_rotations(by.leg_rest, feet, sinks, roots), sinks
+
+
+@exact_kernel
+def posed_joints(body: WholeBody, q: Floats, root: Floats) -> tuple[Floats, Floats]:
+    """Normalised local rotations (J, 4) of every joint, and the hips joint (3,) in the root's frame.
+
+    For a posture (DOF,) and a root state (7 or more,).
+    """
+    by, rows = _taken_apart(body), root.reshape((1, len(root)))
+    legs, sinks = _lower_body(by, rows, q[LOWERING : LOWERING + 1].copy())
+    x, y, z = posing.hips_shift(by.figure, root)
+    rest = by.figure.offsets[0]
+    hips = np.array([rest[0] + x, rest[1] + y - sinks[0, 0], rest[2] + z - sinks[0, 1]])
+    return posing.pose_local(by.figure, q, legs[0], root), hips
+
+
 @exact_kernel
 def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
     """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), or longer ones, in the world.
@@ -102,14 +128,7 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
     And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
     """
     by = _taken_apart(body)
-    lowerings = q[:, LOWERING].copy()
-    if roots.shape[1] > ROOT_STATE:
-        feet, sinks = posed_feet(by.gait_legs, by.scale, by.half_leg, roots, lowerings)
-    else:
-        feet, drops = foot_poses(by.gait_legs, by.scale, roots)
-        raise_feet(by.gait_legs, roots, feet, drops)
-        sinks = hips_sinks(by.half_leg, drops, lowerings)
-    legs = leg_rotations(by.leg_rest, feet, sinks, roots)
+    legs, sinks = _lower_body(by, roots, q[:, LOWERING].copy())
     return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import BodyModel, body_model, hips_position, local_rotations, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, body_model, joint_pose, posture_capsules
 from elbowroom.body.rig import Rig
 from elbowroom.geometry import quaternion
 from elbowroom.server.schema.picture import Placement
@@ -32,7 +32,7 @@ class Poser:
 
     def node_pose(self, q: Floats, root: Floats) -> NodePose:
         """What the nodes get for a configuration (DOF,) and a root state (7,)."""
-        return self.full_pose(local_rotations(self.model, q, root), hips_position(self.model, q, root))
+        return self.full_pose(*joint_pose(self.model, q, root))
 
     def full_pose(self, local: Floats, hips: Floats) -> NodePose:
         """What the nodes get for normalised local rotations (J, 4) and the hips joint (3,) in the root's frame."""
