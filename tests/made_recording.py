@@ -46,6 +46,6 @@ def made_recording(path: Path, humanoid: Humanoid, frames: int = 60, *, even: bo
     times = np.cumsum(dt)
     with Recorder(path, Controller(humanoid, Scene.load("empty"))) as recorder:
         for i in range(frames):
-            frame = Frame(times[i], q[i], roots[i], Phase.PLAY, np.inf, False, False, 0, _NO_KEYS, q[i, 3:], None)
+            frame = Frame(times[i], q[i], roots[i], Phase.PLAY, np.inf, False, False, 0, _NO_KEYS, None)
             recorder.append(Command(forward=1.0), dt[i], frame, restart=i == restart)
     return Made(Recording(path), q, roots, times, restart)

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
@@ -39,8 +38,6 @@ from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import is_still
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene, on_ground
-
-Floats = NDArray[np.float64]
 
 FORWARD = Command(forward=1.0)
 LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each of them checked
@@ -429,7 +426,6 @@ class Controller:
             touching=self._showing.clearance < 0.0,
             fill=min(len(key_frames.times), self.settings.queue_size),
             key_frames=key_frames,
-            goal=self._goal(),
             plan=self._plan_report,
             command=command,
         )
@@ -438,13 +434,3 @@ class Controller:
         """Whether the root stands because there is no way on for it."""
         stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
         return stopped and self.stands
-
-    def _goal(self) -> Floats:
-        """The goal functions' posture now, from the last plan (LOCAL,)."""
-        if self._plan_report is None:
-            return self._shown.upper
-        path, goals = self._plan_report.root.path, self._plan_report.local.goals
-        place = min(max((self._queue.time - path.start_time) / path.interval, 0.0), len(goals) - 1.0)
-        k = min(int(place), len(goals) - 2)
-        goal: Floats = goals[k] + (place - k) * (goals[k + 1] - goals[k])
-        return goal

@@ -6,6 +6,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.gait.cycle import feet_standing
 from elbowroom.body.gait.footholds import standing
 from elbowroom.body.root import ROOT_STATE
@@ -47,6 +48,14 @@ class PlanReport:
         """The collision checks of both searches."""
         return self.root.checks + self.local.checks
 
+    def goal_at(self, time: float) -> Floats:
+        """What the goal functions would show (LOCAL,) at a time, in seconds."""
+        path, goals = self.root.path, self.local.goals
+        place = min(max((time - path.start_time) / path.interval, 0.0), len(goals) - 1.0)
+        k = min(int(place), len(goals) - 2)
+        goal: Floats = goals[k] + (place - k) * (goals[k + 1] - goals[k])
+        return goal
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -61,9 +70,13 @@ class Frame:
     touching: bool  # part of the body is in an obstacle: with assistance off, or hit by what moves and leaves no way
     fill: int  # unplayed key frames in the queue
     key_frames: KeyFrames  # the unplayed key frames
-    goal: Floats  # (LOCAL,) what the goal functions would show now
     plan: PlanReport | None  # the last planning call
     command: Command = STANDING  # what was obeyed: the user's, or that of a walk to a place
+
+    @property
+    def goal(self) -> Floats:
+        """What the goal functions would show now (LOCAL,); what is shown, where nothing was planned."""
+        return self.q[DOF - LOCAL :] if self.plan is None else self.plan.goal_at(self.time)
 
     @property
     def contacts(self) -> NDArray[np.bool_]:

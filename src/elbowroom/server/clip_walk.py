@@ -114,6 +114,5 @@ class ClipWalk:
             touching=clearance < 0.0,
             fill=0,
             key_frames=_NO_KEYS,
-            goal=moment.upper,
             plan=None,
         )
