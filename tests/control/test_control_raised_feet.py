@@ -15,9 +15,9 @@ from elbowroom.planning.model.footing import Footing
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 DT = 1 / 60
 STEP = {"type": "box", "center": [0.0, 0.1, 2.0], "size": [3.0, 0.2, 2.0]}
-NOTHING = np.zeros((0, 6, 1), np.float32)
 
 
 def before(rise: float) -> Floats:
@@ -40,8 +40,8 @@ def test_ways_on_which_skin_could_touch_come_last() -> None:
     shown = Playback(before(0.2), upper, upper)
 
     def first(close_below: float) -> float:
-        def look(root: Floats, _: Floats) -> Around:
-            return Around(0.002 if root[RISES + 2] < close_below else 0.1, NOTHING, lasts=True)
+        def look(root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
+            return Around(0.002 if root[RISES + 2] < close_below else 0.1, lasts=True)
 
         moment = Moment(shown, DT, UNKNOWN, 0.1, look, lambda roots, upper: 0.1)
         ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))

@@ -17,7 +17,7 @@ from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
-from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.model.levers import body_levers, travel
 from elbowroom.planning.root.path import interpolate_root
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.tracks.moving import Moving
@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 DENSE = 2000  # looks in an interval
 HUMANOID = proportional_humanoid(1.72)
 MODEL = body_model(HUMANOID)
-LEVERS = body_levers(HUMANOID)
+LEVERS = body_levers(HUMANOID).own
 RADII = HUMANOID.capsules.radii
 FRAME = 1 / 60
 WALKER = Walker(np.zeros(2), np.zeros(2))
@@ -158,7 +158,7 @@ def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said(
     for _ in range(60):
         frames = drawn(rng)
         ways = longest(body_ends(*between(frames, np.linspace(0.0, 1.0, 200))))
-        bounds = LEVERS.travel(frames.roots, frames.uppers)
+        bounds = travel(LEVERS, frames.roots, frames.uppers)
         assert (ways <= bounds + 1e-5).all()
         nearest = max(nearest, float((ways / bounds).max()))
     assert nearest > near

@@ -34,9 +34,10 @@ class ArmsBesideLegs:
         first, second = (np.isin(side, np.concatenate(arms)) for side in (pairs.first, pairs.second))
         legs = np.isin(pairs.first, model.roots.indices) | np.isin(pairs.second, model.roots.indices)
         chosen = (first | second) & legs
-        first, second = pairs.first[chosen], pairs.second[chosen]
-        right = np.isin(first, arms[1]) | np.isin(second, arms[1])
-        self.pairs = ArmsAndLegs(first, second, right.astype(np.int64), pairs.limits[chosen])
+        right = np.isin(pairs.first, arms[1]) | np.isin(pairs.second, arms[1])
+        self.pairs = ArmsAndLegs(
+            pairs.first[chosen], pairs.second[chosen], right[chosen].astype(np.int64), pairs.limits[chosen]
+        )
         self._columns = [columns_of(arm).start + _ABDUCTION for arm in ARMS]
         self._most = [float(limits(arm)[_ABDUCTION, 1]) for arm in ARMS]
         self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about

@@ -23,7 +23,7 @@ class Look(Protocol):
     """How what is about a body is asked for."""
 
     def __call__(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
-        """About a root with feet and an upper body; `axes` (C, 6, 1) seen from the root's place, where they are known."""
+        """About a root with feet and an upper body, with their `axes` (C, 6, 1) where these are known."""
         ...
 
 

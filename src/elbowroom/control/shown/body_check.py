@@ -7,15 +7,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOWERING, DofGroup
+from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
+from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.control.others.neighbour import Neighbour
+from elbowroom.control.shown.standing_about import (
+    HALVINGS,
+    capsules_of,
+    gaps_about,
+    lifted_capsules,
+    proven_between,
+)
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.model.levers import body_levers, travel
 from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.tracks.moving import Moving
@@ -25,7 +32,6 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-_HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _REMEMBERED = 4  # poses
@@ -34,7 +40,9 @@ _LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
 
 def configuration(root: Floats, upper: Floats) -> Floats:
     """The configuration `q` (DOF,) of a root state (7,) and an upper body (LOCAL,)."""
-    return np.concatenate([root[:3], upper])
+    q = np.empty(DOF)
+    q[: DOF - LOCAL], q[DOF - LOCAL :] = root[: DOF - LOCAL], upper
+    return q
 
 
 class Frames(NamedTuple):
@@ -52,7 +60,7 @@ class _Pose(NamedTuple):
     upper: Floats  # (LOCAL,)
     axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
     floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
-    standing: list[Floats32]  # how far each capsule is from what stands (C,), once that is known
+    gaps: Floats32  # (C,) how far each capsule is from what stands; of the nearest that, of others at least so much
 
 
 class BodyCheck:
@@ -66,7 +74,7 @@ class BodyCheck:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self._soles = AboveSoles(self.model, scene.ground)
-        self._levers = body_levers(humanoid)
+        self._levers = body_levers(humanoid).own
         moving = scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
@@ -163,25 +171,28 @@ class BodyCheck:
         """
         if self.alone:
             return True
-        ways, (first, last) = self._levers.travel(frames.roots, frames.uppers), frames.times
-        if self.accompanied:
-            farthest = float(ways.max())
-            movers = [around.moving.fastest * (last - first) for around in self._around]
-            movers += [other.travel(first, last) for other in self.others]
-            ways = np.append(ways, [farthest + way for way in movers])
-        floors, ends = self._soles.floors(*frames.roots), zip(*frames, strict=True)
-        poses = [(self._pose(root, upper), time) for root, upper, time in ends]
-        if self._soles.change(*frames.roots):
-            poses = [(pose._replace(floors=floors, standing=[]), time) for pose, time in poses]
+        before, after = (self._pose(root, upper) for root, upper in zip(frames.roots, frames.uppers, strict=True))
+        floors, gaps = np.minimum(before.floors, after.floors), [before.gaps, after.gaps]
+        if self._soles.change(before.floors, after.floors):
+            gaps = [self._gaps(pose.axes, pose.root, floors) for pose in (before, after)]
         if self._soles.raised(*frames.roots) and not self._turns_free(frames, floors):
             return False
-        gaps = np.array([self._gaps(pose, time) for pose, time in poses])
-        if (gaps[0] + gaps[1] - ways).min() >= 0.0:
-            return True
-        proof = begun(gaps, ways[None], 1, 0.0, _HALVINGS)
+        body, standing, ends = self._soles.body, self._standing.about_bodies, np.array(gaps)
+        if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, ends, floors):
+            return False
+        return not self.accompanied or self._free_of_movers(frames, (before, after))
+
+    def _free_of_movers(self, frames: Frames, ends: tuple[_Pose, _Pose]) -> bool:
+        """Whether the whole body is proven free of all that can move between two frames."""
+        first, last = frames.times
+        moved = [around.moving.fastest * (last - first) for around in self._around]
+        moved += [other.travel(first, last) for other in self.others]
+        ways = float(travel(self._levers, frames.roots, frames.uppers).max()) + np.array([moved])
+        gaps = [self._from_movers(end.axes, end.root, time) for end, time in zip(ends, frames.times, strict=True)]
+        proof = begun(np.array(gaps, np.float32), ways, 1, 0.0, HALVINGS)
         parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
         while (count := due(proof, parts, shares)) > 0:
-            settle(proof, self._gaps_at(frames, shares[:count], floors), count)
+            settle(proof, self._from_movers_at(frames, shares[:count]), count)
         return bool(proof.least.min() >= 0.0)
 
     def _turns_free(self, frames: Frames, floors: Floats) -> bool:
@@ -192,8 +203,8 @@ class BodyCheck:
         axes[parts.indices] = lifted
         if self._soles.soles_above(axes, floors) < 0.0:
             return False
-        gaps = self._soles.clearances(self._standing, axes, frames.roots[0][:2], floors)
-        return bool(gaps[:, parts.indices].min() >= 0.0)
+        each = (np.ascontiguousarray(axes[:, :, [n]]) for n in range(len(legs.states)))
+        return all(self._gaps(one, frames.roots[0], floors)[parts.indices].min() >= 0.0 for one in each)
 
     @property
     def accompanied(self) -> bool:
@@ -204,71 +215,46 @@ class BodyCheck:
         """The obstacles that can move: the scene's own, and what is loose."""
         return [each for each in (self._moving, self._loose) if len(each)]
 
-    def _gaps_at(self, frames: Frames, shares: Floats, floors: Floats) -> Floats32:
-        """The gaps (k, P) at shares (k,) of the time between two frames, above the `floors` (2,) of both."""
+    def _from_movers_at(self, frames: Frames, shares: Floats) -> Floats32:
+        """The clearances (k, M) from all that can move at shares (k,) of the time between two frames."""
         (first, last), (begin, end), (before, after) = frames
         part = shares[:, None]
         roots, uppers = first + part * (last - first), begin + part * (end - begin)
         roots[:, :2] -= first[:2]
-        axes = self._capsules(np.concatenate([roots[:, :3], uppers], axis=1), roots)
-        gaps = self._soles.clearances(self._standing, axes, first[:2], floors)
-        if not self.accompanied:
-            return gaps
+        axes = lifted_capsules(self._soles.body, np.concatenate([roots[:, :3], uppers], axis=1), roots)
         times = before + shares * (after - before)
-        moving = [self._from_moving(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
-        return np.concatenate([gaps, np.array(moving, np.float32)], axis=1)
+        found = [self._from_movers(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
+        return np.array(found, np.float32)
 
-    def _gaps(self, pose: _Pose, time: float) -> Floats32:
-        """The clearances of a pose at a time: of each capsule from what stands.
-
-        Where anything can move, from that too, from what is loose, and from each of the others: one more for each.
-        """
-        gaps = self._from_standing(pose)
-        if not self.accompanied:
-            return gaps
-        return np.append(gaps, np.array(self._from_moving(pose.axes, pose.root, time), np.float32))
-
-    def _from_moving(self, axes: Floats32, root: Floats, time: float) -> list[float]:
+    def _from_movers(self, axes: Floats32, root: Floats, time: float) -> list[float]:
         """The clearances of the axes (C, 6, 1) about a root's place from all that can move, and from each other."""
         moving = [around.clearance(axes, self._radii, root[:2], time) for around in self._around]
         return moving + [other.clearance(axes, self._radii, root, time) for other in self.others]
+
+    def _gaps(self, axes: Floats32, root: Floats, floors: Floats) -> Floats32:
+        """How far each of the axes (C, 6, 1) about a root's place is from what stands, (C,)."""
+        x, z = root[:2].tolist()
+        return gaps_about(self._soles.body, self._standing.about_bodies, axes, x, z, floors)
 
     def _pose(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> _Pose:
         """A pose, remembered; its `axes` may be known."""
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
-        posed = self._posed(root, upper) if axes is None else axes
-        pose = _Pose(root, upper, posed, self._soles.floors(root), [])
+        posed, floors = capsules_of(self._soles.body, root, upper) if axes is None else axes, self._soles.floors(root)
+        pose = _Pose(root, upper, posed, floors, self._gaps(posed, root, floors))
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
-
-    def _posed(self, root: Floats, upper: Floats) -> Floats32:
-        """The axes (C, 6, 1) of a pose, as seen from the root's place."""
-        near = root.copy()
-        near[:2] = 0.0
-        return self._capsules(configuration(root, upper)[None], near[None])
-
-    def _from_standing(self, pose: _Pose) -> Floats32:
-        """How far each capsule is from what stands, (C,); of the nearest that, of others at least so much."""
-        if not pose.standing:
-            pose.standing.append(self._soles.clearances(self._standing, pose.axes, pose.root[:2], pose.floors)[0])
-        return pose.standing[0]
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with what the feet stand on."""
         stood: Floats = root if self._soles.footing.plain else self._soles.footing.stood(root[None])[0][0]
         return stood
 
-    def _capsules(self, postures: Floats, roots: Floats) -> Floats32:
-        """The capsules' axes (C, 6, N), those of the feet as high as they are held against what they stand on."""
-        segments = posture_capsules(self.model, postures, roots)
-        return self._soles.footing.lifted(segments, self.model.body, roots, postures[:, LOWERING])
-
     def _least(self, pose: _Pose, time: float, others_at: float, parts: Indices | None = None) -> float:
         """The least clearance of a pose, or of some `parts` of it; from others as they are at a time of theirs."""
         some = slice(None) if parts is None else parts
-        found, axes, radii = [float(self._from_standing(pose)[some].min())], pose.axes, self._radii
+        found, axes, radii = [float(pose.gaps[some].min())], pose.axes, self._radii
         if self.accompanied:
             axes, radii = np.ascontiguousarray(axes[some]), radii[some]
             found += [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]

@@ -6,6 +6,7 @@ stride does to the legs is no chain of joints that turn at known rates: that is 
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,6 +100,15 @@ def _arm_levers(model: BodyModel, limb: Limb) -> Floats:
     return levers
 
 
+class Levers(NamedTuple):
+    """Levers of all C capsules of a body for its M moves, as seen from below: what `travel` goes by."""
+
+    from_pelvis: Floats  # (C, M) in the pelvis frame
+    bob: Floats  # (M,) of the pelvis frame above the ground
+    steps: Floats  # (C, K) in the root's frame for the K moves of feet and carriage
+    spans: Floats  # (C,) metres: no point of a capsule's axis gets farther from the root's axis
+
+
 @dataclass(frozen=True, eq=False)
 class BodyLevers:
     """Levers of all C capsules of a body for its M moves: those of the local groups, side by side, and of the stride.
@@ -107,11 +117,8 @@ class BodyLevers:
     phase change.
     """
 
-    from_pelvis: Floats  # (C, M) in the pelvis frame
+    own: Levers
     from_chest: Floats  # (C, M) in the chest frame; of the trunk and what hangs on it
-    bob: Floats  # (M,) of the pelvis frame above the ground
-    steps: Floats  # (C, K) in the root's frame for the K moves of feet and carriage
-    spans: Floats  # (C,) metres: no point of a capsule's axis gets farther from the root's axis
 
     def between(self, first: Indices, second: Indices, legs: Indices) -> Floats:
         """How far the two of P pairs of capsules can move against each other for a unit of each move, (P, M).
@@ -119,33 +126,21 @@ class BodyLevers:
         A pair with pelvis or legs is seen from the pelvis, any other from the chest.
         """
         beside_legs = np.isin(first, legs) | np.isin(second, legs)
-        pelvis, chest = (levers[first] + levers[second] for levers in (self.from_pelvis, self.from_chest))
+        pelvis, chest = (levers[first] + levers[second] for levers in (self.own.from_pelvis, self.from_chest))
         levers: Floats = np.where(beside_legs[:, None], pelvis, chest)
         return levers
 
-    def travel(self, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> Floats:
-        """No point of a capsule's axis moves farther, (C,) metres, while a posture changes evenly to another.
-
-        They are told by root states and upper bodies (LOCAL,). The root states have feet (WITH_FEET,), and carriage
-        (SHOWN,), or go with the walking cycle (7,).
-        """
-        return _travel(self.from_pelvis, self.bob, self.steps, self.spans, *roots, *uppers)
-
 
 @exact_kernel
-def _travel(
-    from_pelvis: Floats,
-    bob: Floats,
-    steps: Floats,
-    spans: Floats,
-    before: Floats,
-    after: Floats,
-    first: Floats,
-    last: Floats,
-) -> Floats:
-    """What `BodyLevers.travel` says."""
+def travel(levers: Levers, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> Floats:
+    """No point of a capsule's axis moves farther, (C,) metres, while a posture changes evenly to another.
+
+    They are told by root states and upper bodies (LOCAL,). The root states have feet (WITH_FEET,), and carriage
+    (SHOWN,), or go with the walking cycle (7,).
+    """
+    before, after, bob, steps, spans = roots[0], roots[1], levers.bob, levers.steps, levers.spans
     root, moves = after - before, np.zeros(bob.shape[0])
-    _set_moves_of_groups(last - first, moves)
+    _set_moves_of_groups(uppers[1] - uppers[0], moves)
     way = np.hypot(root[0], root[1])
     if root.shape[0] > HEIGHT:
         way += abs(root[HEIGHT]) + raised_between(before, after)
@@ -161,7 +156,7 @@ def _travel(
     for c in range(spans.shape[0]):
         ways[c] = way + farthest + abs(root[2]) * spans[c]
         for i in range(moves.shape[0]):
-            ways[c] += from_pelvis[c, i] * moves[i]
+            ways[c] += levers.from_pelvis[c, i] * moves[i]
         for i in range(on_feet.shape[0]):
             ways[c] += steps[c, i] * on_feet[i]
     return ways
@@ -230,7 +225,7 @@ def _measured(model: BodyModel) -> BodyLevers:
     steps[:, : len(of_hips)] = of_hips
     steps[:, _OF_FEET:] += _carriage_levers(model)
     steps[legs], steps[legs, : len(of_hips)] = 0.0, of_legs
-    return BodyLevers(from_pelvis, from_chest, bob, steps, aside + _lengths(model))
+    return BodyLevers(Levers(from_pelvis, bob, steps, aside + _lengths(model)), from_chest)
 
 
 def _carriage_levers(model: BodyModel) -> Floats:

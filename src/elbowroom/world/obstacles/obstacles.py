@@ -110,7 +110,8 @@ class Obstacles:
         return np.stack([least[:, 1], most[:, 1]], axis=1)
 
     @cached_property
-    def _about_bodies(self) -> Standing:
+    def about_bodies(self) -> Standing:
+        """Those that stand, for kernels that ask how far the capsules of a body are from them."""
         return Standing(self.standing, self._grids, np.ascontiguousarray(self._heights))
 
     @cached_property
@@ -211,7 +212,7 @@ class Obstacles:
 
         Of what stands, that which rises above a height of each capsule's own, the `floors` (C,).
         """
-        found = clearances_around(self._about_bodies, segments, radii, origin[0], origin[1], floors)
+        found = clearances_around(self.about_bodies, segments, radii, origin[0], origin[1], floors)
         if len(self.moving):
             moved = about(self.moving.at(time, self._packed), float(origin[0]), float(origin[1]))
             found = np.minimum(found, clearance_from_all(segments[:, :, 0], radii, moved))

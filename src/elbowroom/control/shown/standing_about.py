@@ -1,0 +1,111 @@
+"""How far a body that is shown is from what stands about it, for kernels: in one pose, and all the way to the next.
+
+Feet are held as high as `planning/model/footing.py` tells, and what their soles stand on is left out as
+`feet/above_soles.py` tells.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import DOF, LOCAL
+from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
+from elbowroom.body.root import HEIGHT
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.halving import begun, due, settle
+from elbowroom.planning.model.footing import IN_GROUND
+from elbowroom.planning.model.levers import Levers, travel
+from elbowroom.world.obstacles.around_body import Standing, clearances_around
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Indices = NDArray[np.int64]
+Both = tuple[Floats, Floats]
+
+HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
+OTHERS = 2  # what is no foot
+EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
+_ZERO: Any = np.float32(0.0)
+_DEEP: Any = np.float32(IN_GROUND)
+
+
+class ShownBody(NamedTuple):
+    """What is to be known of one body on some ground."""
+
+    whole: WholeBody
+    radii: Floats32  # (C,) metres
+    sides: Indices  # (C,) of capsules that keep above the left sole 0, above the right one 1, `OTHERS` of all others
+    feet: Indices  # (F,) capsules round feet, that are lifted on ground that is not plain; none on plain ground
+
+
+@exact_kernel
+def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
+    """The capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more), feet as high as they are held."""
+    axes = posed_capsules(body.whole, q, roots)
+    if len(body.feet) > 0:
+        level = roots.copy()
+        level[:, HEIGHT:] = 0.0
+        strides = posed_capsules(body.whole, q, level)
+        for c in body.feet:
+            for n in range(axes.shape[2]):
+                lift = max(body.radii[c] - min(strides[c, 1, n], strides[c, 4, n]), _ZERO) + _DEEP
+                axes[c, 1, n] += lift
+                axes[c, 4, n] += lift
+    return axes
+
+
+@exact_kernel
+def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
+    """The capsules (C, 6, 1) of a root state and an upper body (LOCAL,), as seen from the root's place."""
+    q, near = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
+    q[0, DOF - LOCAL :] = upper
+    near[0, :2] = 0.0
+    return lifted_capsules(body, q, near)
+
+
+@exact_kernel
+def gaps_about(body: ShownBody, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats) -> Floats32:
+    """How far each capsule (C, 6, 1) about a place (x, z) is from what stands, (C,) metres: `clearances_around`.
+
+    Both soles keep above `floors` (2,); what is no foot is held above the lower of them too.
+    """
+    low, count = min(floors[0], floors[1]), len(axes)
+    heights = np.full(count, low)
+    if max(floors[0], floors[1]) > low + EVEN:
+        for c in range(count):
+            if body.sides[c] != OTHERS:
+                heights[c] = floors[body.sides[c]]
+    found = clearances_around(standing, axes, body.radii, x, z, heights)
+    if low > -np.inf:
+        for c in range(count):
+            if body.sides[c] == OTHERS:
+                lowest = min(axes[c, 1, 0], axes[c, 4, 0]) - body.radii[c]
+                found[c] = min(found[c], lowest - np.float32(low))
+    return found
+
+
+@exact_kernel
+def proven_between(
+    body: ShownBody, standing: Standing, levers: Levers, roots: Both, uppers: Both, gaps: Floats32, floors: Floats
+) -> bool:
+    """Whether each capsule is proven free of what stands, all the way from one pose to another, by `halving`.
+
+    They are told by root states and upper bodies (LOCAL,), with their `gaps` (2, C) above common `floors` (2,).
+    """
+    first, begin, x, z = roots[0], uppers[0], roots[0][0], roots[0][1]
+    root_way, upper_way, (parts, shares) = roots[1] - first, uppers[1] - begin, (np.empty(1, np.int64), np.empty(1))
+    ways, found = (
+        travel(levers, roots, uppers).reshape((1, len(body.radii))),
+        np.empty((1, len(body.radii)), np.float32),
+    )
+    near, q = np.empty((1, len(first))), np.zeros((1, DOF))
+    proof = begun(gaps, ways, 1, 0.0, HALVINGS)
+    while due(proof, parts, shares) > 0:
+        near[0] = first + shares[0] * root_way
+        q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
+        near[0, 0] -= x
+        near[0, 1] -= z
+        found[0] = gaps_about(body, standing, lifted_capsules(body, q, near), x, z, floors)
+        settle(proof, found, 1)
+    return bool(proof.least.min() >= 0.0)
