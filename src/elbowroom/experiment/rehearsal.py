@@ -37,7 +37,13 @@ from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.model.self_pairs import with_waist
+from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.gap import gap_ahead
+from elbowroom.planning.narrow.goals import goals_where_narrow
+from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.navigation.navigator import Navigator
+from elbowroom.planning.root.line.line import new_line
+from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
@@ -54,6 +60,7 @@ _INTERVAL, _HORIZON, _SPEED = 0.15, 8, 1.1  # seconds, key frames, m/s
 _BESIDE = ((0.35, 1.0, 0.8), (0.1, 0.1, 0.1))  # centre and half size, metres: in the way of the left hand
 _WALL = ((0.0, 1.5, 1.0), (3.0, 0.6, 0.1))  # legs pass, nobody else does
 _LOW = ((0.1, 0.3, 1.2), (0.2, 0.3, 0.2))  # in the way of the legs
+_JAMBS = [(-0.75, 1.0, 1.0), (0.75, 1.0, 1.0)]  # centres of two walls, half a metre apart
 _SILL = (0.0, 0.05, 1.0), (0.5, 0.05, 0.5)  # the same of one that is stepped onto
 
 
@@ -70,6 +77,7 @@ def rehearse(humanoid: Humanoid) -> None:
     rehearse_own_body(humanoid)
     rehearse_detour(humanoid)
     rehearse_crouch(humanoid)
+    rehearse_narrow(humanoid)
     rehearse_feet(humanoid)
     rehearse_product()
     rehearse_mesh()
@@ -119,6 +127,15 @@ def rehearse_crouch(humanoid: Humanoid) -> None:
     path, legs = _straight_on(), LoweredLegs(body_model(humanoid), _scene_with(*_LOW).obstacles)
     keys = np.full(len(path.states), 0.1)
     legs.blocked_intervals(path, keys, np.zeros_like(keys), 0.0)
+
+
+def rehearse_narrow(humanoid: Humanoid) -> None:
+    """Look for a gap between two walls, and for what one would like to do in it."""
+    walls = Obstacles.boxes(_JAMBS, [[0.0, 0.0, 0.0, 1.0]] * 2, [[0.5, 1.0, 0.05]] * 2)
+    scene, path = replace(Scene.load("empty"), obstacles=walls), _straight_on()
+    narrow = NarrowPlaces(figure_of(humanoid, body_model(humanoid)), scene.free_map)
+    goals_where_narrow(narrow, path, natural_walk()(path))
+    gap_ahead(narrow, new_line(RootState(), Command(forward=1.0), RootMotionSettings()), 0.0, 0.0, 0.0)
 
 
 def rehearse_feet(humanoid: Humanoid) -> None:
