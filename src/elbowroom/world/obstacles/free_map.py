@@ -32,6 +32,8 @@ FARTHEST = 0.7  # metres: greater distances are not told apart
 _TALL = 0.06  # metres: half the height of the upright line that stands for a level
 _SAME = 0.01  # metres: floors that are told apart
 EVERY = (-np.inf, np.inf)  # heights
+_BLOCK = 2  # tiles by tiles that windows on plain ground are made of: who walks on needs the same for a while
+_WINDOWS = 8  # that are remembered
 _MOST = 4096  # tiles that are remembered: 40 MB
 
 
@@ -53,20 +55,21 @@ class FreeMap:
         """
         self._near, self._ground = near, ground
         self._tiles: dict[tuple[int, int, int], Floats32] = {}
-        self._last: tuple[tuple[int, ...], Window] | None = None  # the tiles that were asked for last, on plain ground
+        self._windows: dict[tuple[int, ...], Window] = {}  # by the tiles that they hold, on plain ground
 
     def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0)) -> Window:
         """The part between two corners (2,) on the ground, x and z; it may reach a little farther.
 
         Of the floor that one comes to from a start (x, height, z).
         """
-        side = CELL * TILE
-        first = [int(np.floor(edge / side)) for edge in low]
-        last = [int(np.floor(edge / side)) for edge in high]
+        side, plain = CELL * TILE, self._ground.plain
+        block = _BLOCK if plain else 1
+        first = [block * int(np.floor(edge / (block * side))) for edge in low]
+        last = [block * int(np.floor(edge / (block * side))) + block - 1 for edge in high]
         ends = *first, *last
-        known = self._last
-        if known is not None and known[0] == ends:
-            return known[1]
+        known = self._windows.get(ends) if plain else None
+        if known is not None:
+            return known
         wide, deep = last[0] - first[0] + 1, last[1] - first[1] + 1
         distances = np.empty((len(LEVELS), wide * TILE, deep * TILE), np.float32)
         for i in range(wide):
@@ -74,8 +77,10 @@ class FreeMap:
                 tile = self._tile(first[0] + i, first[1] + k, start)
                 distances[:, i * TILE : (i + 1) * TILE, k * TILE : (k + 1) * TILE] = tile
         found = Window(distances, first[0] * side, first[1] * side)
-        if self._ground.plain:
-            self._last = ends, found
+        if plain:
+            if len(self._windows) >= _WINDOWS:
+                self._windows.clear()
+            self._windows[ends] = found
         return found
 
     def distances(self, places: Floats, height: float, floor: float = 0.0) -> Floats32:

@@ -17,8 +17,10 @@ from elbowroom.planning.root.motion import MotionBounds, dense_states, stopping_
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 _STRIDE = 0.1  # metres that a knee or a heel comes out of where it stands
+_SWING = 4.0  # times as fast as the root goes no part of a leg moves
 _GRAZE = 0.002  # metres that who goes along something may come nearer
 
 
@@ -80,6 +82,27 @@ class FreeLegs:
         self.checks += len(states)
         return self._check.body.clearance(self._near, states, self._check.skin, farthest)
 
+    def _rooms_along(self, states: Floats, numbers: Indices, owner: Indices) -> Floats32:
+        """The clearance (N,) in states (N, 7) of motions: every second one is posed, and those between where it counts.
+
+        States with following `numbers` (N,) and the same `owner` (N,) follow each other. From one to the next no foot
+        comes as far as those that are left out are free at both sides; these are infinite.
+        """
+        check = self._check
+        fastest = np.abs(states[:, 3:6]).max(axis=0, initial=0.0)
+        far = check.skin + check.spacing * (_SWING * (fastest[0] + fastest[1]) + check.body.reach * fastest[2])
+        clear = np.full(len(states), np.inf, np.float32)
+        clear[::2] = self.rooms(states[::2], far)
+        between = np.arange(1, len(states), 2)
+        roomy = (clear[between - 1] >= far) & (numbers[between - 1] == numbers[between] - 1)
+        roomy &= owner[between - 1] == owner[between]
+        inner = between + 1 < len(states)
+        after = np.where(inner, between + 1, between - 1)
+        roomy &= inner & (clear[after] >= far) & (numbers[after] == numbers[between] + 1)
+        doubt = between[~(roomy & (owner[after] == owner[between]))]
+        clear[doubt] = self.rooms(states[doubt], check.skin)
+        return clear
+
     def _to_check(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""
         bounds = self._check.bounds
@@ -122,8 +145,8 @@ class FreeLegs:
                 shown, owner = stopping_states(states, self._interval, bounds, spacing, fresh)
             else:
                 shown, owner = dense_states(states, self._interval, spacing, fresh)
-            near = states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground)
-            np.minimum.at(found, owner[near] - 1, self.rooms(shown[near], self._check.skin))
+            near = np.flatnonzero(states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground))
+            np.minimum.at(found, owner[near] - 1, self._rooms_along(shown[near], near, owner[near]))
             self._check.known.learn(names, fresh, found)
         touching = np.flatnonzero(found < self._skin)
         return int(touching[0]) if len(touching) else len(wanted)
