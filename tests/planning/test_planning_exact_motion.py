@@ -136,7 +136,7 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(stiff: 
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     checks = []
-    for _ in range(70):  # two ways out, a few steps long, are tried
+    for _ in range(80):  # two ways out, a few steps long, are tried
         motion = planner.plan_motion(roots, query)
         local = motion.local
         assert local.velocities is not None
@@ -159,19 +159,19 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(stiff: 
 
 
 def test_a_reset_leaves_no_trace(stiff: Humanoid) -> None:
-    """Also of what was thought through: after it, a blocked way is planned as it was the first time."""
+    """Also of what was added and found: after it, a blocked way is planned as it was the first time."""
     wall = scene_of([[0.0, 1.25, 1.6], [0.45, 1.0, 0.9]], [[3.0, 0.1, 0.6], [0.08, 0.3, 0.08]])
     planner, roots = ExactPlanner(stiff, wall), RootPlanner(stiff, wall)
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     first = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
 
-    def walked() -> list[tuple[Floats, Floats, tuple[float, float] | None]]:
+    def walked() -> list[tuple[Floats, Floats, int]]:
         query, seen = first, []
         for _ in range(12):
             motion = planner.plan_motion(roots, query)
             local, states = motion.local, motion.root.path.states
             assert local.velocities is not None
-            seen.append((states, local.configurations, planner.memory.attempts.thought_through))
+            seen.append((states, local.configurations, local.checks))
             query = query._replace(
                 time=query.time + T,
                 root=RootState(*states[1].tolist()),
@@ -184,7 +184,6 @@ def test_a_reset_leaves_no_trace(stiff: Humanoid) -> None:
     planner.reset()
     roots.reset()
     after = walked()
-    assert before[-1][2] is not None
     for one, other in zip(before, after, strict=True):
         assert np.array_equal(one[0], other[0])
         assert np.array_equal(one[1], other[1])
@@ -278,8 +277,8 @@ def test_a_plan_that_nobody_waits_for_is_given_up_at_any_stage_and_leaves_no_tra
     limit = 0
     whole = planner.plan_motion(roots, query).local.configurations
     stages = len(asked)
-    assert stages > 10
-    for limit in range(1, stages + 1, 3):
+    assert stages > 5
+    for limit in range(1, stages + 1, 2):
         planner.reset()
         roots.reset()
         asked.clear()

@@ -215,9 +215,10 @@ def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid
     start = natural_walk()(path)[0]
     plans = []
     for _ in range(2):
-        body = UpperBodyPlanner(humanoid, scene, ExactSettings(samples_share=0.1, refinements=4))
+        body = UpperBodyPlanner(humanoid, scene, ExactSettings(samples_share=0.1))
         coarse = body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT)
-        plans.append(body.plan(path, StartState(start, np.zeros_like(start))))
+        tries = [body.plan(path, StartState(start, np.zeros_like(start))) for _ in range(3)]
+        plans.append(tries[-1])
         body.reset()
         again = body.plan(path, StartState(start, np.zeros_like(start)), effort=Effort.JOINT)
         assert again.reached == coarse.reached

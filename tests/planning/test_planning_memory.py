@@ -120,12 +120,11 @@ def test_added_postures_belong_to_who_added_them(humanoid: Humanoid) -> None:
     scene = replace(Scene.load("empty"), obstacles=beam)
     states = np.zeros((13, 7))
     states[:, 1], states[:, 3], states[:, 6] = 1.1 * T * np.arange(13.0), 1.1, 0.9 * T * np.arange(13.0)
-    path, coarse = RootPath(0.0, T, states), ExactSettings(samples_share=0.1, refinements=4)
+    path, coarse = RootPath(0.0, T, states), ExactSettings(samples_share=0.1)
     one, other = (UpperBodyPlanner(humanoid, scene, coarse) for _ in range(2))
     start = one.model.goals(path)[0]
     counts = {group: len(one.model.points[group]) for group in LOCAL_GROUPS}
     one.plan(path, StartState(start, np.zeros_like(start)))
-    assert one.memory.version > 0
     assert any(len(one.memory.known(group)) > counts[group] for group in LOCAL_GROUPS)
     for group in LOCAL_GROUPS:
         assert len(other.memory.known(group)) == counts[group]

@@ -1,17 +1,20 @@
 """What is planned while a user steers: something else is wanted in every plan, so only what is found soon is sought."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.planning.command import Command
+from elbowroom.planning.command import Command, trembles
 from elbowroom.planning.exact.joint.step import JointStep
-from elbowroom.planning.exact.plan.attempts import AttemptOrder
-from elbowroom.planning.result import GroupEvidence, JointEvidence, LocalPlan, PlanStatus
+from elbowroom.planning.exact.plan.full_plan import FullPlan
+from elbowroom.planning.exact.plan.new_plan import NewPlan
+from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.root.path import RootPath
+from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
 
 DT = 1 / 60
@@ -41,21 +44,49 @@ def test_who_turns_all_the_time_gets_no_joint_step_while_walking(monkeypatch: py
     assert controller.root.z > 2.0
 
 
-def test_a_plan_in_a_hurry_is_soon_spent() -> None:
-    searched = GroupEvidence(DofGroup.WAIST, PlanStatus.FOUND, 30_000, 1500, 0, 0)
-    blank = np.zeros((0, 11))
-    plain = LocalPlan(PlanStatus.FOUND, blank, blank, (searched,))
-    joint = plain._replace(joint=JointEvidence(PlanStatus.FOUND, 300_000, 600_000, 0))
+def test_who_stands_gives_the_same_answer_soon_and_never_asks_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a blind alley, with keys that flip: each wish is thought through a part at a time, and then known."""
+    walls = Obstacles.boxes(
+        [(0.0, 1.0, 1.0), (0.55, 1.0, 0.0), (-0.55, 1.0, 0.0)], [(0.0, 0.0, 0.0, 1.0)] * 3,
+        [(0.6, 1.0, 0.05), (0.05, 1.0, 1.0), (0.05, 1.0, 1.0)],
+    )  # fmt: skip
+    controller, asked = Controller(Humanoid.default(), replace(Scene.load("empty"), obstacles=walls)), []
+    plan = UpperBodyPlanner.plan
+
+    def counted(body: UpperBodyPlanner, path: RootPath, *args: object, **named: object) -> object:
+        asked.append(path.states.tobytes())
+        return plan(body, path, *args, **named)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(UpperBodyPlanner, "plan", counted)
+    wishes = Command(forward=1.0, direction=0.0), Command(forward=1.0, direction=0.5)
     counts = []
-    for hurry in (True, False):
-        order, count = AttemptOrder(), 0
-        order.begin(hurry=hurry, moves=True)
-        while not order.spent:
-            order.enter_root(1000)
-            order.enter(plain)
-            count += 1
-        counts.append(count)
-        order.begin(hurry=hurry, moves=True)
-        order.enter(joint)
-        assert order.spent is hurry
-    assert 0 < counts[0] < counts[1]
+    for number in range(8):
+        asked.clear()
+        for _ in range(150):
+            frame = controller.step(wishes[number % 2], DT)
+            assert not frame.touching
+        counts.append(len(asked))
+    assert math.hypot(controller.root.forward, controller.root.lateral) < 1e-3
+    assert counts[-1] <= 2
+
+
+def test_a_hand_that_trembles_asks_for_nothing_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Walking on in the open, plans are gone on with whatever a hand does that means the same."""
+    steady = Command(forward=1.0, direction=0.0)
+    assert trembles(steady, Command(forward=0.99, direction=math.radians(1.5)))
+    for other in (Command(forward=1.0, direction=0.1), Command(forward=0.9, direction=0.0), Command(forward=1.0)):
+        assert not trembles(steady, other)
+    made, counts, new = NewPlan.made, [], []
+
+    def counted(plan: NewPlan, left: FullPlan | None) -> FullPlan:
+        new.append(plan)
+        return made(plan, left)
+
+    monkeypatch.setattr(NewPlan, "made", counted)
+    controller = Controller(Humanoid.default(), Scene.load("empty"))
+    for number in range(240):
+        controller.step(Command(forward=1.0, direction=0.015 * math.sin(0.3 * number)), DT)
+        counts.append(len(new))
+    assert counts[-1] == counts[60]
+    controller.step(Command(forward=1.0, direction=0.3), DT)
+    assert controller.root.z > 2.0

@@ -7,6 +7,8 @@ _NOTHING = 1e-6  # share of full speed: less asks for nothing
 _TREMOR = 0.02  # share of full speed: slower has no direction
 BENT = math.radians(20.0)  # a change of walking direction that is worth a plan of its own
 _SHARE = 0.25  # the same for shares of full speed and of full turning
+_TREMBLING = math.radians(2.0)  # a hand that holds a direction holds it no better
+_UNSTEADY = 0.02  # the same of shares of full speed and of full turning
 
 
 @dataclass(frozen=True)
@@ -56,3 +58,10 @@ def changed(planned: Command, command: Command) -> bool:
         return True
     share = abs(planned.speed - command.speed) > _SHARE or abs(planned.turn - command.turn) > _SHARE
     return share or angle_between(planned, command) > BENT
+
+
+def trembles(planned: Command, command: Command) -> bool:
+    """Whether a command differs from the one before by no more than a hand trembles that means the same."""
+    if changed(planned, command) or angle_between(planned, command) > _TREMBLING:
+        return False
+    return abs(planned.speed - command.speed) < _UNSTEADY and abs(planned.turn - command.turn) < _UNSTEADY

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.command import changed
+from elbowroom.planning.command import changed, trembles
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.extension import prolonged
 from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
@@ -79,40 +79,33 @@ class ExactPlanner:
         return first_part(whole, query.horizon)
 
     def _begun(self, query: MotionQuery) -> MotionQuery:
-        """The query; for who stands with the command that paths are being thought through for, while it is much alike.
+        """The query with the command of the one before, where the two are much alike.
 
-        Whoever steers with a mouse or a stick asks for something a little different every time: nothing would have its
-        turn.
+        Whoever steers with a mouse or a stick asks for something a little different every time, and means the same. Of
+        who stands, and has paths being thought through, much more is taken for that: else nothing would have its turn.
         """
-        stand = self.memory.standing
-        if stand is None or stand.left == 0 or changed(stand.query.command, query.command):
-            return query
-        return query._replace(command=stand.query.command)
+        stand, before = self.memory.standing, self.memory.command
+        if stand is not None and not stand.final and not changed(stand.query.command, query.command):
+            return query._replace(command=stand.query.command)
+        return query if before is None or not trembles(before, query.command) else query._replace(command=before)
 
     def _as_before(self, query: MotionQuery) -> FullPlan | None:
         """The answer to the same query, where the avatar has stood since and nothing is left to be tried."""
         stand = self.memory.standing
-        known = self.settings.remember and stand is not None and stand.left == 0
-        return (
-            stand.at(query.time) if known and stand is not None and stand.answers(query, self.memory.version) else None
-        )
+        known = self.settings.remember and stand is not None and stand.final and stand.answers(query)
+        return stand.at(query.time) if known and stand is not None else None
 
     def _anew(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> FullPlan:
         """A new plan, and what may be known of it later: an answer to who stands, a walk to go on with.
 
         `left` is what is left of a walk that has no new end at first sight; `alone`: nothing moves or is in a hurry.
         """
-        memory, stand = self.memory, self.memory.standing
-        before = memory.version
-        again = alone and stand is not None and stand.is_asked_again(query)
-        moves = not is_still(query.root.as_array()[3:6])
-        hurry = query.hurry or (moves and memory.command != query.command)
+        memory = self.memory
+        hurry = query.hurry or (not is_still(query.root.as_array()[3:6]) and memory.command != query.command)
         memory.command = query.command
-        at_last = again and stand is not None and stand.left == 1
-        whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry, at_last).made(left)
-        turns = stand.left - 1 if again and stand is not None else memory.attempts.left
+        whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
         known = alone and not hurry and stands(whole, query)
-        memory.standing = StandingPlan(query, before, whole, max(turns, 0)) if known else None
+        memory.standing = StandingPlan(query, whole, memory.attempts.thorough) if known else None
         lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole

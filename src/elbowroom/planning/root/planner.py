@@ -8,7 +8,7 @@ show, and if from each of its key frames a stop would be free too. So the next p
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from elbowroom.body.humanoid import Humanoid
@@ -21,11 +21,13 @@ from elbowroom.planning.root.line.line import TravelLine, wanted_speed
 from elbowroom.planning.root.line.way_ahead import line_of
 from elbowroom.planning.root.memory import Evading, RootMemory
 from elbowroom.planning.root.motion import MotionBounds
+from elbowroom.planning.root.offers import Offer, OffersFromHere
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.way_out import WayOut, WayOutFinder, WayOutSettings
+from elbowroom.planning.stillness import is_still
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 
@@ -35,19 +37,11 @@ _FARTHER = 0.15  # metres along a line that are worth another
 _BACK = 0.05  # metres along a line: less is no way back
 
 
-class _Candidate(NamedTuple):
-    """A path, and what is remembered if it is taken."""
-
-    plan: RootPlan
-    evading: Evading | None
-    way_out: WayOut | None = None
-
-
-class _Offer(NamedTuple):
-    """A candidate, or the pace at which one would be walked."""
+class _Idea(NamedTuple):
+    """An offer, or the pace at which one would be walked."""
 
     lost: float  # seconds
-    what: _Candidate | float
+    what: Offer | float
 
 
 class RootPlanner:
@@ -73,7 +67,8 @@ class RootPlanner:
     def reset(self) -> None:
         """Forget the line of travel."""
         self.memory = RootMemory()  # set to what it was, it goes on as it was then
-        self._offered: list[_Candidate] = []
+        self._offered: list[Offer] = []
+        self._from_here = OffersFromHere()
 
     @property
     def bounds(self) -> MotionBounds:
@@ -136,17 +131,18 @@ class RootPlanner:
         interval: float,
         start_time: float = 0.0,
         paces: Sequence[float] = (),
+        grids: int = 4,
     ) -> Iterator[RootPlan]:
         """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
-        along the axis of a gap and those that lead far aside are thought of when the others have become dear. The last
-        one that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
+        along the axis of a gap and those that lead far aside are thought of when the others have become dear, as far
+        as so many `grids` suffice. The last one that was given is the one that is being followed; whoever takes an
+        earlier one says so (`follow`).
         """
-        self._offered.clear()
-        for plan in self._candidates(Asked(start, command, horizon, interval, start_time), paces):
-            self._offered.append(plan)
-            yield plan.plan
+        asked = Asked(start, command, horizon, interval, start_time)
+        for offer in self._offers(f"{grids} grids", asked, lambda: self._candidates(asked, paces, grids)):
+            yield offer.plan
 
     def ways_out(
         self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
@@ -158,30 +154,39 @@ class RootPlanner:
         line, before = self.memory.line, self.memory.way_out
         if line is None or wanted_speed(command, self.settings.motion) < SLOW:
             return  # who is in no hurry stays
-        for candidate in self._out(Asked(start, command, horizon, interval, start_time), line, None, before):
-            self._offered.append(candidate)
-            yield candidate.plan, 0 if candidate.way_out is None else candidate.way_out.length
+        asked, out = Asked(start, command, horizon, interval, start_time), (line, None, before)
+        for offer in self._offers("ways out", asked, lambda: self._out(asked, *out)):
+            yield offer.plan, 0 if offer.memory.way_out is None else offer.memory.way_out.length
+
+    def _offers(self, kind: str, asked: Asked, make: Callable[[], Iterator[Offer]]) -> Iterator[Offer]:
+        """What is made, or, for who stands among what stands, what was offered before; each is taken in turn."""
+        self._offered.clear()
+        rests = not len(self.moving) and is_still(asked.start.as_array()[3:6])
+        for offer in self._from_here.again(kind, asked, make) if rests else make():
+            self._offered.append(offer)
+            self.memory = offer.memory
+            yield offer
 
     def follow(self, plan: RootPlan) -> None:
         """Take one of the paths that `candidates` gave last."""
         for offered in self._offered:
             if offered.plan is plan:
-                self._taken(offered)
+                self.memory = offered.memory
 
-    def _candidates(self, asked: Asked, paces: Sequence[float]) -> Iterator[_Candidate]:
+    def _candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
         before = self.memory.way_out
         commanded = self._commanded(asked, 1.0)
         known, line = self.memory.evading, self.memory.line
         direct = known if self.memory.still_turned(asked.start, self.settings.widest_detour) else None
         if (left := self._left_of(self.memory.way_out, asked)) is not None:
-            yield self._taken(_Candidate(left, direct, before))
-        offers: list[_Offer] = []
+            yield self._offer(left, direct, before)
+        offers: list[_Idea] = []
         if commanded.lost < self.settings.untroubled:
-            yield self._taken(_Candidate(commanded, direct, before))
+            yield self._offer(commanded, direct, before)
         else:
-            offers.append(_Offer(commanded.lost, _Candidate(commanded, direct, before)))
+            offers.append(_Idea(commanded.lost, self._offer(commanded, direct, before)))
         duration = asked.horizon * asked.interval
-        offers += [_Offer(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
+        offers += [_Idea(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
         if wanted_speed(asked.command, self.settings.motion) < SLOW:
             line = None  # who is in no hurry leaves no line
         (fine, wide), dear = self._paths.evasions, self.settings.wide_from
@@ -189,32 +194,31 @@ class RootPlanner:
         grids = [] if line is None else grids
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
             yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
-        while offers or grids:
+        while offers or (grids and most > 0 and line is not None):
             offers.sort(key=lambda offer: offer.lost)
-            if line is not None and grids and _dearer(offers, grids[0][0]):
+            if line is not None and most > 0 and grids and _dearer(offers, grids[0][0]):
                 _, finder, through = grids.pop(0)
-                offers += self._evaded(asked, line, known, finder, through)
+                evaded = self._evaded(asked, line, known, finder, through)
+                offers, most = offers + evaded, most - bool(evaded)
                 continue
             what = offers.pop(0).what
             if isinstance(what, float):
                 self.memory = self.memory._replace(evading=direct, way_out=before)
-                yield _Candidate(self._commanded(asked, what), direct, before)
+                yield self._offer(self._commanded(asked, what), direct, before)
                 continue
             if line is not None and what.plan.kind is RootPlanKind.STOPPED:
                 yield from self._out(asked, line, direct, before)
                 line = None
-            yield self._taken(what)
+            yield what
         if len(self.moving):
             yield from self._steps_aside(asked, direct)
 
-    def _steps_aside(self, asked: Asked, evading: Evading | None) -> Iterator[_Candidate]:
+    def _steps_aside(self, asked: Asked, evading: Evading | None) -> Iterator[Offer]:
         """Short steps out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
-            yield self._taken(_Candidate(plan, evading))
+            yield self._offer(plan, evading, None)
 
-    def _out(
-        self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None
-    ) -> Iterator[_Candidate]:
+    def _out(self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None) -> Iterator[Offer]:
         """Ways out for who stands, where all else stands; not again and again without getting farther."""
         if self._paths.restless or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
             return
@@ -223,7 +227,7 @@ class RootPlanner:
             tries, ahead = before.tries + 1, before.ahead
         if tries <= _TRIES:
             for plan, path, length in self._ways_out.ways(asked, line):
-                yield self._taken(_Candidate(plan, evading, WayOut(line, path, length, ahead, tries)))
+                yield self._offer(plan, evading, WayOut(line, path, length, ahead, tries))
 
     def _left_of(self, way_out: WayOut | None, asked: Asked) -> RootPlan | None:
         """What is left of a way out that is being followed, if it is still free."""
@@ -233,10 +237,9 @@ class RootPlanner:
         path, (x, z) = RootPath(asked.start_time, asked.interval, states), states[-1, :2].tolist()
         return RootPlan(path, RootPlanKind.EVASION, (x, z), 0, 0, asked.horizon * asked.interval)
 
-    def _taken(self, candidate: _Candidate) -> _Candidate:
-        plan, evading, way_out = candidate
-        self.memory = self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out)
-        return candidate
+    def _offer(self, plan: RootPlan, evading: Evading | None, way_out: WayOut | None) -> Offer:
+        """A path with what is remembered if it is taken."""
+        return Offer(plan, self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out))
 
     def _through(self, asked: Asked, line: TravelLine, known: Evading | None, share: float) -> TravelLine | None:
         """The axis of a gap ahead, as a line of travel; the same as long as it is followed.
@@ -252,7 +255,7 @@ class RootPlanner:
 
     def _evaded(
         self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, through: float | None
-    ) -> list[_Offer]:
+    ) -> list[_Idea]:
         """Evasions from the line of travel; if they are to lead `through` a gap, in a grid that lies along its axis.
 
         Sideways they are walked at that share of the usual speed.
@@ -263,10 +266,10 @@ class RootPlanner:
             return []
         kept = known.profile if known is not None and known.along == along else None
         found = self._paths.evaded(asked, line, along, finder, kept, share)
-        return [_Offer(plan.lost, _Candidate(plan, Evading(profile, line, along), before)) for plan, profile in found]
+        return [_Idea(plan.lost, self._offer(plan, Evading(profile, line, along), before)) for plan, profile in found]
 
 
-def _dearer(offers: list[_Offer], lost: float) -> bool:
+def _dearer(offers: list[_Idea], lost: float) -> bool:
     """Whether all offers, in order, cost at least so many seconds."""
     return not offers or offers[0].lost >= lost
 

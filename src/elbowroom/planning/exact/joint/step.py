@@ -53,10 +53,11 @@ class JointSettings(NamedTuple):
     step: float  # weight of edges
     near: float  # weight of lacking comfort
     comfort: float  # metres
-    budget: int = 1_500_000  # triples settled
-    # No slice more is filled in after so many capsules checked, or so many triples settled.
-    checks: int = 2_000_000
-    triples: int = 600_000
+    budget: int = 400_000  # triples settled
+    # No slice more is filled in after so many waists and capsules, or so many triples settled.
+    waists: int = 300
+    checks: int = 1_000_000
+    triples: int = 300_000
 
 
 class GroupNodes(NamedTuple):
@@ -104,6 +105,7 @@ class JointStep:
         self.nodes = nodes
         self.around, self.settings = around, settings
         self.checks, self.states = 0, 0
+        self._waists = 0  # that were filled in, of all slices
         self._body = body
         depths, waists = nodes[0].base.shape
         self.filled = np.zeros((depths, waists), np.bool_)
@@ -142,7 +144,8 @@ class JointStep:
     @property
     def spent(self) -> bool:
         """Whether so much was done that nothing more is begun."""
-        return self.checks > self.settings.checks or self.states > self.settings.triples
+        s = self.settings
+        return self._waists > s.waists or self.checks > s.checks or self.states > s.triples
 
     def _among(self, waists: Bools) -> JointPath:
         """The cheapest path among some waists (n+1, W+E), filled in first, as far as each group has paths."""
@@ -187,6 +190,7 @@ class JointStep:
         if not len(chosen):
             return
         self.filled[depth, chosen] = True
+        self._waists += len(chosen)
         inner = self.configurations(0, depth)[chosen]
         frames, body = self.chests(depth, inner), self._body_under(depth, chosen)
         for g in range(1, len(self.nodes)):

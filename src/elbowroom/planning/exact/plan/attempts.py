@@ -1,18 +1,24 @@
-"""Which of the paths that have no way at first sight is thought through with all means: one in each plan, in turn."""
+"""What one plan may cost, and what was found to be no way: for who stands that stays known until it moves."""
 
 import math
-from collections.abc import Sequence
+from typing import NamedTuple
 
-from elbowroom.planning.exact.plan.upper_body_search import Effort
+from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
+from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import LocalPlan
+from elbowroom.planning.root.path import RootPath
 
 _SAME_PLACE = 0.3  # metres: blocked places that are taken for one
 _SOON = 1.05  # seconds ahead: what is nearer is thought through at once
+_NEAR = 1e-6  # metres, radians: who has moved by less stands where he stood
 # Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
 # path for the upper body, the tables of all groups together, a place of the root.
 _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
 # Work of a plan after which nothing is begun but a safe end: of who stands, of who walks, and in a hurry.
-_MOST_STANDING, _MOST, _MOST_IN_A_HURRY = 4e6, 3e6, 1e6
+_MOST_STANDING, _MOST, _MOST_IN_A_HURRY = 3e6, 2e6, 8e5
+_LITTLE = 5e5  # work of a plan in which it is asked why there is no path
+_ORDER = Effort.QUICK, Effort.JOINT, Effort.REFINED  # from little to much
+_REMEMBERED = 200  # root paths
 
 
 def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
@@ -20,39 +26,61 @@ def same_place(a: tuple[float, float], b: tuple[float, float]) -> bool:
     return math.dist(a, b) < _SAME_PLACE
 
 
-class AttemptOrder:
-    """The commanded path as soon as it is blocked, then the one that leads farthest, and so on."""
+class _Failed(NamedTuple):
+    """A root path on which the upper body found no way."""
+
+    effort: Effort
+    upper: UpperPlan
+
+
+class Attempts:
+    """The attempts of one plan, as far as it may go, and the vain ones of the plans before."""
 
     def __init__(self) -> None:
-        self._turn = self._paths = 0
         self._work, self._most = 0.0, _MOST  # of this plan, in capsules checked
         self._seen: tuple[float, float] | None = None  # the place that ended the commanded path in the plan before
-        self.thought_through: tuple[float, float] | None = None  # the place that ended the commanded path when it was
+        self._stood: tuple[float, ...] | None = None  # where somebody stands
+        self._failed: dict[bytes, _Failed] = {}  # the vain ones from there
+        self._postponed = False  # whether it was left for later to ask why there is no path
 
-    @property
-    def left(self) -> int:
-        """Turns to come after the last plan: one for each path that had none yet, the last for steps to elsewhere."""
-        return self._paths
+    def begin(self, query: MotionQuery, *, hurry: bool, stands: bool) -> None:
+        """Begin a plan; `stands` says that nothing moves, the avatar neither."""
+        self._work, self._postponed = 0.0, False
+        self._most = _MOST_STANDING if stands else _MOST_IN_A_HURRY if hurry else _MOST
+        here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
+        if here is None or stood is None or max(abs(a - b) for a, b in zip(here, stood, strict=True)) > _NEAR:
+            self._failed.clear()
+        self._stood = here
 
-    def begin(self, *, hurry: bool, moves: bool) -> None:
-        """Begin a plan."""
-        self._paths, self._work = 0, 0.0
-        self._most = _MOST_IN_A_HURRY if hurry else _MOST if moves else _MOST_STANDING
+    def failed(self, path: RootPath, effort: Effort) -> UpperPlan | None:
+        """What was found on a root path when no less was tried on it, if that led nowhere."""
+        known = self._failed.get(path.states.tobytes()) if self._failed else None
+        return None if known is None or _ORDER.index(known.effort) < _ORDER.index(effort) else known.upper
 
     def enter_root(self, checks: int) -> None:
         """A root path was made, for which so many places and postures were looked at."""
         self._work += _PLACE * checks
 
-    def enter(self, upper: LocalPlan) -> None:
+    def enter(self, path: RootPath, effort: Effort, upper: UpperPlan) -> None:
         """A path was sought for the upper body."""
-        self._work += _PATH + sum(row.checks + _NODE * row.nodes for row in upper.evidence)
-        if upper.joint is not None:
-            self._work += _TABLES + upper.joint.checks + _TRIPLE * upper.joint.states
+        self._work += _work(upper.plan)
+        if self._stood is not None and upper.reached < path.horizon and len(self._failed) < _REMEMBERED:
+            self._failed[path.states.tobytes()] = _Failed(effort, upper)
 
     @property
     def spent(self) -> bool:
-        """Whether this plan has cost as much as it may: nothing dear is begun any more, the best so far will do."""
+        """Whether this plan has cost as much as it may: nothing is begun any more, the best so far will do."""
         return self._work > self._most
+
+    def may_ask_why(self) -> bool:
+        """Whether so little was done in this plan that it may be asked why there is no path; if not, a later may."""
+        self._postponed = self._work > _LITTLE
+        return not self._postponed
+
+    @property
+    def thorough(self) -> bool:
+        """Whether nothing was left out in this plan for what it would have cost."""
+        return not (self.spent or self._postponed)
 
     def can_wait(self, place: tuple[float, float], ahead: float) -> bool:
         """Whether the commanded path, ending at a place (x, z) `ahead` seconds from now, need not be thought through.
@@ -63,28 +91,10 @@ class AttemptOrder:
         before, self._seen = self._seen, place
         return ahead > _SOON and (before is None or not same_place(place, before))
 
-    def found(self) -> None:
-        """The commanded path has a way."""
-        self._turn, self.thought_through, self._seen = 0, None, None
 
-    def is_new(self, place: tuple[float, float]) -> bool:
-        """Whether the commanded path now ends at another place (x, z) than when it was thought through last."""
-        if self.thought_through is not None and same_place(place, self.thought_through):
-            return False
-        self.thought_through, self._turn = place, 0
-        return True
-
-    def efforts(self, reached: Sequence[int]) -> list[tuple[int, Effort]]:
-        """The paths, in order, and what is tried on each; `reached` is how far each has a way, the commanded one first.
-
-        All but one get the joint step's first answer.
-        """
-        ranked = [0, *sorted(range(1, len(reached)), key=lambda i: -reached[i])]
-        turn = self._turn % len(reached)
-        self._paths, self._turn = len(reached), self._turn + 1
-        found = []
-        for place, number in enumerate(ranked):
-            if number == 0 and self._turn == 1:
-                continue  # it was thought through just now
-            found.append((number, Effort.GLANCE if place != turn else Effort.JOINT if number else Effort.REFINED))
-        return found
+def _work(upper: LocalPlan) -> float:
+    """What a search for the upper body cost, in capsules checked."""
+    work = float(_PATH + sum(row.checks + _NODE * row.nodes for row in upper.evidence))
+    if upper.joint is not None:
+        work += _TABLES + upper.joint.checks + _TRIPLE * upper.joint.states
+    return work

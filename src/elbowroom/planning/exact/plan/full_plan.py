@@ -80,15 +80,10 @@ class StandingPlan(NamedTuple):
     """The answer to a query of one who stands and goes on standing: asked the same again, it would be the same."""
 
     query: MotionQuery
-    version: int  # of the posture sets
     whole: FullPlan
-    left: int  # paths that have not had their turn to be thought through
+    final: bool  # whether all was tried
 
-    def answers(self, query: MotionQuery, version: int) -> bool:
-        """Whether this is the answer to `query` too, with the posture sets of a version."""
-        return version == self.version and self.is_asked_again(query)
-
-    def is_asked_again(self, query: MotionQuery) -> bool:
+    def answers(self, query: MotionQuery) -> bool:
         """Whether `query` is the one that this answered, asked later."""
         known, asked = self.query, query
         if known.command != asked.command or known.horizon != asked.horizon:

@@ -10,8 +10,7 @@ import numpy as np
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import StartState
-from elbowroom.planning.exact.plan.attempts import same_place
-from elbowroom.planning.exact.plan.extension import prolonged
+from elbowroom.planning.exact.plan.attempts import Attempts, same_place
 from elbowroom.planning.exact.plan.full_plan import FullPlan
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
@@ -21,13 +20,14 @@ from elbowroom.planning.root.motion import brake
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
-from elbowroom.planning.stillness import STILL
+from elbowroom.planning.stillness import STILL, is_still
 
 _EARLIER = (1, 3, 8)  # key frames before the one that was not reached, at which braking is tried
 _SAFELY = (3,)  # the same where the plan has cost as much as it may
 _FARTHER = 0.05  # metres that a slower path must get beyond the place where a faster one failed
 _FAR_OFF = 1.2  # seconds until a place that is not asked about yet
-_WORTH = 0.3  # seconds that a path must cost less than one that was found, to be searched more closely before it
+_THOUGHT_THROUGH = 4  # root paths on which all groups are searched together
+_GRIDS, _GRIDS_STANDING = 2, 4  # in which evasions are looked for, by who walks and who stands
 _STANDING = 0.02  # metres: a path that is shorter stands
 
 
@@ -47,55 +47,51 @@ class NewPlan:
     query: MotionQuery
     horizon: int  # key intervals that it leads over
     hurry: bool  # something else is wanted than before: what is found soon now, what is better in the next plan
-    at_last: bool = False  # all else has been tried from here, in the plans before
 
     def made(self, left: FullPlan | None) -> FullPlan:
         """The first of these that there is: a root path on which each group finds a path, the commanded one first;
-        one on which all groups together find one; to walk on as far as possible, and stand. At last, before these, a
-        few steps to where the command leads on.
+        one on which all groups together find one; for who stands a few steps to where the command leads on; to walk on
+        as far as possible, and stand.
 
-        `left` is what is left of a walk that has no new end at first sight: that is searched more closely too.
+        `left` is what is left of a walk that has no new end.
         """
         tried: list[_Tried] = []
-        self.body.memory.attempts.begin(hurry=self.hurry, moves=self._moves)
-        found = (self._way_out() if self.at_last else None) or self._group_by_group(left, tried)
+        self._attempts.begin(self.query, hurry=self.hurry, stands=self._stands)
+        found = self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
+        if found is None and self._stands and not self._attempts.spent:
+            found = self._way_out()
         return found or self._stop(tried)
 
     def _group_by_group(self, left: FullPlan | None, tried: list[_Tried]) -> FullPlan | None:
-        """A plan on the first root path on which the groups find one; the commanded path is searched with all means.
+        """A plan on the first root path on which the groups find one; for who stands the commanded one is searched with
+        all means.
 
         The paths that were of no use are added to `tried`.
         """
-        query, attempts, blocked_at = self.query, self.body.memory.attempts, 0.0
-        for root in self.root_planner.candidates(*self._asked, self.body.settings.paces):
-            attempts.enter_root(root.checks)
-            if tried and self.hurry and attempts.spent:
-                break
+        blocked_at = 0.0
+        grids = _GRIDS_STANDING if self._stands else _GRIDS
+        candidates = self.root_planner.candidates(*self._asked, self.body.settings.paces, grids)
+        while not (tried and self._attempts.spent) and (root := next(candidates, None)) is not None:
+            self._attempts.enter_root(root.checks)
             if tried and self._leads_nowhere_new(root, blocked_at + _FARTHER):
                 continue
             upper = self._upper_body(root.path, Effort.QUICK)
-            blocked = not tried and upper.reached < self.horizon
-            until_then = (
-                self._braked(root, upper.reached) if blocked and left is None and self._can_wait(upper) else None
-            )
-            if until_then is not None:
-                return until_then
-            if blocked and not self.hurry and attempts.is_new(_place(upper)):
-                refined = None if left is None else prolonged(self.body, left, root, query, Effort.REFINED)
-                if refined is not None:
-                    attempts.found()
-                    return refined
-                upper = self._upper_body(root.path, Effort.REFINED)
+            if not tried and upper.reached < self.horizon:
+                if left is None and self._can_wait(upper) and (plan := self._braked(root, upper.reached)) is not None:
+                    return plan
+                if self._stands and not self.hurry:
+                    upper = self._upper_body(root.path, Effort.REFINED)
             if upper.reached == self.horizon:
-                if not tried:
-                    attempts.found()
-                cheaper = None if self.hurry else self._cheaper(tried, root)
-                return cheaper or FullPlan(root, upper.plan, upper.margins)
+                return FullPlan(root, upper.plan, upper.margins)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
         return None
+
+    @property
+    def _attempts(self) -> Attempts:
+        return self.body.memory.attempts
 
     @property
     def _asked(self) -> tuple[RootState, Command, int, float, float]:
@@ -111,9 +107,10 @@ class NewPlan:
         before, here = self.root_planner.memory, (self.query.root.x, self.query.root.z)
         away, farthest = 0.0, None
         for root, length in self.root_planner.ways_out(*self._asked):
-            self.body.memory.attempts.enter_root(root.checks)
-            if self.body.memory.attempts.spent:
-                break
+            self._attempts.enter_root(root.checks)
+            if self._attempts.spent:
+                self.root_planner.memory = before
+                return None
             upper = self._upper_body(root.path, Effort.QUICK)
             if upper.reached == self.horizon:
                 return FullPlan(root, upper.plan, upper.margins)
@@ -133,29 +130,29 @@ class NewPlan:
         if len(self.root_planner.moving) or not self._moves:
             return False
         ahead = self.query.interval * upper.search.blocked[1]
-        return self.body.memory.attempts.can_wait(_place(upper), ahead)
+        return self._attempts.can_wait(_place(upper), ahead)
 
     @property
     def _moves(self) -> bool:
         return math.hypot(self.query.root.forward, self.query.root.lateral) > STILL
 
-    def _cheaper(self, tried: list[_Tried], than: RootPlan) -> FullPlan | None:
-        """A plan on a root path that costs much less than the one that was found, if all groups together find one."""
-        cheaper = sorted((one.root for one in tried if one.root.lost + _WORTH < than.lost), key=lambda one: one.lost)
-        plans = (self._followed(root, Effort.GLANCE) for root in cheaper)
-        return next((plan for plan in plans if plan is not None), None)
+    @property
+    def _stands(self) -> bool:
+        """Whether nothing moves, the avatar neither."""
+        still = is_still(self.query.root.as_array()[3:6]) and is_still(self.query.velocity)
+        return still and not len(self.root_planner.moving)
 
     def _all_together(self, tried: list[_Tried]) -> FullPlan | None:
-        """A plan on a root path on which all groups together find one after all."""
-        efforts = self.body.memory.attempts.efforts([one.upper.reached for one in tried])
-        plans = (self._followed(tried[number].root, effort) for number, effort in efforts)
+        """A plan on a root path on which all groups together find one after all: those that led farthest come first."""
+        farthest = sorted(tried, key=lambda one: -one.upper.reached)[:_THOUGHT_THROUGH]
+        plans = (self._together(one.root) for one in farthest)
         return next((plan for plan in plans if plan is not None), None)
 
-    def _followed(self, root: RootPlan, effort: Effort) -> FullPlan | None:
+    def _together(self, root: RootPlan) -> FullPlan | None:
         """A plan on a root path, which is followed then; None if there is none, or if enough was done already."""
-        if self.body.memory.attempts.spent:
+        if self._attempts.failed(root.path, Effort.JOINT) is not None or self._attempts.spent:
             return None
-        upper = self._upper_body(root.path, effort)
+        upper = self._upper_body(root.path, Effort.JOINT)
         if upper.reached < root.path.horizon:
             return None
         self.root_planner.follow(root)
@@ -178,7 +175,7 @@ class NewPlan:
 
     def _braked(self, root: RootPlan, reached: int, *, harsh: bool = False) -> FullPlan | None:
         """A plan on a root path that is braked as late as possible; the upper body came as far as `reached` on it."""
-        spent = self.body.memory.attempts.spent
+        spent = self._attempts.spent
         brakings = [(moving, Effort.QUICK) for moving in _moving(reached, _SAFELY if spent else _EARLIER)]
         brakings += [] if self.hurry or spent else [(0, Effort.JOINT)]
         for moving, effort in brakings:
@@ -205,22 +202,32 @@ class NewPlan:
         told = math.dist(self.body.memory.asked_at, here) < _STANDING  # that is: from here
         if last is not None and near and (moves or told):
             why = replace(last, time=path.start_time + path.interval * depth, ahead=_walked(path, depth))
-        elif moves and (self.body.memory.attempts.spent or depth * path.interval > _FAR_OFF):
+        elif (moves and depth * path.interval > _FAR_OFF) or not self._may_ask_why:
             return None
         else:
-            why, self.body.memory.asked_at = upper.search.blockade(), here
+            why, self.body.memory.asked_at = self._searched(path, Effort.QUICK).search.blockade(), here
             if last is not None and near and why.kind is BlockadeKind.MOTION:
                 why = replace(last, time=why.time, ahead=why.ahead)
         self.body.memory.blockade = why
         return why
 
+    @property
+    def _may_ask_why(self) -> bool:
+        """Whether so little was done in this plan that it may be asked why there is no path; if not, in the next."""
+        return len(self.root_planner.moving) > 0 or self._attempts.may_ask_why()
+
     def _upper_body(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         """What the upper body can do on a root path, from where the avatar is."""
+        if not harsh and (vain := self._attempts.failed(path, effort)) is not None:
+            return vain
+        upper = self._searched(path, effort, harsh=harsh)
+        self._attempts.enter(path, effort, upper)
+        return upper
+
+    def _searched(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         start, query = StartState(self.query.upper, self.query.velocity, harsh=harsh), self.query
         previous = self.body.memory.recent.previous(path)
-        upper = self.body.plan(path, start, previous, query.others, effort, query.go_on)
-        self.body.memory.attempts.enter(upper.plan)
-        return upper
+        return self.body.plan(path, start, previous, query.others, effort, query.go_on)
 
     def _leads_nowhere_new(self, root: RootPlan, least: float) -> bool:
         """Whether a path along the same line is shorter than `least` metres, among things that stand still."""

@@ -20,7 +20,7 @@ from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.caches import PlanCaches, new_caches, with_set
 from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
-from elbowroom.planning.exact.plan.attempts import AttemptOrder
+from elbowroom.planning.exact.plan.attempts import Attempts
 from elbowroom.planning.exact.plan.full_plan import StandingPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
 from elbowroom.planning.exact.plan.recent_plans import RecentPlans
@@ -40,10 +40,9 @@ class PlanMemory:
         self.recent = RecentPlans()
         self.ongoing: OngoingPlan | None = None
         self.command: Command | None = None  # what was asked for last
-        self.attempts = AttemptOrder()
+        self.attempts = Attempts()
         self.blockade: Blockade | None = None  # why there was no path when that was asked last
         self.asked_at = math.inf, math.inf  # x, z of who asked
-        self.version = 0  # greater after every change of the postures
         self._added = {group: Pool(group.size, RefinementSettings().capacity) for group in LOCAL_GROUPS}
         self._sets: Mapping[DofGroup, PostureSet] = model.sets
         # what was found out
@@ -70,7 +69,6 @@ class PlanMemory:
     def take_in(self, groups: Iterable[DofGroup]) -> None:
         """Plan with the postures that were added to some groups; they are this walker's, the model stays as it is."""
         for group in groups:
-            self.version += 1
             made = self.model.set_of(group, self.known(group))
             self._sets = {**self._sets, group: made}
             self._caches = with_set(self._caches, self.model, group, made)

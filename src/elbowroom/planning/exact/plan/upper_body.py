@@ -87,21 +87,16 @@ class UpperBodyPlanner:
         path = self._legs.stood(path)
         near = self._near(path, others)
         legs = self._legs.among(others, path)
-        rounds = {Effort.QUICK: 0, Effort.GLANCE: 1}.get(effort, self.settings.guided_rounds)
-        weights = self._quick_weights if effort in (Effort.QUICK, Effort.GLANCE) else self._weights
-        search: UpperBodySearch | None = None
-        for attempt in range(self.settings.refinements + 1):
+        rounds = 0 if effort is Effort.QUICK else self.settings.guided_rounds
+        weights = self._quick_weights if effort is Effort.QUICK else self._weights
+        search = self._search_of(path, begins, previous, near, legs, weights, go_on)
+        found = search.motion(rounds)
+        if found is None and effort is Effort.REFINED and not search.spent and self._refine(search):
             before, search = search, self._search_of(path, begins, previous, near, legs, weights, go_on)
-            if before is not None:
-                search.evidence_log.begin_after(before.evidence_log)
-            between = 0 < attempt < self.settings.refinements  # postures were added, and may be added once more
-            found = search.motion(0 if between else rounds)
-            if found is not None:
-                return UpperPlan(found, path.horizon, search, search.margins)
-            last = effort is not Effort.REFINED or attempt == self.settings.refinements or search.spent
-            if last or not self._refine(search):
-                break
-        assert search is not None
+            search.evidence_log.begin_after(before.evidence_log)
+            found = search.motion(rounds)
+        if found is not None:
+            return UpperPlan(found, path.horizon, search, search.margins)
         evidence_log, goals = search.evidence_log, search.goals
         plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, evidence_log.evidence(), joint=evidence_log.joint)
         return UpperPlan(plan, search.deepest, search)

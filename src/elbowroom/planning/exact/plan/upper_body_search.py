@@ -53,7 +53,6 @@ class Effort(Enum):
     __hash__ = object.__hash__  # as `DofGroup` has it
 
     QUICK = "quick"  # the groups one after the other
-    GLANCE = "glance"  # then all together, at first sight
     JOINT = "joint"  # then all together
     REFINED = "refined"  # then with more postures
 
@@ -104,7 +103,9 @@ class UpperBodySearch:
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
         found, last = self.apart(), self.problem.last
-        if last is not None and (found.failed is not None or jolts(found.keys, last.keys, last.known)):
+        waist_has_way = self._waist is not None and self._waist.reached == self.path.horizon
+        failed = found.failed is not None
+        if last is not None and waist_has_way and (failed or jolts(found.keys, last.keys, last.known)):
             previous = self.with_previous_waist()
             if found.failed is not None or (
                 previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
