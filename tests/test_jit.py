@@ -6,6 +6,8 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 import numba
@@ -108,3 +110,44 @@ def test_who_can_keep_no_kernels_hears_it_once(told_before: bool, warnings: int)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert done.stderr.count("RuntimeWarning: no folder for compiled kernels") == warnings
     assert done.stderr.count("set NUMBA_CACHE_DIR") == warnings
+
+
+def _calls(tree: ast.Module) -> Iterator[tuple[ast.Call, bool]]:
+    """All calls in the functions of a file, and whether it is compiled code that calls."""
+    for function in ast.walk(tree):
+        if isinstance(function, ast.FunctionDef):
+            compiled = any(isinstance(mark, ast.Name) and mark.id in KINDS for mark in function.decorator_list)
+            yield from ((node, compiled) for node in ast.walk(function) if isinstance(node, ast.Call))
+
+
+def _literal(argument: ast.expr, module: object) -> object:
+    """The whole number that an argument is to Numba by itself, a type of its own; None for all others."""
+    try:
+        value = ast.literal_eval(argument)
+    except ValueError:
+        value = getattr(module, argument.id, None) if isinstance(argument, ast.Name) else None
+    return value if type(value) in (int, bool) else None
+
+
+def test_kernels_call_each_other_with_the_same_literals_or_with_none() -> None:
+    """To Numba a literal is a type of its own: a kernel that is called with another one is compiled once more."""
+    seen: dict[object, dict[int, set[object]]] = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        tree = ast.parse(path.read_text("utf-8"))
+        if path.name == "__main__.py":
+            continue
+        module = import_module(".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts)))
+        for call, compiled in _calls(tree):
+            called = getattr(module, call.func.id, None) if isinstance(call.func, ast.Name) else None
+            if any(called is made for made in kernels_made()):
+                for place, argument in enumerate(call.args):
+                    literal = _literal(argument, module) if compiled else None
+                    seen.setdefault(called, {}).setdefault(place, set()).add(literal)
+    assert len(seen) > 100
+    several = {
+        f"{made.py_func.__module__}.{made.py_func.__name__}, argument {place}": found  # type: ignore[attr-defined]
+        for made, places in seen.items()
+        for place, found in places.items()
+        if len(found) > 1
+    }
+    assert not several, several

@@ -61,12 +61,12 @@ def helper(function: Function) -> Function:
 
 
 def plain(number: int) -> int:
-    """A whole number that kernels take like any other.
+    """A whole number, or a truth value, that kernels take like any other.
 
-    To Numba every literal integer is a type of its own, and a kernel that is called with one is compiled once more for
+    To Numba every literal of these is a type of its own, and a kernel that is called with one is compiled once more for
     it. Constants that are handed to kernels are made plain where they are defined.
     """
-    return cast(int, np.int64(number))
+    return cast(int, np.bool_(number) if isinstance(number, bool) else np.int64(number))
 
 
 def kernels_made() -> list[Any]:

@@ -7,7 +7,7 @@ last 16 edges and vertices; what is new is counted on or stored as a delta.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.uint32]
@@ -16,6 +16,7 @@ Queue = NDArray[np.int64]
 _TRIANGLES, _SEQUENCE = 0xE0, 0xD0
 _TABLE, _TAIL = 16, 4  # bytes at the end
 _MASK = 0xFFFFFFFF
+_NEW, _YES = plain(0), plain(True)
 
 
 @exact_kernel
@@ -111,10 +112,10 @@ def _apart(data: Bytes, end: int, code: int, edges: Queue, vertices: Queue, stat
     first, second, third = 15 if code == 0xFF else 0, pair >> 4, pair & 15
     kept_b, kept_c = vertices[(state[2] - second) & 15], vertices[(state[2] - third) & 15]
     # New indices are counted before free ones are read; both orders are the same for each of the two counters.
-    a = _corner(data, end, first, 0, True, state)
+    a = _corner(data, end, first, _NEW, _YES, state)
     b = _corner(data, end, second, kept_b, not in_table, state)
     c = _corner(data, end, third, kept_c, not in_table, state)
-    _keep_vertex(vertices, state, a, True)
+    _keep_vertex(vertices, state, a, _YES)
     _keep_vertex(vertices, state, b, second == 0 or (second == 15 and not in_table))
     _keep_vertex(vertices, state, c, third == 0 or (third == 15 and not in_table))
     _keep_edge(edges, state, b, a)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.ground import PLAIN, RELIEF, STEEPEST, STEP, Ground
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -20,6 +20,7 @@ Bools = NDArray[np.bool_]
 
 RISE = 0.005  # metres: what rises no higher from the plane is the plane
 _CELL = 0.08  # metres
+_X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
@@ -201,10 +202,10 @@ def _part_in(triangle: Floats, corner: tuple[float, float], side: float) -> tupl
         piece[i, 0], piece[i, 2] = triangle[at], triangle[at + 1]
         along, aside = triangle[at] - triangle[0], triangle[at + 1] - triangle[1]
         piece[i, 1] = triangle[2] + triangle[7] * along + triangle[8] * aside
-    count = clipped(piece, 3, 0, corner[0], 1.0, other)
-    count = clipped(other, count, 2, corner[1], 1.0, piece)
-    count = clipped(piece, count, 0, corner[0] + side, -1.0, other)
-    count = clipped(other, count, 2, corner[1] + side, -1.0, piece)
+    count = clipped(piece, _CORNERS, _X, corner[0], 1.0, other)
+    count = clipped(other, count, _Z, corner[1], 1.0, piece)
+    count = clipped(piece, count, _X, corner[0] + side, -1.0, other)
+    count = clipped(other, count, _Z, corner[1] + side, -1.0, piece)
     area, low, high = 0.0, np.inf, -np.inf
     for i in range(count):
         j = (i + 1) % count

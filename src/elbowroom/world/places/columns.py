@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.places.enclosed import enclosed, solid_triangles
 from elbowroom.world.places.place import Place
@@ -18,6 +18,7 @@ Flags = NDArray[np.bool_]
 
 FINEST_CELL = 0.05  # metres
 _MOST_CELLS = 400_000
+_X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
 _LEVEL = 0.85  # of a normal's upright part: what is less level (32 degrees) is no floor
 _STEP = 0.01  # metres between heights that are told apart
 _HEIGHT_BITS = 21  # of a height in steps
@@ -116,16 +117,16 @@ def _fill(triangles: Floats, level: Flags, width: int, depth: int, most: int, ou
     strip, piece, part = np.empty((9, 3)), np.empty((9, 3)), np.empty((9, 3))
     for t in range(len(triangles)):
         triangle = triangles[t]
-        first, last = _range_of(triangle, 3, 0, width)
+        first, last = _range_of(triangle, _CORNERS, _X, width)
         for ix in range(first, last + 1):
-            corners = clipped(triangle, 3, 0, float(ix), 1.0, part)
-            corners = clipped(part, corners, 0, float(ix + 1), -1.0, strip)
+            corners = clipped(triangle, _CORNERS, _X, float(ix), 1.0, part)
+            corners = clipped(part, corners, _X, float(ix + 1), -1.0, strip)
             if corners == 0:
                 continue
-            low_z, high_z = _range_of(strip, corners, 2, depth)
+            low_z, high_z = _range_of(strip, corners, _Z, depth)
             for iz in range(low_z, high_z + 1):
-                left = clipped(strip, corners, 2, float(iz), 1.0, part)
-                left = clipped(part, left, 2, float(iz + 1), -1.0, piece)
+                left = clipped(strip, corners, _Z, float(iz), 1.0, part)
+                left = clipped(part, left, _Z, float(iz + 1), -1.0, piece)
                 if left == 0:
                     continue
                 if count < len(out):

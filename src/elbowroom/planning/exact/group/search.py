@@ -34,6 +34,7 @@ Bools = NDArray[np.bool_]
 _CLOSE_RADIUS = 0.1  # radians: edges so near to one that touches are closed with it
 _FIRST_SLACK = 0.1  # squared radians: how much dearer paths are checked where one touches; doubled when those were
 _BEGIN = plain(0)  # the depth at which the search begins
+_GENTLY = plain(True)  # how it begins
 
 
 class _Question(NamedTuple):
@@ -223,7 +224,7 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
     question, lattice, most, checks = _begun(cache, task, weights, edges)
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
-    first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, weights.rounds, 0, True, False
+    first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, weights.rounds, 0, _GENTLY, False
     keys, tangents = np.empty(task.goals.shape), np.empty(task.goals.shape)
     for rounds in range(weights.rounds):
         reached, count = cheapest_path(lattice, work, first, rounds == 0)

@@ -25,7 +25,7 @@ Floats32 = NDArray[np.float32]
 
 _MOMENTS = 4  # parts of an interval, at whose ends postures are looked at
 _STRIDE = SWEEP // _MOMENTS
-HELD_AT_START, HELD_EARLY, HELD_LATE = 0, 1, 2  # parts of an interval
+HELD_AT_START, HELD_EARLY, HELD_LATE = plain(0), plain(1), plain(2)  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
 _ONE, _BOTH, _FIRST = plain(1), plain(2), plain(0)  # postures; place

@@ -35,7 +35,9 @@ from elbowroom.world.obstacles.rows import around
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_HALVINGS = plain(4)  # of the parts of a key interval
+_LOOKS = plain(SWEEP)  # parts of a key interval
+_HALVINGS = plain(4)  # of these
+_UNPOSED = plain(False)
 _UNKNOWN = -np.inf
 _NONE = plain(0)  # at first
 
@@ -135,7 +137,7 @@ def _proven(
             lengths[i, c] = carrier.sway[i]
             for k in range(MOVES):
                 lengths[i, c] += levers[c, k] * moved[i, k]
-    proof = begun(gaps, lengths, SWEEP, ENOUGH, _HALVINGS)
+    proof = begun(gaps, lengths, _LOOKS, ENOUGH, _HALVINGS)
     parts, found = np.empty(BLOCK, np.int64), np.empty((BLOCK, count), np.float32)
     wanted = due(proof, parts, shares)
     while wanted > 0:
@@ -143,7 +145,7 @@ def _proven(
             shares[n] = (parts[n] + shares[n]) / SWEEP
         _frames_between(scratch, chain, postures.limb.chain.carries, carrier, waist, wanted)
         shown = configurations_at(ends, interval, shares[:wanted])
-        checks += _samples(scratch, postures, shown, False, scratch.places, scratch.turns, obstacles, scratch.found)
+        checks += _samples(scratch, postures, shown, _UNPOSED, scratch.places, scratch.turns, obstacles, scratch.found)
         _gaps_of(scratch.found, found)
         settle(proof, found, wanted)
         wanted = due(proof, parts, shares)
@@ -200,7 +202,7 @@ def limb_sweep(
     postures, on_root, interval, count = limb.postures, limb.postures.limb.chain.carries, carrier.states[0], SWEEP + 1
     for i in range(count):
         scratch.shares[i] = i / SWEEP
-    shown, moved = configurations_at(ends, interval, scratch.shares[:count]), moves_between(ends, interval, SWEEP)
+    shown, moved = configurations_at(ends, interval, scratch.shares[:count]), moves_between(ends, interval, _LOOKS)
     if on_root:
         pose_into(postures.limb, scratch.limb, shown, count, _NONE, scratch.segments)
         _carry(scratch, limb, carrier, moved, ways, at)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
 from elbowroom.world.obstacles.blocks import (
@@ -18,6 +18,8 @@ from elbowroom.world.obstacles.blocks import (
 )
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import shift, unfilled
+
+_BLOCK = plain(BLOCK)  # postures that are posed at once
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -58,8 +60,8 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
     spread_balls(postures.balls, spread)
     return Scratch(
         checks,
-        limb_scratch(limb, BLOCK),
-        limb_scratch(stem, BLOCK),
+        limb_scratch(limb, _BLOCK),
+        limb_scratch(stem, _BLOCK),
         unfilled(obstacles),
         unfilled(obstacles),
         postures.lanes.reshape(postures.lanes.size),

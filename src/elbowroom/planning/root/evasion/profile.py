@@ -6,11 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.root.motion import MotionBounds, limited_step, wrapped
 
 Floats = NDArray[np.float64]
 
+_ASIDE, _TURN = plain(0), plain(1)  # columns of a profile
 _STILL = 1e-9  # lengths and speeds that are divided by are at least this
 _EASY = 1.4  # m/s^2: the slowing down for what comes
 _COMFORT = 2.2  # rad/s: a turn that is faster is walked more slowly
@@ -86,19 +87,19 @@ def follow_profile(
         dx, dz = states[k, 0] - course.x, states[k, 1] - course.z
         ahead, left = dx * sine + dz * cosine, dx * cosine - dz * sine
         place = (ahead - first) / step
-        facing = course.facing + _at(rows, place, 1)
+        facing = course.facing + _at(rows, place, _TURN)
         awry = abs(wrapped(states[k, 2] - facing))
         speed = min(_allowed(rows, step, place, course), course.forward)
         speed *= min(max((_WRY - awry) / (_WRY - _AWRY), 0.0), 1.0)
         along, across = _along(states[k], course.heading)
         gone = place + 0.5 * interval * (along + speed) / step
-        slope = (_at(rows, gone + 0.5, 0) - _at(rows, gone - 0.5, 0)) / step
-        swing = (_at(rows, gone + 0.5, 1) - _at(rows, gone - 0.5, 1)) / step * speed
+        slope = (_at(rows, gone + 0.5, _ASIDE) - _at(rows, gone - 0.5, _ASIDE)) / step
+        swing = (_at(rows, gone + 0.5, _TURN) - _at(rows, gone - 0.5, _TURN)) / step * speed
         aside = speed * slope
-        aside += _EAGER / interval * (_at(rows, gone, 0) - left - 0.5 * interval * (across + aside))
+        aside += _EAGER / interval * (_at(rows, gone, _ASIDE) - left - 0.5 * interval * (across + aside))
         aside = min(max(aside, -course.sideways), course.sideways)
         turned = wrapped(states[k, 2] - course.facing)
-        turn = swing + _EAGER / interval * (_at(rows, gone, 1) - turned - 0.5 * interval * (states[k, 5] + swing))
+        turn = swing + _EAGER / interval * (_at(rows, gone, _TURN) - turned - 0.5 * interval * (states[k, 5] + swing))
         turn = min(max(turn, -bounds.turn_rate), bounds.turn_rate)
         vx, vz = speed * sine + aside * cosine, speed * cosine - aside * sine
         limited_step(states, k, vx, vz, turn, interval, bounds)
