@@ -2,6 +2,7 @@
 
 import math
 from enum import StrEnum
+from functools import cache
 from time import thread_time_ns
 from typing import NamedTuple
 
@@ -34,6 +35,7 @@ class Start(NamedTuple):
     left: tuple[float, float]  # of its middle, as the first sees it
     apart: float
     paces: tuple[float, float]  # forward of their commands; 0 of who stands
+    heading: float = 0.0  # of the corridor, as the first walks
 
 
 class Met(NamedTuple):
@@ -57,30 +59,45 @@ class Met(NamedTuple):
         return self.passed and not self.touched and not self.driven_back
 
 
-def corridor(width: float) -> Scene:
-    """Two walls that are so far apart, along Z."""
-    middle = 0.5 * (width + _THICK)
-    walls = [
-        {"type": "box", "center": [side * middle, 0.5 * _HEIGHT, 3.0], "size": [_THICK, _HEIGHT, _LENGTH]}
-        for side in (-1, 1)
-    ]
+def corridor(width: float, heading: float = 0.0) -> Scene:
+    """Two walls that are so far apart, along a heading."""
+    walls = []
+    for side in (-0.5, 0.5):
+        x, z = placed(heading, side * (width + _THICK), 3.0)
+        size = [_THICK, _HEIGHT, _LENGTH]
+        walls.append({"type": "box", "center": [x, 0.5 * _HEIGHT, z], "size": size, "yaw": heading})
     return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": walls})
 
 
+def placed(heading: float, left: float, ahead: float) -> tuple[float, float]:
+    """Where something is, x and z, that lies so far left and ahead as a heading goes."""
+    sine, cosine = math.sin(heading), math.cos(heading)
+    return left * cosine + ahead * sine, ahead * cosine - left * sine
+
+
 def drawn(width: float, kind: Kind, seed: int) -> Start:
-    """Both somewhere across the corridor, some metres apart, each with a pace of its own."""
+    """Both somewhere across a corridor, some metres apart, each with a pace of its own; it leads anywhere."""
     rng = np.random.default_rng([seed, round(1000 * width), list(Kind).index(kind)])
     room = 0.5 * width - _BODY
     left = float(rng.uniform(-room, room)), float(rng.uniform(-room, room))
     paces = float(rng.uniform(0.6, 1.0)), float(rng.uniform(0.6, 1.0)) * (kind is Kind.WALKS)
-    return Start(width, left, float(rng.uniform(3.0, 6.0)), paces)
+    return Start(width, left, float(rng.uniform(3.0, 6.0)), paces, float(rng.uniform(-math.pi, math.pi)))
+
+
+@cache
+def load_kernels() -> None:
+    """Once in a process: what loading them takes is no frame's time."""
+    meet(Start(1.0, (0.0, 0.0), 1.5, (1.0, 1.0)), 1.5)
 
 
 def meet(start: Start, seconds: float = 15.0) -> Met:
     """Let them walk until they have passed, or for so long."""
-    humanoid, scene = Humanoid.default(), corridor(start.width)
-    one = Controller(humanoid, scene, start=RootState(start.left[0], 0.0, 0.0))
-    two = Controller(humanoid, scene, start=RootState(start.left[1], start.apart, math.pi))
+    heading = start.heading
+    humanoid, scene = Humanoid.default(), corridor(start.width, heading)
+    along = np.array([math.sin(heading), math.cos(heading)])
+    first, second = placed(heading, start.left[0], 0.0), placed(heading, start.left[1], start.apart)
+    one = Controller(humanoid, scene, start=RootState(*first, heading))
+    two = Controller(humanoid, scene, start=RootState(*second, heading + math.pi))
     farthest, back, touched, longest = np.full(2, -np.inf), 0.0, False, 0
     for turn in range(1, round(seconds / _DT) + 1):
         one.others, two.others = (two.prediction(),), (one.prediction(),)
@@ -91,9 +108,9 @@ def meet(start: Start, seconds: float = 15.0) -> Met:
             longest = max(longest, thread_time_ns() - began)
         mine, yours = frames
         touched |= mine.touching or yours.touching
-        come = np.array([mine.root[1], start.apart - yours.root[1]])
+        come = np.array([mine.root[:2] @ along, start.apart - yours.root[:2] @ along])
         farthest = np.maximum(farthest, come)
         back = max(back, float((farthest - come).max()))
-        if mine.root[1] > yours.root[1] + _PAST:
+        if come.sum() > start.apart + _PAST:
             return Met(start, True, touched, turn * _DT, back, longest / 1e6)
     return Met(start, False, touched, seconds, back, longest / 1e6)

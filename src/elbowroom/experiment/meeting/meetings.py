@@ -6,7 +6,7 @@ from statistics import median
 from typing import Any
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.meeting.meeting import Kind, Met, Start, drawn, meet
+from elbowroom.experiment.meeting.meeting import Kind, Met, Start, drawn, load_kernels, meet
 from elbowroom.experiment.opened import Thing
 from elbowroom.experiment.parallel import Processes, Workers
 
@@ -58,6 +58,7 @@ class MeetingTask:
 
     def run(self) -> Met:
         """How it ends."""
+        load_kernels()
         return meet(self.start)
 
 
