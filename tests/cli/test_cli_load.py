@@ -36,7 +36,7 @@ def test_users_come_steer_and_are_counted(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(admission, "MOST", 1)  # the second one is refused again and again
     with closing(Library.open("d")) as library, running(library) as url:
         library.warm.set()
-        found = measure_load(2, 1.0, url)
+        found = measure_load(2, 5.0, url)
     assert (found.sessions, found.served) == (2, 1)
     assert found.frames_per_second > 0.0
     assert found.cpu_percent > 0.0

@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 from elbowroom.cli.main import app
 from table1_records import SHORT_SCENE, results
 
+pytestmark = pytest.mark.xdist_group("table1")  # what they share is made once
+
 RUNNER = CliRunner()
 FILES = ["report.html", "table1.csv", "table1.json"]
 
