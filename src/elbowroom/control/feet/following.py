@@ -15,7 +15,7 @@ from elbowroom.body.gait.living import Body, live
 from elbowroom.body.gait.own_steps import OwnSteps
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
-_ARMS = 2
+_ARMS = plain(2)
 
 
 class ArmsAndLegs(NamedTuple):

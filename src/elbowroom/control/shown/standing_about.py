@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import HEIGHT
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
 from elbowroom.planning.model.levers import Levers, travel
@@ -23,7 +23,8 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 Both = tuple[Floats, Floats]
 
-HALVINGS = 9  # of the time between two frames: the bound on a foot in its stride is many times what it moves
+_ONE = plain(1)  # part of that time at a time
+HALVINGS = plain(9)  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
 _ZERO: Any = np.float32(0.0)
@@ -100,12 +101,12 @@ def proven_between(
         np.empty((1, len(body.radii)), np.float32),
     )
     near, q = np.empty((1, len(first))), np.zeros((1, DOF))
-    proof = begun(gaps, ways, 1, 0.0, HALVINGS)
+    proof = begun(gaps, ways, _ONE, 0.0, HALVINGS)
     while due(proof, parts, shares) > 0:
         near[0] = first + shares[0] * root_way
         q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
         near[0, 0] -= x
         near[0, 1] -= z
         found[0] = gaps_about(body, standing, lifted_capsules(body, q, near), x, z, floors)
-        settle(proof, found, 1)
+        settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)
