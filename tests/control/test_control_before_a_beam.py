@@ -8,8 +8,10 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
+from late_desk import LateDesk
 
 BEYOND = 2.8  # metres
 PATIENCE = 8.0  # seconds
@@ -42,3 +44,19 @@ def test_so_does_one_whose_hand_is_not_still(z: float) -> None:
         assert frame.clearance >= 0.0
         time += 1 / 60
         assert time < 2.0 * PATIENCE, f"still at z {controller.root.z:.3f}"
+
+
+@pytest.mark.parametrize("seed", [1, 15, 35])
+def test_who_has_found_a_way_keeps_to_it_however_late_plans_come(seed: int) -> None:
+    """One slower than asked for was given up each time that the commanded one was tried again, for one that ends."""
+    chance = random.Random(seed)
+    desk = LateDesk(chance.choice([0, 2, 6, 15, 30]))
+    command = Command(run=chance.random() < 0.7, forward=chance.uniform(0.5, 1.0), direction=0.0)
+    scene, begins = Scene.load("beam"), chance.uniform(0.0, 1.0)
+    controller, time = Controller(Humanoid.default(), scene, ahead=Lookahead(desk=desk)), 0.0
+    while not scene.finished(controller.root):
+        desk.next_turn()
+        frame = controller.step(command if time > begins else Command(), 1 / 60)
+        assert frame.clearance >= 0.0
+        time += 1 / 60
+        assert time < 3.0 * PATIENCE, f"still at z {controller.root.z:.3f}"

@@ -98,15 +98,20 @@ class ExactPlanner:
     def _anew(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> FullPlan:
         """A new plan, and what may be known of it later: an answer to who stands, a walk to go on with.
 
-        `left` is what is left of a walk that has no new end at first sight; `alone`: nothing moves or is in a hurry.
+        `left` is what is left of a walk that has no new end at first sight: it is given up only for what leads on.
+        `alone`: nothing moves or is in a hurry.
         """
         memory = self.memory
         hurry = query.hurry or (not is_still(query.root.as_array()[3:6]) and memory.command != query.command)
         memory.command = query.command
+        before = root_planner.memory
         whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
+        if left is not None and not whole.leads_on and self._is_worth_keeping(left, query):
+            root_planner.memory = before
+            return left
         known = alone and not hurry and stands(whole, query)
         memory.standing = StandingPlan(query, whole, memory.attempts.thorough) if known else None
-        lasts = _is_commanded(whole, root_planner) or _is_evasion(whole)
+        lasts = _is_commanded(whole, root_planner) or whole.leads_on
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole
 
@@ -117,16 +122,21 @@ class ExactPlanner:
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
 
-        One that evades something is kept for a while, and then planned anew.
+        One that evades something is kept for a while, and then planned anew; a slower one is planned anew at once.
         """
         horizon, known = self._horizon(query), left.root.path.horizon
         if not _is_commanded(left, root_planner):
-            return left if known >= horizon - self._spare(query) else None
+            kept = left.root.kind is RootPlanKind.EVASION and known >= horizon - self._spare(query)
+            return left if kept else None
         if known >= horizon:
             return left
         whole = self._with_new_end(left, root_planner, query)
         self.memory.ongoing = None if whole is None else OngoingPlan(query, whole)
         return whole
+
+    def _is_worth_keeping(self, left: FullPlan, query: MotionQuery) -> bool:
+        """Whether what is left of a walk leads on, and as far as a plan in a hurry would."""
+        return left.leads_on and left.root.path.horizon >= round(self.settings.hurried_ahead / query.interval)
 
     def _with_new_end(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
@@ -146,8 +156,3 @@ class ExactPlanner:
 def _is_commanded(whole: FullPlan, root_planner: RootPlanner) -> bool:
     """Whether a motion follows the path as commanded, and the upper body has a way along it."""
     return whole.margins is not None and whole.root.lost < root_planner.settings.untroubled
-
-
-def _is_evasion(whole: FullPlan) -> bool:
-    """Whether a motion leads aside of the path as commanded, or with the body turned, on a way that was found."""
-    return whole.margins is not None and whole.root.kind is RootPlanKind.EVASION

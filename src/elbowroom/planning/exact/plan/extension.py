@@ -64,7 +64,7 @@ def extended(previous: Settled, rest: UpperPlan, root: RootPlan) -> FullPlan:
     velocities = np.concatenate([previous.velocities[:at], plan.velocities])
     goals = np.concatenate([previous.goals[:at], plan.goals])
     local = LocalPlan(plan.status, keys, goals, plan.evidence, plan.joint, plan.blockade, velocities)
-    return FullPlan(root, local, previous.margins.then(at, rest.margins))
+    return FullPlan(root, local, previous.margins.then(at, rest.margins), leads_on=True)
 
 
 def prolonged(

@@ -27,6 +27,7 @@ class FullPlan(NamedTuple):
     root: RootPlan
     local: LocalPlan
     margins: RequiredMargins | None = None  # that it was found with; None: it was not found as a whole
+    leads_on: bool = False  # whether it leads along a whole root path, and is not braked before its end
 
 
 def previous_of(whole: FullPlan, path: RootPath) -> PreviousPlan | None:
@@ -65,11 +66,11 @@ def part(
 
 def later(whole: FullPlan, at: int) -> FullPlan:
     """What is left of a motion from its key time `at` on, for which nothing was searched."""
-    root, local, margins = whole
+    root, local, margins, _ = whole
     path = RootPath(root.path.time_of(at), root.path.interval, root.path.states[at:])
     rest = part(local, slice(at, None), _free_of_charge(local))
     margins = None if margins is None else margins.since(at, path.horizon)
-    return FullPlan(root.going_on(path), rest, margins)
+    return FullPlan(root.going_on(path), rest, margins, whole.leads_on)
 
 
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:

@@ -84,7 +84,7 @@ class NewPlan:
                 if self._stands and not self.hurry:
                     upper = self._upper_body(root.path, Effort.REFINED)
             if upper.reached == self.horizon:
-                return FullPlan(root, upper.plan, upper.margins)
+                return FullPlan(root, upper.plan, upper.margins, leads_on=True)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
         return None
@@ -113,7 +113,7 @@ class NewPlan:
                 return None
             upper = self._upper_body(root.path, Effort.QUICK)
             if upper.reached == self.horizon:
-                return FullPlan(root, upper.plan, upper.margins)
+                return FullPlan(root, upper.plan, upper.margins, leads_on=True)
             reached = min(upper.reached, length)
             so_far = math.dist(root.path.states[reached, :2], here)
             if so_far > away + _STANDING:
@@ -156,7 +156,7 @@ class NewPlan:
         if upper.reached < root.path.horizon:
             return None
         self.root_planner.follow(root)
-        return FullPlan(root, upper.plan, upper.margins)
+        return FullPlan(root, upper.plan, upper.margins, leads_on=True)
 
     def _stop(self, tried: list[_Tried]) -> FullPlan:
         """Walk on while possible, then brake, and say why; or do what the previous plan had in mind.
