@@ -9,7 +9,7 @@ from playwright.sync_api import TimeoutError as StillNotError
 LOAD_SECONDS = 60.0
 PATIENCE = 60.0  # seconds: much more than it takes, as other programs may keep both processors busy
 READ = 150.0  # seconds, likewise: files are read by processes that give way to all others, and end after 120 s
-REST = 12  # frames over which what is shown may not change, to be at rest
+REST = 3  # frames over which what is shown may not change, to be at rest
 # A few frames later: the panels that slide (what turns for ever is not waited for), the camera and the avatar.
 _SHOWN = """
 async (frames) => {
@@ -30,6 +30,29 @@ _DROP = """
     document.body.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: transfer }));
   }
 }
+"""
+# Without a graphics card pictures cost more than all the rest of a test: eight a second will do.
+_SPARING = """
+(() => {
+  const ask = window.requestAnimationFrame.bind(window), drop = window.cancelAnimationFrame.bind(window);
+  const asked = new Map();
+  let count = 0, last = -Infinity;
+  window.requestAnimationFrame = (draw) => {
+    const id = (count += 1);
+    const turn = (time) => {
+      if (time !== last && time - last < 125) return asked.set(id, ask(turn));
+      last = time;
+      asked.delete(id);
+      draw(time);
+    };
+    asked.set(id, ask(turn));
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => {
+    drop(asked.get(id));
+    asked.delete(id);
+  };
+})();
 """
 _NO_SERVER = ("WebSocket", "net::ERR_CONNECTION")
 
@@ -110,12 +133,17 @@ def _near(a: list[float], b: list[float]) -> bool:
 def open_live_page(
     browser: Any, url: str, query: str = "", viewport: tuple[int, int] = (1000, 600), **options: Any
 ) -> LivePage:
-    """A page in a context of its own, ready: the avatar stands in the picture and poses arrive."""
-    script = options.pop("script", None)
+    """A page in a context of its own, ready: the avatar stands in the picture and poses arrive.
+
+    `sparing`: it draws few pictures; not where every one of them is a step of what is tested.
+    """
+    script, sparing = options.pop("script", None), options.pop("sparing", True)
     options.setdefault("service_workers", "block")  # each page is new here: nothing need be kept
     context = browser.new_context(viewport={"width": viewport[0], "height": viewport[1]}, **options)
     page = context.new_page()
     page.set_default_timeout(1000.0 * PATIENCE)
+    if sparing:
+        page.add_init_script(_SPARING)
     if script:
         page.add_init_script(script)
     live = LivePage(page, context)

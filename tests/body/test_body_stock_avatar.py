@@ -199,6 +199,7 @@ def test_expressions_and_gaze_point_at_what_is_there() -> None:
     assert shown == {i for i, node in enumerate(nodes) if node.mesh is not None}
 
 
+@pytest.mark.long
 def test_the_script_writes_the_same_bytes(tmp_path: Path) -> None:
     out = tmp_path / "stock.vrm"
     environment = {"PYTHONPATH": f"{ROOT / 'tools'}:{ROOT / 'src'}"}

@@ -14,7 +14,7 @@ from live_server import LiveServer
 
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # SwiftShader draws WebGL without a graphics card. The frame limit stays: without it frame pacing is erratic.
-FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader")
+FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-gpu-compositing")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

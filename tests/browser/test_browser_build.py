@@ -30,6 +30,7 @@ def _saved(live: LivePage) -> Scene:
     return Scene.from_dict(json.loads(download.value.path().read_text("utf-8")))
 
 
+@pytest.mark.long
 def test_a_scene_is_built_by_keys_alone_checked_and_gone_through_by_its_tour(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(1280, 720))
     _build(live)

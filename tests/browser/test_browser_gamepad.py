@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+import pytest
+
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
@@ -42,7 +44,7 @@ def go_down_to(live: LivePage, element: str) -> None:
 
 
 def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
-    live = open_page("scene=a", viewport=(640, 480), script=PAD)
+    live = open_page("scene=a", viewport=(640, 480), script=PAD, sparing=False)
     live.wait("s.scene === 'a'")
     press(live, START)
     live.page.wait_for_selector("#menu:not(.closed)")
@@ -61,8 +63,9 @@ def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
     live.page.wait_for_selector("#menu.closed", state="attached")
 
 
+@pytest.mark.long
 def test_finish_card_and_timeline_are_worked_by_the_pad(open_page: Open) -> None:
-    live = open_page("scene=doorway&speed=1.6", viewport=(1000, 600), script=PAD)
+    live = open_page("scene=doorway&speed=1.6", viewport=(1000, 600), script=PAD, sparing=False)
     live.wait("s.scene === 'doorway'")
     live.page.evaluate("window.pad.axes = [0, -1, 0, 0]")
     live.wait("s.crossed === 1")
@@ -89,8 +92,9 @@ def test_finish_card_and_timeline_are_worked_by_the_pad(open_page: Open) -> None
     live.wait("s.root.z < 0.2")
 
 
+@pytest.mark.long
 def test_a_scene_is_built_by_the_pad(open_page: Open) -> None:
-    live = open_page("scene=empty", viewport=(900, 600), script=PAD)
+    live = open_page("scene=empty", viewport=(900, 600), script=PAD, sparing=False)
     live.wait("s.scene === 'empty'")
     before = live.state()["camera"]
     press(live, START)
@@ -123,7 +127,7 @@ def test_a_scene_is_built_by_the_pad(open_page: Open) -> None:
 
 
 def test_a_thing_is_pushed_by_the_pad(open_page: Open) -> None:
-    live = open_page("scene=d", viewport=(640, 480), script=PAD)
+    live = open_page("scene=d", viewport=(640, 480), script=PAD, sparing=False)
     live.wait("s.scene === 'd'")
     press(live, START)
     live.page.wait_for_selector("#menu:not(.closed)")

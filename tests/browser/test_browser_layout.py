@@ -95,6 +95,6 @@ def test_a_page_that_stands_still_keeps_its_line(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.page.evaluate("() => { const end = performance.now() + 9000; while (performance.now() < end); }")
     count = live.state()["framesReceived"]
-    live.wait(f"s.framesReceived > {count + 60}")
+    live.wait(f"s.framesReceived > {count + 4}")  # of who stands still frames are few
     assert live.state()["timesOpened"] == 1
     assert live.page.is_hidden("#veil")

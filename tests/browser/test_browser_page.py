@@ -16,7 +16,9 @@ Open = Callable[..., LivePage]
 STOCK = Path(elbowroom.__file__).parent / "body" / "data" / "stock.vrm"
 FILES = [pytest.param(STOCK, id="stock")]
 if SHARED is not None:
-    FILES.append(pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt"))
+    FILES.append(
+        pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt", marks=pytest.mark.long)
+    )
     FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired", marks=pytest.mark.long))
     FILES.append(pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D"))
     FILES.append(

@@ -10,6 +10,7 @@ from make_pictures import Scene, Still, View, moving, still
 VIEW = View("scene=a&ui=0", (240, 135), (200, 10), -100)
 
 
+@pytest.mark.long
 def test_a_picture_that_stands(chromium: Any, live_server: LiveServer) -> None:
     picture = still(chromium, live_server.url, Still("small", VIEW, 0.3))
     assert picture.size == VIEW.size

@@ -35,11 +35,11 @@ def test_a_thing_is_pushed_into_the_way_with_the_mouse_and_the_avatar_evades_it(
     live.wait("s.root.z > 0.3")
     live.page.mouse.move(x + 120, y, steps=12)
     pushed(live, SIDEBOARD, f"c[0] < {STARTS_AT - 0.25}")
-    for _ in range(60):
+    for _ in range(20):
         state = live.wait("true")
         assert not state["touching"]
         assert state["clearance"] > 0.0
-        live.page.wait_for_timeout(40)
+        live.page.wait_for_timeout(60)
     live.page.mouse.up()
     live.page.keyboard.up("w")
     state = live.wait("s.held === null")

@@ -39,7 +39,7 @@ def distance_to_boxes(boxes: list[dict[str, Any]], point: list[float]) -> float:
 
 def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer) -> None:
     boxes: Any = live_server.get_json("/api/scenes/a")["obstacles"]
-    live = open_page("scene=a")
+    live = open_page("scene=a&speed=1.6")
     live.wait("s.scene === 'a'")
     start = live.state()["root"]
     keyboard = live.page.keyboard
@@ -149,7 +149,7 @@ def test_arrow_keys_turn_towards_the_side_of_the_picture(open_page: Open) -> Non
 
 
 def test_assist_off_goes_through_things(open_page: Open) -> None:
-    live = open_page("scene=d")
+    live = open_page("scene=d&speed=0.4")  # slowly: it is within each thing for a while
     live.page.click("#assist")
     live.wait("s.settings.assist === false")
     live.page.keyboard.press("Escape")

@@ -84,7 +84,7 @@ def test_settings_say_how_many_runs_there_are_and_refuse_nonsense() -> None:
 def test_runs_are_tasks_in_the_order_of_the_crossings() -> None:
     pytest.importorskip("ompl", reason="OMPL is not installed")
     told: list[int] = []
-    report = run(PlannersSettings(("b",), (1,), trials=1, limit=8.0), told.append, Processes(2))
+    report = run(PlannersSettings(("b",), (1,), trials=1, limit=3.0), told.append, Processes(2))
     assert [(where, planner) for where, planner, _ in report.cells()] == [
         (where, planner) for where in ("scene b", "level 1") for planner in (*PLANNERS, "rrt-connect")
     ]

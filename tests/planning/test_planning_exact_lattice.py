@@ -88,7 +88,7 @@ def every_way(lattice: Lattice) -> tuple[int, float]:
     return 0, 0.0
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=20)
 @given(st.integers(0, 10_000))
 def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
     lattice = random_lattice(seed)
@@ -120,7 +120,7 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
     assert work.costs[anew].min() == fresh.costs[anew].min()
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=20)
 @given(st.integers(0, 10_000))
 def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
     lattice = random_lattice(seed, size=70, extras=EXTRA, horizon=6)

@@ -36,7 +36,9 @@ def test_play_takes_the_next_port_serves_and_ends_with_ctrl_c(tmp_path: Path) ->
     assert "Stopped." in said
 
 
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 0), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("sent", "code"), [(signal.SIGINT, 0), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.long)]
+)
 def test_a_signal_ends_the_server_whatever_its_threads_do(sent: signal.Signals, code: int) -> None:
     """A thread that never ends, and one that is never done with its work."""
     program = """
@@ -104,6 +106,7 @@ def test_the_browser_is_opened_only_where_there_is_a_display(monkeypatch: pytest
     assert play_module._has_display()
 
 
+@pytest.mark.long
 def test_doctor_measures_a_live_session() -> None:
     result = subprocess.run(
         [*COMMAND, "doctor", "--session", "--seconds", "2", "--json"], check=False, capture_output=True, text=True

@@ -92,7 +92,7 @@ def test_hard_shapes(name: str) -> None:
     shape = HARD[name]
     obstacles = Obstacles((shape,) * 4, np.zeros((4, 3)), quaternion.normalize(rng.normal(size=(4, 4))), ("thing",) * 4)
     _, surface = closest_points(np.tile(rng.normal(size=3) * 30.0, 2), obstacles.standing)
-    segments = axes(rng, 200, surface[0])
+    segments = axes(rng, 100, surface[0])
     segments[3:, ::2] = segments[:3, ::2] + 0.1 * (segments[3:, ::2] - segments[:3, ::2])
     segments = segments.astype(np.float32).astype(np.float64)
     ours = pairwise_clearance(segments[None], [0.0], obstacles.standing)[0]
@@ -102,7 +102,7 @@ def test_hard_shapes(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("gap", [1e-3, 1e-4, 2e-5, 1.1e-5])
+@pytest.mark.parametrize("gap", [1e-3, 1.1e-5])
 def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None:
     """Obstacles moved along the line between the nearest points, until a wanted gap, or overlap, is left."""
     rng = np.random.default_rng(11)

@@ -35,15 +35,15 @@ MESHES = {
 @pytest.mark.parametrize("far", [0.0, 5000.0])
 def test_what_touches_is_what_the_clearance_kernel_says(name: str, far: float) -> None:
     mesh, rng, radius = MESHES[name], np.random.default_rng(4), 0.06
-    begins = rng.uniform(mesh.middle - mesh.half - 0.6, mesh.middle + mesh.half + 0.6, (3000, 3)).T
-    steps = rng.uniform(-0.4, 0.4, (3, 3000)) * rng.choice([0.0, 1.0, 3.0], 3000)
+    begins = rng.uniform(mesh.middle - mesh.half - 0.6, mesh.middle + mesh.half + 0.6, (1000, 3)).T
+    steps = rng.uniform(-0.4, 0.4, (3, 1000)) * rng.choice([0.0, 1.0, 3.0], 1000)
     segments = np.concatenate([begins, begins + steps])
     near = rows_of([mesh], np.zeros((1, 3)), UPRIGHT)
     exact = clearance(segments[None], [radius], near)
     field = Touching(Mesh(mesh.vertices + far, mesh.faces))
     found = field.touches((segments + far)[None], [radius])[0]
     sure = np.abs(exact) > CLOSE
-    assert 10 < found.sum() < 2990
+    assert 5 < found.sum() < 995
     np.testing.assert_array_equal(found[sure], exact[sure] < 0.0)
     seen = (segments - np.tile(mesh.middle, 2)[:, None])[None].astype(np.float32)
     alone = field.touches_a_triangle(seen, np.array([radius], np.float32))[0]
