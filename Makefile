@@ -30,21 +30,25 @@ $(VENV)/made:
 	@$(BIN)/python -m pip install --quiet --upgrade pip
 	@touch $@
 
-$(VENV)/installed: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
-	@echo "==> Installing Elbowroom and building its page, then compiling its kernels (two minutes the first time)"
+$(VENV)/library: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
+	@echo "==> Installing Elbowroom and building its page"
 	@$(BIN)/python -m pip install --editable .
 	@$(BIN)/python -m compileall -q src
+	@touch $@
+
+$(VENV)/installed: $(VENV)/library
+	@echo "==> Compiling its kernels (two minutes the first time)"
 	@$(BIN)/elbowroom compile
 	@touch $@
 
-$(VENV)/developer: $(VENV)/installed
+$(VENV)/developer: $(VENV)/library
 	@echo "==> Installing the tools for tests"
 	@$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
 
-# What keeps one processor busy, or waits for a registry, goes side by side; tests that use both come after it.
-test: $(VENV)/developer
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target types lint web-test browser-tools
+# What keeps processors busy, or waits for a registry, goes side by side; tests that use all of both come after it.
+test: $(VENV)/library
+	@$(MAKE) --no-print-directory --jobs 3 --output-sync=target $(VENV)/installed types lint web-test browser-tools
 	@$(MAKE) --no-print-directory --jobs 1 unit browser
 	@echo "==> All tests passed"
 
@@ -57,15 +61,15 @@ types: $(VENV)/developer
 	@echo "==> Types"
 	@$(BIN)/mypy
 
-unit: $(VENV)/developer
+unit: $(VENV)/installed $(VENV)/developer
 	@echo "==> Tests"
-	@$(BIN)/python -m pytest -m "not browser and not long" -n 2 --dist loadgroup $(ARGS)
+	@$(BIN)/python -m pytest -m "not browser and not long" -n 2 --dist loadfile $(ARGS)
 
-test-long: $(VENV)/developer
+test-long: $(VENV)/installed $(VENV)/developer
 	@echo "==> Long walks"
-	@$(BIN)/python -m pytest -m long -n 2 $(ARGS)
+	@$(BIN)/python -m pytest -m long -n 2 --dist loadfile $(ARGS)
 
-fuzz: $(VENV)/developer
+fuzz: $(VENV)/installed $(VENV)/developer
 	@echo "==> Damaged files for every reader, each reader in a bounded process of its own"
 	@$(BIN)/python tools/fuzz_readers.py $(ARGS)
 
@@ -78,15 +82,15 @@ browser-tools: $(VENV)/developer
 	@sh tools/install_browser.sh
 	@sh tools/install_judges.sh $(BIN)/python
 
-browser: browser-tools
+browser: browser-tools $(VENV)/installed
 	@echo "==> Tests in a real browser"
-	@$(BIN)/python -m pytest -m "browser and not long" -n 2 --dist loadfile $(ARGS)
+	@$(BIN)/python -m pytest -m "browser and not long" -n 2 --dist worksteal $(ARGS)
 
 docs: $(VENV)/developer
 	@echo "==> Pages in site/index.html"
 	@$(BIN)/python -m mkdocs build --strict --quiet
 
-pictures: $(VENV)/developer
+pictures: $(VENV)/installed $(VENV)/developer
 	@echo "==> Pictures of README and docs (some minutes)"
 	@sh tools/install_browser.sh
 	@$(BIN)/python tools/make_pictures.py
@@ -99,7 +103,7 @@ pictures: $(VENV)/developer
 	@if test -n "$(HOUSE)"; then $(BIN)/elbowroom inspect --quiet --drop 'IfcDoor_*' --plan docs/images/floors.png $(HOUSE); \
 	else echo "floors.png stays as it is: name its house, make pictures HOUSE=AC14-FZK-Haus.glb"; fi
 
-strangers: browser-tools
+strangers: browser-tools $(VENV)/installed
 	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
 	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
 	@$(BIN)/python tools/strangers $(ARGS)

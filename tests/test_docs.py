@@ -13,8 +13,6 @@ import pytest
 import elbowroom
 from field_comments import FieldComments
 
-pytestmark = pytest.mark.xdist_group("docs")  # what they share is made once
-
 ROOT = Path(__file__).parents[1]
 PUBLIC = sorted(elbowroom.public_names())
 SHOWN = re.findall(r"^::: (\S+)$", (ROOT / "docs" / "reference.md").read_text("utf-8"), flags=re.MULTILINE)

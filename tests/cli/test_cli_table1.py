@@ -13,8 +13,6 @@ from typer.testing import CliRunner
 from elbowroom.cli.main import app
 from table1_records import SHORT_SCENE, results
 
-pytestmark = pytest.mark.xdist_group("table1")  # what they share is made once
-
 RUNNER = CliRunner()
 FILES = ["report.html", "table1.csv", "table1.json"]
 
@@ -64,6 +62,7 @@ def test_its_json_says_all_it_shows_and_the_file_has_every_trial(done: tuple[Pat
     assert {"date", "machine", "command", "identity", "planner_settings", "canned_walk"} <= kept.keys()
 
 
+@pytest.mark.long
 def test_the_same_call_again_runs_nothing_and_more_seeds_run_the_rest(
     done: tuple[Path, dict[str, object]], scene: Path
 ) -> None:

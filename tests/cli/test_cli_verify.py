@@ -14,8 +14,6 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.recordings.recording import RecordingHeader
 from judged_bodies import T_POSE, gliding, scene_with, upright, write_recording
 
-pytestmark = pytest.mark.xdist_group("verify")  # what they share is made once
-
 RUNNER = CliRunner()
 WALL = scene_with(upright(((0.0, 1.0, 1.0), (2.0, 2.0, 0.2))))
 

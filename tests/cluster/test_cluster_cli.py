@@ -9,8 +9,6 @@ pytest.importorskip("ray", reason="needs Ray: pip install 'elbowroom[cluster]'")
 
 from elbowroom.cli.main import app
 
-pytestmark = pytest.mark.xdist_group("cluster")
-
 
 @pytest.mark.parametrize(
     ("arguments", "words"),

@@ -30,8 +30,6 @@ from live_session import LONG, Client, client_at  # noqa: E402
 NODE: dict[str, Any] = {"num_cpus": 1, "object_store_memory": 100 * 2**20}
 KEY = "9" * 32
 
-pytestmark = pytest.mark.xdist_group("cluster")
-
 
 def test_the_keeper_keeps_no_more_than_it_may() -> None:
     now = 0.0

@@ -64,7 +64,7 @@ def judged_clearance(frame: Frame, scene: Scene) -> float:
 
 
 @pytest.mark.parametrize("name", STOCK)
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_no_shown_pose_touches_anything(name: str, seed: int) -> None:
     scene = Scene.load(name)
     controller = Controller(HUMANOID, scene, seed=seed)

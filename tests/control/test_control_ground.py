@@ -45,11 +45,8 @@ PLACES: dict[str, list[dict[str, Any]]] = {
     "a long ramp of 18.6 degrees": ramp(18.6, 4.0),
     "a stair of 17 by 28 cm": stair(0.17, 0.28, 4),
 }
-LONG = "a sill of 5 cm", "a sill of 10 cm", "a long ramp of 18.6 degrees"  # the others are like these
-NAMES = [  # each is walked once, on one of the processors
-    pytest.param(name, marks=[pytest.mark.xdist_group(name), *([pytest.mark.long] if name in LONG else [])])
-    for name in PLACES
-]
+LONG = "a sill of 1 cm", "a sill of 5 cm", "a sill of 10 cm", "a long ramp of 18.6 degrees"  # the others are like these
+NAMES = [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in PLACES]
 LONGEST = {
     "a ramp of 15 degrees": 12.0,
     "a long ramp of 18.6 degrees": 14.0,

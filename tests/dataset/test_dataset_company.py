@@ -24,8 +24,6 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.parallel import Processes
 from place_builder import Boxes, write_place
 
-pytestmark = pytest.mark.xdist_group("company")  # what they share is made once
-
 SPEC = DatasetSpec(walks=1, shard=1, seconds=1.2, places=("gauntlet:1",), company=(2,))
 CLOSET: Boxes = {
     "Floor": ((0, -0.1, 0), (2.6, 0.2, 2.6)),

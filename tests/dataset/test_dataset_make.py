@@ -36,8 +36,6 @@ from elbowroom.world.scene import Scene
 from made_walk import FPS, made_walk
 from place_builder import Boxes, write_place
 
-pytestmark = pytest.mark.xdist_group("dataset")  # what they share is made once
-
 SPEC = DatasetSpec(
     walks=5, shard=2, seconds=2.0, places=("gauntlet:2", "doorway", "traffic"), steering=("straight", "key flips")
 )

@@ -81,6 +81,7 @@ def test_settings_say_how_many_runs_there_are_and_refuse_nonsense() -> None:
         PlannersSettings(trials=0)
 
 
+@pytest.mark.long
 def test_runs_are_tasks_in_the_order_of_the_crossings() -> None:
     pytest.importorskip("ompl", reason="OMPL is not installed")
     told: list[int] = []

@@ -18,7 +18,7 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance
 from gauntlet_courses import SAMPLE, course, stock
 
-JUDGED = [(level, seed) for level, seed in SAMPLE if seed < 2]
+JUDGED = [(level, seed) for level, seed in SAMPLE if seed < 1]
 
 
 @pytest.mark.parametrize(("level", "seed"), JUDGED)

@@ -20,8 +20,6 @@ from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
 from place_builder import write_place
 
-pytestmark = pytest.mark.xdist_group("tour")  # what they share is made once
-
 
 @pytest.fixture(scope="module")
 def humanoid() -> Humanoid:
