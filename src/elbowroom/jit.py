@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, overload
 
 import numba
 import numpy as np
@@ -58,6 +58,14 @@ def exact_kernel(function: Function) -> Function:
 def helper(function: Function) -> Function:
     """Compile a helper that is inlined into the kernels of its own file."""
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
+
+
+@overload
+def plain(number: bool) -> bool: ...
+
+
+@overload
+def plain(number: int) -> int: ...
 
 
 def plain(number: int) -> int:
