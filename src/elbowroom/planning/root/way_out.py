@@ -9,7 +9,7 @@ looked at is bounded; who finds nothing stands.
 import heapq
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -45,8 +45,9 @@ class WayOutSettings:
     roomy: float = 0.12  # clearance of the legs beyond which a place is as good as any
     crowded: float = 6.0  # seconds that each metre less counts for
     gain: float = 0.15  # metres by which the path from a place must lead beyond where the avatar stands
-    most: int = 18  # places that are looked at
-    grids: int = 5  # of them, those from which an evasion is sought
+    most: int = 60  # places that are looked at; many are none
+    free: int = 18  # of them, those that free steps lead to
+    grids: int = 5  # roomy ones of these, from which an evasion is sought
     same: tuple[float, float] = (0.02, 0.2)  # metres and radians within which places are one
 
 
@@ -80,6 +81,7 @@ class _Place(NamedTuple):
     cost: float  # seconds
     number: int
     states: Floats  # (m+1, 7) of the steps
+    roomy: bool = False  # whether legs are as far from everything as is liked
 
     @property
     def end(self) -> RootState:
@@ -99,9 +101,11 @@ class WayOutFinder:
         With each the whole path over the steps and on, and how many key intervals the steps take.
         """
         beyond = line.coordinates(asked.start.x, asked.start.z)[0] + self.settings.gain
-        for number, place in enumerate(self._places(asked)):
-            at = asked._replace(start=place.end)
-            for plan in self._onward(at, line, evading=number < self.settings.grids):
+        grids = self.settings.grids
+        for place in islice(self._places(asked), self.settings.free):
+            at, evading = asked._replace(start=place.end), place.roomy and grids > 0
+            grids -= evading
+            for plan in self._onward(at, line, evading=evading):
                 x, z = plan.path.states[-1, :2].tolist()
                 if plan.kind is not RootPlanKind.STOPPED and line.coordinates(x, z)[0] > beyond:
                     yield _joined(asked, place, plan)
@@ -134,7 +138,7 @@ class WayOutFinder:
         walked = asked.interval * (len(place.states) - 1 + s.length)
         for number, step, room in zip(numbers, steps, rooms.tolist(), strict=False):
             cost = walked + s.crowded * max(s.roomy - room, 0.0)
-            yield _Place(cost, number, np.vstack([place.states, step[1:]]))
+            yield _Place(cost, number, np.vstack([place.states, step[1:]]), room >= s.roomy)
 
     def _name(self, state: Floats) -> tuple[int, ...]:
         near, turned = self.settings.same
