@@ -37,7 +37,7 @@ $(VENV)/library: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
 	@touch $@
 
 $(VENV)/installed: $(VENV)/library
-	@echo "==> Compiling its kernels (two minutes the first time)"
+	@echo "==> Compiling its kernels (some three minutes the first time)"
 	@$(BIN)/elbowroom compile
 	@touch $@
 

@@ -15,7 +15,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.planning.command import changed, trembles
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.extension import prolonged
-from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, stands
+from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, first_part, kept_after, stands
 from elbowroom.planning.exact.plan.new_plan import NewPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
 from elbowroom.planning.exact.plan.plan_memory import PlanMemory
@@ -107,8 +107,8 @@ class ExactPlanner:
         before = root_planner.memory
         whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
         if left is not None and not whole.leads_on and self._is_worth_keeping(left, query):
-            root_planner.memory = before
-            return left
+            root_planner.memory, memory.standing = before, None
+            return kept_after(left, whole)
         known = alone and not hurry and stands(whole, query)
         memory.standing = StandingPlan(query, whole, memory.attempts.thorough) if known else None
         lasts = _is_commanded(whole, root_planner) or whole.leads_on

@@ -73,6 +73,13 @@ def later(whole: FullPlan, at: int) -> FullPlan:
     return FullPlan(root.going_on(path), rest, margins, whole.leads_on)
 
 
+def kept_after(kept: FullPlan, tried: FullPlan) -> FullPlan:
+    """A motion that is kept after another was tried in its place: it costs what was tried."""
+    root = kept.root._replace(checks=tried.root.checks, nanoseconds=tried.root.nanoseconds)
+    local = kept.local._replace(evidence=tried.local.evidence, joint=tried.local.joint)
+    return kept._replace(root=root, local=local)
+
+
 def _free_of_charge(local: LocalPlan) -> tuple[GroupEvidence, ...]:
     return tuple(GroupEvidence(row.group, row.status, 0, 0, 0, 0) for row in local.evidence)
 
