@@ -136,7 +136,7 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(stiff: 
     upper = natural_walk()(RootPath(0.0, T, np.zeros((2, 7))))[0]
     query = MotionQuery(0.0, RootState(), upper, np.zeros(LOCAL), Command(forward=1.0), 5, T)
     checks = []
-    for _ in range(80):  # two ways out, a few steps long, are tried
+    for _ in range(110):  # two ways out, some steps long, are tried
         motion = planner.plan_motion(roots, query)
         local = motion.local
         assert local.velocities is not None
