@@ -34,7 +34,8 @@ def soaked(
         Soak(
             minutes=minutes, ran=minutes if ran is None else ran,
             sessions=900, courses=90, uploads=80, misdeeds=400, failures=failures or {},
-            own_first=160.0, own_last=161.0, own_most=240.0, slope=slope, slope_budget=10.0, long_enough=minutes > 15.0,
+            own_first=160.0, own_last=161.0, own_most=240.0, kernels_first=300, kernels_last=310,
+            slope=slope, slope_budget=10.0, long_enough=minutes > 15.0,
             on_time_percent=on_time, on_time_budget_percent=99.0, late_budget_ms=25.0,
             late_ms_p99=31.0, late_ms_typical=12.0, frames_per_second=60.0,
             cpu_percent=40.0, clients_cpu_percent=6.0,
@@ -70,7 +71,7 @@ def test_an_interrupt_ends_the_clients_time_and_what_was_read_is_summed_up(end: 
         cut()
     assert yard.over()
     yard.failed(OSError("the server has gone"))  # with the same interrupt: no fault of the server's
-    readings = [_Reading(60.0 * minute, 160.0, 3600.0 * minute, 0.0, 24.0 * minute) for minute in range(21)]
+    readings = [_Reading(60.0 * minute, 160.0, 3600.0 * minute, 0.0, 24.0 * minute, 300) for minute in range(21)]
     told = summary(yard, readings, 120.0, (1200.0, 60.0))
     assert (told.ran, told.failures, told.long_enough) == (20.0, {}, True)
     assert told.cpu_percent == pytest.approx(40.0)

@@ -15,9 +15,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.company import NoRoomError
+from elbowroom.dataset.draw import draw
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.spec import DatasetSpec
-from elbowroom.dataset.walk import company_on, controller_of, draw, setting_of
+from elbowroom.dataset.walk import company_on, controller_of, setting_of
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.apart import Walker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion

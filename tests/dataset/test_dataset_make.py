@@ -25,11 +25,12 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.cli.main import app
 from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
+from elbowroom.dataset.draw import draw
 from elbowroom.dataset.figures import Figures
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.manifest import Manifest
 from elbowroom.dataset.spec import DatasetSpec
-from elbowroom.dataset.walk import WalkTask, draw
+from elbowroom.dataset.walk import WalkTask
 from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import Processes
 from elbowroom.world.scene import Scene

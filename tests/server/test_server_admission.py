@@ -130,7 +130,7 @@ def test_prometheus_reads_the_metrics(admission: Admission, meter: Meter) -> Non
     meter.frames.add(0.002)
     meter.frames.add(0.3)
     with admission.seat(HERE):
-        text = metrics_text(meter, admission, process_usage())
+        text = metrics_text(meter, admission, process_usage(), 300)
     families = {family.name: family for family in parser.text_string_to_metric_families(text)}
     assert families["elbowroom_sessions"].samples[0].value == 1.0
     assert families["elbowroom_frame_lateness_seconds"].type == "histogram"

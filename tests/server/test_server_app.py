@@ -90,6 +90,7 @@ def test_health_tells_what_the_process_costs(page: Page) -> None:
     assert health["sessions"] == 0
     assert health["warm"] is False  # nobody has warmed this one up
     assert 1e6 < health["ownBytes"] <= health["residentBytes"]
+    assert health["kernels"] > 0
     assert page.get("/api/health").json()["cpuSeconds"] >= health["cpuSeconds"]
 
 

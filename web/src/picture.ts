@@ -3,7 +3,7 @@
 import { Vector3, type Group } from "three";
 import { AvatarView } from "./avatar/avatar_view";
 import { InsetCamera } from "./camera/inset";
-import type { Vec3 } from "./camera/spring_arm";
+import type { Vec3 } from "./camera/vectors";
 import { ThirdPersonCamera, type Followed } from "./camera/third_person";
 import type { AvatarMessage, Plan, SceneMessage, Status } from "./generated/messages";
 import type { Intent, SteeringMode } from "./input/steering";

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { convexBody } from "../src/camera/convex_body";
-import { distanceToBounds, distanceToBox, prepareBox, type Vec3 } from "../src/camera/spring_arm";
+import { distanceToBounds, distanceToBox, prepareBox } from "../src/camera/spring_arm";
+import type { Vec3 } from "../src/camera/vectors";
 import type { Form } from "../src/generated/messages";
 
 const none = { corners: [], triangles: [] };

@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
-import {
-  cameraReach, distanceToBox, distanceToBoxes, freeReach, isWall, prepareBox, type OrientedBox, type Vec3,
-} from "../src/camera/spring_arm";
+import { cameraReach, distanceToBox, distanceToBoxes, freeReach, isWall, prepareBox, type OrientedBox,  } from "../src/camera/spring_arm";
+import type { Vec3 } from "../src/camera/vectors";
 
 /** A small deterministic generator (mulberry32), so that a failure repeats. */
 function random(seed: number): () => number {

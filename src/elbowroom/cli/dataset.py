@@ -154,9 +154,9 @@ def _show(spec: "DatasetSpec", walk: int) -> None:
     from elbowroom.cli.play import serve_until_interrupted
     from elbowroom.cli.replay import library_of
     from elbowroom.control.recordings.recording import Recording
+    from elbowroom.dataset.draw import draw
     from elbowroom.dataset.recorded import record_walk
     from elbowroom.dataset.spec import STOCK
-    from elbowroom.dataset.walk import draw
 
     if not 0 <= walk < spec.walks:
         raise InputError(f"--show: walk {walk} is not between 0 and {spec.walks - 1}")

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from elbowroom.control.recordings.recording import Recorder
 from elbowroom.dataset.company import NoRoomError
+from elbowroom.dataset.draw import draw
 from elbowroom.dataset.spec import DatasetSpec
-from elbowroom.dataset.walk import company_on, controller_of, draw, setting_of, steps_of
+from elbowroom.dataset.walk import company_on, controller_of, setting_of, steps_of
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import NoCourseError

@@ -16,6 +16,7 @@ from elbowroom.clips.style import style_named
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.dataset.company import Company, NoRoomError, company_of
+from elbowroom.dataset.draw import Draw, draw
 from elbowroom.dataset.hands import HANDS, TOUR, Way
 from elbowroom.dataset.row import Row, others_in, row_of
 from elbowroom.dataset.spec import STOCK, STYLE, DatasetSpec, level
@@ -32,35 +33,12 @@ from elbowroom.world.scene import Scene
 _STEP = 0.1  # metres between the points of a course's route
 
 
-class Draw(NamedTuple):
-    """What the seed draws for one walk."""
-
-    place: str
-    avatar: str
-    steering: str
-    seed: int
-    swing: str = STOCK
-    others: tuple[str, ...] = ()  # avatars of those who walk there too
-
-
 class Setting(NamedTuple):
     """Who walks where, from where, and where to."""
 
     humanoid: Humanoid
     scene: Scene
     way: Way
-
-
-def draw(spec: DatasetSpec, number: int) -> Draw:
-    """What walk `number` is: the same whatever other walks there are."""
-    rng = np.random.default_rng([spec.seed, number])
-    lists = (spec.places, spec.avatars, spec.steering)
-    place, avatar, steering = (choices[int(rng.integers(len(choices)))] for choices in lists)
-    seed = int(rng.integers(2**31))
-    swing = spec.swings[int(rng.integers(len(spec.swings)))]
-    count = spec.company[int(rng.integers(len(spec.company)))]
-    others = tuple(spec.avatars[int(rng.integers(len(spec.avatars)))] for _ in range(count))
-    return Draw(place, avatar, steering, seed, swing, others)
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from elbowroom.server.entrance.open_pages import OpenPages, Tab
 from elbowroom.server.entrance.reception import Reception
 from elbowroom.server.entrance.while_there import while_there
 from elbowroom.server.heap import hand_back
+from elbowroom.server.kernels.kernel_cache import kernels_in_memory
 from elbowroom.server.metrics import CONTENT_TYPE as METRICS_TYPE
 from elbowroom.server.metrics import metrics_text
 from elbowroom.server.schema.progress import Notice
@@ -131,12 +132,13 @@ class _Handlers:
                 "cpuSeconds": usage.cpu_seconds,
                 "residentBytes": usage.resident_bytes,
                 "ownBytes": usage.own_bytes,
+                "kernels": kernels_in_memory(),
             }
         )
 
     async def metrics(self, request: Request) -> Response:  # noqa: ARG002
         """The same and more, as Prometheus reads it."""
-        text = metrics_text(self._library.meter, self._admission, process_usage())
+        text = metrics_text(self._library.meter, self._admission, process_usage(), kernels_in_memory())
         return Response(text, headers={"content-type": METRICS_TYPE})
 
     async def catalog(self, request: Request) -> Response:  # noqa: ARG002

@@ -9,9 +9,9 @@ from elbowroom.server.usage import Usage
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 
 
-def metrics_text(meter: Meter, admission: Admission, usage: Usage) -> str:
+def metrics_text(meter: Meter, admission: Admission, usage: Usage, kernels: int) -> str:
     """All of them, with what they mean."""
-    return "\n".join(_lines(meter, admission, usage)) + "\n"
+    return "\n".join(_lines(meter, admission, usage, kernels)) + "\n"
 
 
 def joined_metrics(texts: Mapping[str, str]) -> str:
@@ -32,7 +32,7 @@ def joined_metrics(texts: Mapping[str, str]) -> str:
     return "".join(f"{line}\n" for family, head in heads.items() for line in (*head, *counts.get(family, ())))
 
 
-def _lines(meter: Meter, admission: Admission, usage: Usage) -> Iterator[str]:
+def _lines(meter: Meter, admission: Admission, usage: Usage, kernels: int) -> Iterator[str]:
     yield from _number("elbowroom_sessions", "gauge", "Sessions that are shown now.", admission.sessions)
     yield from _number("elbowroom_sessions_refused_total", "counter", "Sessions refused.", admission.refused)
     yield from _histogram(
@@ -44,6 +44,7 @@ def _lines(meter: Meter, admission: Admission, usage: Usage) -> Iterator[str]:
     resident = "Memory held, with the files of libraries."
     yield from _number("process_resident_memory_bytes", "gauge", resident, usage.resident_bytes)
     yield from _number("elbowroom_own_memory_bytes", "gauge", "Memory held, without files.", usage.own_bytes)
+    yield from _number("elbowroom_kernels", "gauge", "Compiled kernels in memory.", kernels)
 
 
 def _number(name: str, kind: str, meaning: str, value: float) -> Iterator[str]:

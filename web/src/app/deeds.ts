@@ -3,7 +3,7 @@
 import { nextView, viewNamed } from "../camera/views";
 import type { GoingSomewhere } from "../going/going";
 import type { GuidedTour } from "../going/tour";
-import type { Action } from "../input/keyboard";
+import type { Action } from "../input/action";
 import type { PointerInput } from "../input/pointer";
 import type { Session } from "../net/session";
 import type { Picture } from "../picture";

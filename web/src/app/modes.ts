@@ -2,7 +2,7 @@
 
 import { BuildDoor } from "../builder/door";
 import type { Controls } from "../input/controls";
-import type { Action } from "../input/keyboard";
+import type { Action } from "../input/action";
 import type { Session } from "../net/session";
 import type { Picture } from "../picture";
 import { ReplayDoor } from "../replay/door";

@@ -1,7 +1,7 @@
 /** The way into build mode: fetches the rest of it when it is wanted. */
 
 import type { SceneMessage } from "../generated/messages";
-import type { Action } from "../input/keyboard";
+import type { Action } from "../input/action";
 import { text } from "../texts/texts";
 import type { Build, BuildHost, BuildState } from "./build";
 import { holdsScene, sceneIn } from "./link";

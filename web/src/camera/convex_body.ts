@@ -1,7 +1,7 @@
 /** The nearest points of the shapes that are no boxes, each about its own origin; capsules and cylinders are about Y. */
 
 import type { Form } from "../generated/messages";
-import type { Vec3 } from "./spring_arm";
+import type { Vec3 } from "./vectors";
 
 /** A convex body in its own axes. */
 export interface ConvexBody {

@@ -1,6 +1,7 @@
 /** Where a camera that has no room behind the avatar should rather look from: a little higher, lower or aside. */
 
-import { cameraReach, type CameraObstacles, type Vec3 } from "./spring_arm";
+import { cameraReach, type CameraObstacles } from "./spring_arm";
+import type { Vec3 } from "./vectors";
 
 /** A change of the camera's direction, radians. */
 export interface ViewShift {

@@ -6,9 +6,7 @@
  */
 
 import type { ConvexBody } from "./convex_body";
-
-export type Vec3 = readonly [number, number, number];
-export type Quat = readonly [number, number, number, number];
+import type { Quat, Vec3 } from "./vectors";
 
 /** A convex body in an oriented box: centre and half sizes in metres, box-to-world rotation as a quaternion xyzw. */
 export interface OrientedBox {

@@ -2,7 +2,8 @@
 
 import { damp, dampAngle, wrapAngle } from "./damping";
 import { backwards, NO_SHIFT, roomierView, type ViewShift } from "./roomier_view";
-import { cameraReach, distanceToBoxes, pointAlong, type CameraObstacles, type Vec3 } from "./spring_arm";
+import { cameraReach, distanceToBoxes, pointAlong, type CameraObstacles } from "./spring_arm";
+import type { Vec3 } from "./vectors";
 import { VIEWS, type View, type ViewName } from "./views";
 
 const MIN_PITCH = -0.25;

@@ -3,7 +3,8 @@
 import type { Input } from "../generated/messages";
 import { Gamepads } from "./gamepad";
 import type { KeyMap } from "./key_map";
-import { Keyboard, type Action } from "./keyboard";
+import type { Action } from "./action";
+import { Keyboard } from "./keyboard";
 import { PadFocus } from "./pad_focus";
 import { commandsDiffer, mergeIntents, NO_INTENT, steer, type Command, type Intent, type SteeringMode } from "./steering";
 import { TouchStick } from "./touch_stick";

@@ -1,6 +1,6 @@
 /** Gamepads with the standard mapping; they may come and go at any time. */
 
-import type { Action } from "./keyboard";
+import type { Action } from "./action";
 import { NO_INTENT, radialDeadZone, type Intent } from "./steering";
 
 /** What a button does: something once, or something while it is held. */

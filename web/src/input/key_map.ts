@@ -1,7 +1,7 @@
 /** Which key does what: as it comes, and as the user has changed it. By `event.code`, so that keys lie where they lie on every layout. */
 
 import { VIEW_NAMES } from "../camera/views";
-import type { Action } from "./keyboard";
+import type { Action } from "./action";
 
 /** What a key does for as long as it is held. */
 export const HELD_DEEDS = ["forward", "back", "left", "right", "stepLeft", "stepRight", "run"] as const;

@@ -1,13 +1,8 @@
 /** The keyboard, by `event.code`, so that the keys lie in the same place on every layout. */
 
-import type { ViewName } from "../camera/views";
+import type { Action } from "./action";
 import { HELD_DEEDS, type HeldDeed, type KeyMap } from "./key_map";
 import type { Intent } from "./steering";
-
-/** Something that one key press does once. */
-export type Action =
-  | "reset" | "pause" | "step" | "slow" | "cameraMode" | "overlays" | "hideUi" | "assist" | "help" | "recenter"
-  | "pointerLock" | "escape" | "menu" | "nextView" | "inset" | "share" | "stepBack" | "replay" | "build" | "push" | "record" | "tour" | "nearer" | "farther" | `view:${ViewName}`;
 
 /** Keys by which lists and sliders are worked; all others steer past them. */
 const CONTROL_KEYS = /^(Arrow.*|Home|End|PageUp|PageDown|Enter|NumpadEnter|Space)$/;

@@ -2,7 +2,7 @@
 
 import type { AvatarMessage, PoseFrame, SceneMessage, Settings } from "../generated/messages";
 import type { ShownPose } from "../net/pose_timeline";
-import type { Action } from "../input/keyboard";
+import type { Action } from "../input/action";
 import type { Loose } from "../stage/loose";
 import { heard } from "../texts/sayings";
 import { text } from "../texts/texts";

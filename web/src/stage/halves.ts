@@ -1,7 +1,7 @@
 /** Two views of the world beside each other, from the same side of two avatars. */
 
 import { PerspectiveCamera } from "three";
-import type { Vec3 } from "../camera/spring_arm";
+import type { Vec3 } from "../camera/vectors";
 import type { Stage } from "./stage";
 
 const FIELD_OF_VIEW = 56;

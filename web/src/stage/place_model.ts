@@ -1,7 +1,7 @@
 /** The model of a place as its file shows it, and how far one sees in it. */
 
 import { Group, Mesh, Plane, Raycaster, Vector3, type Material, type Object3D, type Texture } from "three";
-import type { Vec3 } from "../camera/spring_arm";
+import type { Vec3 } from "../camera/vectors";
 import { asked } from "../net/asked";
 
 /** With more triangles the camera does not mind the model: looking for the nearest would take too long in every frame. */

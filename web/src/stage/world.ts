@@ -2,7 +2,8 @@
 
 import { Group, type Object3D } from "three";
 import { convexBody } from "../camera/convex_body";
-import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type PreparedBox, type Vec3 } from "../camera/spring_arm";
+import { isWall, prepareBox, type CameraObstacles, type OrientedBox, type PreparedBox } from "../camera/spring_arm";
+import type { Vec3 } from "../camera/vectors";
 import type { Form, MovingObstacle, Obstacle, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";

@@ -2,7 +2,7 @@
 
 import { VIEW_NAMES, VIEWS, type ViewName } from "../camera/views";
 import type { Catalog, Configure, Settings } from "../generated/messages";
-import type { Action } from "../input/keyboard";
+import type { Action } from "../input/action";
 import { OVERLAY_TITLES, OVERLAYS, type OverlayName } from "../overlays/overlay_names";
 import type { Preferences } from "../preferences";
 import { worded } from "../texts/worded";

@@ -60,6 +60,8 @@ class Soak:
     own_first: float  # MB of the server's own, after the warm-up
     own_last: float
     own_most: float
+    kernels_first: int  # in the server's memory, after the warm-up: each is loaded when it is first needed
+    kernels_last: int
     slope: float  # MB an hour after the warm-up
     slope_budget: float
     long_enough: bool  # for a verdict on the slope
@@ -81,6 +83,7 @@ class _Reading(NamedTuple):
     frames: float  # of all sessions
     late: float  # of these
     processor: float  # seconds
+    kernels: int  # in memory
 
 
 @dataclass
@@ -144,7 +147,7 @@ def summary(yard: _Yard, readings: list[_Reading], minutes: float, took: tuple[f
     """What came of it by some readings, one at least; `took`: seconds by the clock and of the clients' processor."""
     seconds, spent = took
     after = [reading for reading in readings if reading.at >= _WARM_UP * min(60.0 * minutes, seconds)] or readings[-1:]
-    times, own, frames, late, processor = np.array(after).T
+    times, own, frames, late, processor, kernels = np.array(after).T
     return Soak(
         minutes=minutes,
         ran=seconds / 60.0,
@@ -156,6 +159,8 @@ def summary(yard: _Yard, readings: list[_Reading], minutes: float, took: tuple[f
         own_first=float(own[0]),
         own_last=float(own[-1]),
         own_most=float(own.max()),
+        kernels_first=int(kernels[0]),
+        kernels_last=int(kernels[-1]),
         slope=slope_of(times / 3600.0, own),
         slope_budget=SLOPE_BUDGET,
         long_enough=bool(times[-1] - times[0] >= 60.0 * _VERDICT),
@@ -189,7 +194,7 @@ def _watch(yard: _Yard, readings: list[_Reading], began: float, tell: Callable[[
 def _reading(yard: _Yard, began: float) -> _Reading:
     told = usage(yard.url)
     own, at = told["ownBytes"] / 1e6, time.monotonic() - began
-    return _Reading(at, own, told["frames"], told["framesLate"], told["cpuSeconds"])
+    return _Reading(at, own, told["frames"], told["framesLate"], told["cpuSeconds"], int(told["kernels"]))
 
 
 def _told(yard: _Yard, readings: list[_Reading]) -> str:
@@ -198,7 +203,8 @@ def _told(yard: _Yard, readings: list[_Reading]) -> str:
     on_time = percent(last.frames - first.frames, last.late - first.late)
     counts = ", ".join(f"{yard.counts[what]} {what}" for what in ("sessions", "courses", "uploads", "misdeeds"))
     failures = f", failures: {dict(yard.failures)}" if yard.failures else ""
-    return f"{last.at / 60.0:.1f} min, {last.own:.1f} MB, {on_time:.3f} % of frames in time, {counts}{failures}"
+    size = f"{last.own:.1f} MB, {last.kernels} kernels"
+    return f"{last.at / 60.0:.1f} min, {size}, {on_time:.3f} % of frames in time, {counts}{failures}"
 
 
 def _again(yard: _Yard, task: Callable[[_Yard, random.Random], None], number: int) -> None:

@@ -52,6 +52,7 @@ def soak_rows(soaked: dict[str, Any] | None) -> list[tuple[str, str]]:
         return []
     clients = f"{soaked['sessions']} sessions, {soaked['courses']} courses, {soaked['uploads']} uploads"
     own = f"own memory {soaked['own_first']:.0f} MB after the warm-up, {soaked['own_last']:.0f} in the end"
+    loaded = f"{soaked['kernels_first']} kernels in memory after the warm-up, {soaked['kernels_last']} in the end"
     slope = f"{soaked['slope']:+.1f} MB an hour (budget {soaked['slope_budget']:g})"
     short = "" if soaked["long_enough"] else "; too short for a verdict: 15 minutes or more"
     frames = f"{soaked['frames_per_second']:.1f} frames/s, 99 % within {soaked['late_ms_typical']:.0f} ms of their time"
@@ -61,6 +62,7 @@ def soak_rows(soaked: dict[str, Any] | None) -> list[tuple[str, str]]:
     return [
         ("soak", f"{min(soaked['ran'], soaked['minutes']):.3g} minutes{cut}: {clients}, {soaked['misdeeds']} misdeeds"),
         ("", f"{own}, {soaked['own_most']:.0f} at most: {slope}{short}"),
+        ("", loaded),
         ("", f"{share} (budget {soaked['on_time_budget_percent']:g} %)"),
         ("", f"the server took {took}"),
         ("", f"one who walked on all the time: {frames}, {soaked['late_ms_p99']:.0f} ms in the worst 10 s"),

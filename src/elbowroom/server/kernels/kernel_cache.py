@@ -27,6 +27,14 @@ def session_kernels() -> list[Any]:
     return [kernel for kernel in kernels() if kernel.__module__.split(".")[1] in _ROOMS]
 
 
+def kernels_in_memory() -> int:
+    """How many kernels this process has loaded or compiled so far, one for several types of arguments counted for each.
+
+    They stay: who meets for the first time what needs another kernel makes the process larger, once.
+    """
+    return sum(len(kernel.signatures) for kernel in kernels())
+
+
 def kept_kernels() -> list[Any]:
     """Those of `kernels` that lie on disk, for some source."""
     return [kernel for kernel in kernels() if _is_kept(kernel)]
