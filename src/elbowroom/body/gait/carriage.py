@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import WITH_FEET
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import kernel
 
 Floats = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
@@ -25,14 +25,14 @@ HEAD_TURN, HEAD_NOD = WITH_FEET + 8, WITH_FEET + 9
 OF_HIPS, POSING = 5, 10  # so many of the numbers move the hips, and so many pose anything
 
 
-@helper
+@kernel
 def _turned(turn: float, raised: float) -> Quaternion:
     """Ry(turn) Rz(raised)."""
     cy, sy, cz, sz = math.cos(0.5 * turn), math.sin(0.5 * turn), math.cos(0.5 * raised), math.sin(0.5 * raised)
     return sy * sz, sy * cz, cy * sz, cy * cz
 
 
-@helper
+@kernel
 def _times(a: Quaternion, b: Quaternion) -> Quaternion:
     ax, ay, az, aw = a
     bx, by, bz, bw = b
@@ -44,7 +44,7 @@ def _times(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
-@helper
+@kernel
 def _about_left(angle: float) -> Quaternion:
     """A rotation about the axis to the left."""
     return math.sin(0.5 * angle), 0.0, 0.0, math.cos(0.5 * angle)

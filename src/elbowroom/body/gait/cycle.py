@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -71,7 +71,7 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
 
 
-@helper
+@kernel
 def _cadence(forward: float, lateral: float, turn: float) -> float:
     """Strides per second, not yet resting at standstill."""
     side, spin = _LATERAL * lateral, _TURN * turn
@@ -80,7 +80,7 @@ def _cadence(forward: float, lateral: float, turn: float) -> float:
     return float(_CADENCE * (relative + _SLOW) ** 0.285)
 
 
-@helper
+@kernel
 def _quickness(scale: float) -> float:
     return float(scale**-_PACE)
 
@@ -112,28 +112,28 @@ def stride_length(speed: float) -> float:
     return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
 
 
-@helper
+@kernel
 def _stance_part(speed: float, stride: float, scale: float) -> float:
     """The part of the cycle that a foot stands: less at speed, and where strides of this length outgrow the legs."""
     duty = _DUTY - _DUTY_LOSS * speed / np.sqrt(scale)
     return float(duty * (1.0 + (duty / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
 
 
-@helper
+@kernel
 def _smooth(x: float) -> float:
     """Smoothstep, 0 below 0 and 1 above 1."""
     t = min(max(x, 0.0), 1.0)
     return float(t * t * (3.0 - 2.0 * t))
 
 
-@helper
+@kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
     """Cubic from `a` to `b` over w in [0, 1]."""
     rest = 1.0 - w
     return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
 
 
-@helper
+@kernel
 def _pitch_ahead(u: float, duty: float) -> float:
     """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off into the swing."""
     if u < duty:
@@ -144,7 +144,7 @@ def _pitch_ahead(u: float, duty: float) -> float:
     return _hermite(_TOE_OFF, rolling, -_HEEL_STRIKE, 0.0, (u - duty) / (1.0 - duty))
 
 
-@helper
+@kernel
 def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
     strike, lift = 0.37, -0.19
@@ -153,7 +153,7 @@ def _pitch_back(u: float, duty: float) -> float:
     return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
 
 
-@helper
+@kernel
 def _foot_on_ground(
     x: float, z: float, time: float, forward: float, lateral: float, turn: float
 ) -> tuple[float, float]:
@@ -183,7 +183,7 @@ class Stride(NamedTuple):
     scale: float
 
 
-@helper
+@kernel
 def _stride(scale: float, forward: float, lateral: float, turn: float) -> Stride:
     period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
     speed = np.sqrt(forward * forward + lateral * lateral)
@@ -211,7 +211,7 @@ def home_of(legs: Floats, stride: Stride, side: int) -> tuple[float, float]:
     return x, legs[side, _ANKLE + 2] - _BEHIND * scale * max(ahead, 0.0)
 
 
-@helper
+@kernel
 def _bump(w: float) -> float:
     """0 at both ends of a swing, with no slope, 1 in its middle."""
     return 16.0 * (w * (1.0 - w)) ** 2
@@ -296,7 +296,7 @@ def _foot_pose(legs: Floats, stride: Stride, side: int, u: float, out: Floats) -
     tilt_foot(legs, side, (x, z, yaw), roll_of(stride, u), ease_of(stride.ahead, w), out)
 
 
-@helper
+@kernel
 def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
     length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
@@ -305,7 +305,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
-@helper
+@kernel
 def _bob(stride: Stride, phase: float) -> float:
     """How far the hips are below the highest place of their stride: they are lowest while both feet stand."""
     long, wide = stride.ahead**4, stride.aside**2
@@ -393,7 +393,7 @@ def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Float
     return float(max(u - stride.duty, 0.0) / (1.0 - stride.duty))
 
 
-@helper
+@kernel
 def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float]:
     """One row of `hips_sinks`."""
     lowered = half_leg * lowering

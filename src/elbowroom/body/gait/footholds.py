@@ -21,13 +21,14 @@ from elbowroom.body.gait.cycle import (
 )
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_of
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel, helper, kernel
+from elbowroom.jit import exact_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 # Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
 # its swing is over (0: it stands), and the velocity of x, z and yaw over the ground, in the axes of the root.
+_LEFT, _RIGHT = plain(0), plain(1)
 _X, _Z, _YAW, _PITCH, _LIFT, _SWING, _VELOCITY = 0, 1, 2, 3, 4, 5, 6
 
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
@@ -51,7 +52,7 @@ _AT_LEAST = 0.2  # of its swing is over, for a foot that does
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
 
 
-@helper
+@exact_kernel
 def _rests(root: Floats) -> bool:
     return bool(abs(root[3]) + abs(root[4]) + abs(root[5]) < _STILL)
 
@@ -86,28 +87,28 @@ def _carry(before: Floats, root: Floats, out: Floats) -> None:
         out[at + _VELOCITY], out[at + _VELOCITY + 1] = vx * c + vz * s, -vx * s + vz * c
 
 
-@helper
+@exact_kernel
 def _position(phase: float, side: int) -> float:
     """Where in its cycle a foot is, 0 to 1."""
     cycle = phase + 0.5 * side
     return float(cycle - np.floor(cycle))
 
 
-@helper
+@exact_kernel
 def _away(foot: Floats, place: tuple[float, float, float], scale: float) -> float:
     """How far a foot is from a place (x, z, yaw): above 1 it is worth a step."""
     apart = np.hypot(foot[_X] - place[0], foot[_Z] - place[1]) / (_CLOSED * scale)
     return float(max(apart, abs(foot[_YAW] - place[2]) / _TURNED))
 
 
-@helper
+@exact_kernel
 def _overtaken(legs: Floats, side: int, foot: Floats) -> bool:
     """Whether a foot is so far from its hip, or so twisted, that it has to follow."""
     far = np.hypot(foot[_X] - legs[side, _HIP], foot[_Z] - legs[side, _HIP + 2])
     return bool(far > _FAR * (legs[side, _THIGH] + legs[side, _SHIN]) or abs(foot[_YAW]) > _TWISTED)
 
 
-@helper
+@exact_kernel
 def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How long ago the root passed by a standing foot, seconds: half its stance later the cycle lifts it."""
     x, z, _ = own_home(own, legs, stride, side)
@@ -116,7 +117,7 @@ def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats
     return float(way / max(stride.speed * stride.speed + wide * stride.turn * stride.turn, 1e-12))
 
 
-@helper
+@exact_kernel
 def _urge(
     own: OwnSteps,
     legs: Floats,
@@ -142,7 +143,7 @@ def _urge(
     return away if away > 2.0 else 0.0
 
 
-@helper
+@exact_kernel
 def _time_left(
     own: OwnSteps, legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, twin: Floats, dt: float
 ) -> float:
@@ -160,7 +161,7 @@ def _time_left(
     return float(min(max(left, least - dt), most))
 
 
-@helper
+@exact_kernel
 def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None:
     """Where the root will be `after` seconds from now, to `out` (7,).
 
@@ -184,7 +185,7 @@ def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None
     out[2] += left * out[5]
 
 
-@helper
+@exact_kernel
 def _goal(
     own: OwnSteps, legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
 ) -> tuple[float, float, float]:
@@ -208,13 +209,13 @@ def _goal(
     return left + x * c + z * s, ahead - x * s + z * c, turned + yaw
 
 
-@helper
+@exact_kernel
 def _is_flat(foot: Floats) -> bool:
     """Whether a foot lies flat on the ground."""
     return bool(abs(foot[_PITCH]) < _FLAT and foot[_LIFT] < _FLAT)
 
 
-@helper
+@exact_kernel
 def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> tuple[float, float]:
     """A place (x, z) from the standing twin, moved to the own side if need be, in axes `turned` to the left."""
     c, s, outward = np.cos(turned), np.sin(turned), 1.0 if side == 0 else -1.0
@@ -224,7 +225,7 @@ def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> 
     return aside * c + along * s, -aside * s + along * c
 
 
-@helper
+@exact_kernel
 def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale: float) -> tuple[float, float, float]:
     """A place (x, z, yaw) moved to the own side of the standing twin, and turned away from it, if need be."""
     outward = 1.0 if side == 0 else -1.0
@@ -233,7 +234,7 @@ def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale
     return x + twin[_X], z + twin[_Z], yaw
 
 
-@helper
+@exact_kernel
 def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
     """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
     rest, start, slope = 1.0 - part, foot[i], foot[_VELOCITY + i] * time
@@ -242,7 +243,7 @@ def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> Non
     foot[_VELOCITY + i] = change / time
 
 
-@helper
+@exact_kernel
 def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float]) -> float:
     """Seconds that a swinging foot takes at least to where it lands; none where it is nearly there."""
     way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z])
@@ -251,14 +252,14 @@ def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float])
     return float(1.5 * way / (_FASTEST * np.sqrt(stride.scale) + 2.2 * stride.speed))
 
 
-@helper
+@exact_kernel
 def _land(foot: Floats) -> None:
     foot[_SWING] = foot[_LIFT] = 0.0
     for i in range(3):
         foot[_VELOCITY + i] = 0.0
 
 
-@helper
+@exact_kernel
 def _swing(
     own: OwnSteps,
     stride: Stride,
@@ -291,14 +292,14 @@ def _swing(
     return pitch
 
 
-@helper
+@exact_kernel
 def _lifted_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
     """Seconds, up to `dt`, since a foot was lifted that stood a frame ago."""
     since = (_position(root[6], side) - stride.duty) * stride.period
     return float(since if 0.0 < since < dt and not _rests(root) else dt)
 
 
-@helper
+@exact_kernel
 def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How a standing foot wants to be pitched: by how far the root has passed it."""
     u = 0.5 * stride.duty + _passed(own, legs, stride, side, foot) / stride.period
@@ -306,7 +307,7 @@ def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foo
     return pitch
 
 
-@helper
+@exact_kernel
 def _tilt(foot: Floats, pitch: float, dt: float) -> None:
     most = _ROLL_RATE * dt
     foot[_PITCH] += min(max(pitch - foot[_PITCH], -most), most)
@@ -336,8 +337,8 @@ def step_feet(
     standing = one[_SWING] <= 0.0 and other[_SWING] <= 0.0
     lifted, later = -1, np.empty(ROOT_STATE)
     if standing:
-        left = _urge(own, legs, stride, 0, root, one, _goal(own, legs, scale, 0, root, coming, 0.0, later))
-        right = _urge(own, legs, stride, 1, root, other, _goal(own, legs, scale, 1, root, coming, 0.0, later))
+        left = _urge(own, legs, stride, _LEFT, root, one, _goal(own, legs, scale, _LEFT, root, coming, 0.0, later))
+        right = _urge(own, legs, stride, _RIGHT, root, other, _goal(own, legs, scale, _RIGHT, root, coming, 0.0, later))
         if max(left, right) > 0.0:
             lifted = 0 if left >= right else 1
     for side in range(2):

@@ -29,7 +29,7 @@ from elbowroom.body.gait.cycle import GaitShape, Stride, stride_of
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -61,24 +61,24 @@ _LOOK, _MOST, _EASE, _QUICKEST = 0.62, 0.9, 0.08, 4.0  # seconds ahead, radians,
 _STRAIGHT = 1e-3  # radians: less is none
 
 
-@helper
+@exact_kernel
 def _smooth(x: float) -> float:
     t = min(max(x, 0.0), 1.0)
     return t * t * (3.0 - 2.0 * t)
 
 
-@helper
+@exact_kernel
 def _wave(phase: float, at: float) -> float:
     return math.cos(2.0 * math.pi * (phase - at))
 
 
-@helper
+@exact_kernel
 def _radians(line: Floats, speed: float) -> float:
     """Half of a range in degrees that grows with speed."""
     return math.radians(0.5 * (line[0] + line[1] * min(speed, _FASTEST)))
 
 
-@helper
+@exact_kernel
 def _walk(stride: Stride, phase: float, out: Floats) -> float:
     """Write how a walking body is carried; returns the part of its steps that leads ahead or back."""
     scale, forward = stride.scale, stride.forward
@@ -99,7 +99,7 @@ def _walk(stride: Stride, phase: float, out: Floats) -> float:
     return part
 
 
-@helper
+@exact_kernel
 def _on_leg(time: float) -> float:
     """Which leg carries who rests: 1 the left one, -1 the right one; it changes by minimum jerk."""
     number = math.floor(time / _STATION)
@@ -108,7 +108,7 @@ def _on_leg(time: float) -> float:
     return before + (after - before) * t * t * t * (10.0 + t * (6.0 * t - 15.0))
 
 
-@helper
+@exact_kernel
 def _idle(scale: float, much: float, time: float, out: Floats) -> None:
     """Add how a body is carried that rests."""
     leg = much * _on_leg(time)
@@ -121,7 +121,7 @@ def _idle(scale: float, much: float, time: float, out: Floats) -> None:
     out[CHEST_BEND] -= much * _BREATH * math.sin(2.0 * math.pi * _BREATHS * time)
 
 
-@helper
+@exact_kernel
 def _looks_to(root: Floats, coming: Floats) -> float:
     """How far to the left of the heading the root will face soon: as planned, then on with its turning rate."""
     heading, since = root[2], 0.0
@@ -136,7 +136,7 @@ def _looks_to(root: Floats, coming: Floats) -> float:
     return float(min(max(heading - root[2], -_MOST), _MOST))
 
 
-@helper
+@exact_kernel
 def _eased(turned: float, goal: float, dt: float) -> float:
     """How far the head is turned `dt` seconds later."""
     turn = (goal - turned) * (1.0 - math.exp(-dt / _EASE))
@@ -144,7 +144,7 @@ def _eased(turned: float, goal: float, dt: float) -> float:
     return 0.0 if goal == 0.0 and abs(after) < _STRAIGHT else after
 
 
-@helper
+@exact_kernel
 def _approached(value: float, goal: float, up: float, down: float) -> float:
     return value + min(max(goal - value, -down), up)
 

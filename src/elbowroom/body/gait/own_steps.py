@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import Stride, home_of, roll_of, stride_of
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import kernel, plain
 
 Floats = NDArray[np.float64]
 
 _ANKLE = 3  # column of `GaitShape.legs`
 
 KEYS = 16  # of a stance, and of the swing that follows on it
-AHEAD, ASIDE, YAW, PITCH, LIFT = range(5)  # columns of a cycle
+AHEAD, ASIDE, YAW, PITCH, LIFT = map(plain, range(5))  # columns of a cycle
 PATH = 5
 
 
@@ -37,7 +37,7 @@ class OwnSteps(NamedTuple):
 CYCLE = OwnSteps(0.0, 0.0, np.zeros((2, 3)), np.zeros((2, 2 * KEYS + 1, PATH)))
 
 
-@helper
+@kernel
 def _share(own: OwnSteps, stride: Stride) -> float:
     """How far feet go as recorded: the part of the steps that leads ahead."""
     if own.speed <= 0.0 or stride.forward <= 0.0:
@@ -46,14 +46,14 @@ def _share(own: OwnSteps, stride: Stride) -> float:
     return float(ahead / (ahead + stride.lateral * stride.lateral + (0.3 * stride.scale * stride.turn) ** 2))
 
 
-@helper
+@kernel
 def _gain(own: OwnSteps, stride: Stride) -> float:
     """How large steps are beside those recorded."""
     gain = (1.0 - math.exp(-stride.forward / GROWTH)) / (1.0 - math.exp(-own.speed / GROWTH))
     return float(min(gain, WIDEST))
 
 
-@helper
+@kernel
 def _place(stride: Stride, u: float) -> float:
     """Where in the table of a cycle a foot is at cycle position `u` in [0, 1]."""
     if u < stride.duty:
@@ -61,7 +61,7 @@ def _place(stride: Stride, u: float) -> float:
     return float(KEYS + KEYS * min((u - stride.duty) / (1.0 - stride.duty), 1.0))
 
 
-@helper
+@kernel
 def _value(own: OwnSteps, side: int, column: int, place: float) -> float:
     """A number of a foot's cycle."""
     first = min(int(place), 2 * KEYS - 1)

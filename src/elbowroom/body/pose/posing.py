@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_turns, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
-from elbowroom.jit import helper, kernel, plain
+from elbowroom.jit import kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -23,7 +23,7 @@ _WAIST, _HEAD = 0, 1  # places among the columns
 _OTHER_END = plain(3)  # where it begins in the row (6,) of a capsule
 
 
-@helper
+@kernel
 def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     """out[k] = a[i] b[j]."""
     ax, ay, az, aw = a[i, 0], a[i, 1], a[i, 2], a[i, 3]
@@ -34,7 +34,7 @@ def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     out[k, 3] = aw * bw - ax * bx - ay * by - az * bz
 
 
-@helper
+@kernel
 def _offset(
     q: Floats, j: int, arm: tuple[float, float, float], base: Floats, i: int, out: Floats, k: int, at: int
 ) -> None:
@@ -47,7 +47,7 @@ def _offset(
     out[k, at + 2] = base[i, 2] + z + qw * tz + qx * ty - qy * tx
 
 
-@helper
+@kernel
 def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) -> None:
     """out[k] = exp(scale (x, y, z))."""
     half = 0.5 * scale * np.sqrt(x * x + y * y + z * z)
@@ -139,7 +139,7 @@ class CapsuleChain(NamedTuple):
     ends: Floats  # (C, 6)
 
 
-@helper
+@kernel
 def _set_column(column: Column, bend: float, twist: float, local: Floats) -> None:
     """The joints of a column: each takes its share of the rotation vector of Ry(twist) Rx(bend)."""
     cb, sb, ct, st = np.cos(0.5 * bend), np.sin(0.5 * bend), np.cos(0.5 * twist), np.sin(0.5 * twist)
@@ -151,7 +151,7 @@ def _set_column(column: Column, bend: float, twist: float, local: Floats) -> Non
         _set_power(x * factor, y * factor, z * factor, column.shares[i], local, column.joints[i])
 
 
-@helper
+@kernel
 def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
     """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
     upper, lower = joints[0], joints[1]
@@ -165,7 +165,7 @@ def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch
     local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
 
 
-@helper
+@kernel
 def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
     """Thigh, shin, foot and toes of both legs; joints (2, 4), -1 where the avatar has no such bone."""
     for side in range(2):
@@ -176,7 +176,7 @@ def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
                     local[joint, i] = rotations[side, part, i]
 
 
-@helper
+@kernel
 def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rotations: Floats, places: Floats) -> None:
     """Frames of the joints in `order`, parents first; the parent of the first is in place already."""
     for i in range(len(order)):
@@ -187,7 +187,7 @@ def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rot
         _product(rotations, parent, local, joint, rotations, joint)
 
 
-@helper
+@kernel
 def _segments(
     joints: Indices, ends: Floats, rotations: Floats, places: Floats, row: Floats, n: int, out: Segments
 ) -> None:
@@ -200,7 +200,7 @@ def _segments(
             out[c, i, n] = row[0, i]
 
 
-@helper
+@kernel
 def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z: float, heading: float) -> None:
     """Put a base frame at a point, turned about +Y."""
     rotations[joint, 0], rotations[joint, 1] = 0.0, np.sin(0.5 * heading)
@@ -208,7 +208,7 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
     places[joint, 0], places[joint, 1], places[joint, 2] = x, y, z
 
 
-@helper
+@kernel
 def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, places: Floats, joint: int) -> None:
     """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, `sink` (2,) below and behind."""
     c, s = np.cos(root[2]), np.sin(root[2])
@@ -220,12 +220,12 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
     _place(joint, rotations, places, x, height, z, root[2])
 
 
-@helper
+@kernel
 def _set(out: Floats, k: int, turn: tuple[float, float, float, float]) -> None:
     out[k, 0], out[k, 1], out[k, 2], out[k, 3] = turn
 
 
-@helper
+@kernel
 def _turn_before(turn: tuple[float, float, float, float], local: Floats, joint: int, scratch: Floats) -> None:
     """local[joint] = turn local[joint]; `scratch` (2, 4)."""
     _set(scratch, _FIRST, turn)
@@ -246,7 +246,7 @@ def hips_shift(figure: Figure, row: Floats) -> tuple[float, float, float]:
     )
 
 
-@helper
+@kernel
 def _carry_hips(figure: Figure, row: Floats, rotations: Floats, places: Floats, scratch: Floats) -> None:
     """Carry the hips as a row (SHOWN,) says; they are where they were planned, turned by the heading alone."""
     _set(scratch, _FIRST, carried_turns(row)[0])
@@ -257,7 +257,7 @@ def _carry_hips(figure: Figure, row: Floats, rotations: Floats, places: Floats, 
     _product(scratch, _SECOND, scratch, _FIRST, rotations, _FIRST)
 
 
-@helper
+@kernel
 def _carry_trunk(figure: Figure, row: Floats, local: Floats, scratch: Floats) -> None:
     """Chest and head as a row (SHOWN,) carries them, beyond their posture."""
     _, chest, head = carried_turns(row)
@@ -266,7 +266,7 @@ def _carry_trunk(figure: Figure, row: Floats, local: Floats, scratch: Floats) ->
     _turn_before(head, local, columns.joints[columns.begins[_HEAD]], scratch)
 
 
-@helper
+@kernel
 def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, scratch: Floats) -> None:
     """Every joint that moves, for a posture `q` (DOF,) and legs (2, 4, 4)."""
     columns, arms = figure.columns, figure.arms
