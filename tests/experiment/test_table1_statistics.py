@@ -9,16 +9,19 @@ from scipy import stats
 from elbowroom.experiment.statistics import mean_interval, ratio_interval, wilson
 
 
+@pytest.mark.parametrize("confidence", [0.5, 0.95, 0.999])
 @pytest.mark.parametrize(("successes", "trials"), [(0, 1), (1, 1), (3, 20), (20, 20), (0, 20), (137, 200)])
-def test_rates_are_wilsons(successes: int, trials: int) -> None:
-    judge = stats.binomtest(successes, trials).proportion_ci(0.95, method="wilson")
-    assert wilson(successes, trials) == pytest.approx((judge.low, judge.high), abs=1e-9)
+def test_rates_are_wilsons(successes: int, trials: int, confidence: float) -> None:
+    judge = stats.binomtest(successes, trials).proportion_ci(confidence, method="wilson")
+    assert wilson(successes, trials, confidence) == pytest.approx((judge.low, judge.high), abs=1e-9)
 
 
-def test_means_are_students() -> None:
-    values = np.random.default_rng(1).normal(3.0, 2.0, 20)
-    judge = stats.t.interval(0.95, len(values) - 1, values.mean(), stats.sem(values))
-    assert mean_interval(values.tolist()) == pytest.approx(judge)
+@pytest.mark.parametrize("confidence", [0.5, 0.95, 0.999])
+@pytest.mark.parametrize("count", [2, 3, 20, 5000])
+def test_means_are_students(count: int, confidence: float) -> None:
+    values = np.random.default_rng(1).normal(3.0, 2.0, count)
+    judge = stats.t.interval(confidence, count - 1, values.mean(), stats.sem(values))
+    assert mean_interval(values.tolist(), confidence) == pytest.approx(judge, rel=1e-9)
 
 
 def test_ratios_are_the_percentile_bootstrap() -> None:

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Sequence
+from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import norm, t
 
 
 class Interval(NamedTuple):
@@ -25,7 +25,7 @@ def wilson(successes: int, trials: int, confidence: float = 0.95) -> Interval:
         raise ValueError(f"{successes} of {trials} successes, confidence {confidence}")
     if trials == 0:
         return Interval(0.0, 1.0)
-    z = float(norm.ppf(0.5 + 0.5 * confidence))
+    z = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
     rate, weight = successes / trials, z * z / trials
     centre = (rate + 0.5 * weight) / (1.0 + weight)
     half = z * math.sqrt(rate * (1.0 - rate) / trials + 0.25 * weight / trials) / (1.0 + weight)
@@ -38,9 +38,10 @@ def mean_interval(values: Sequence[float], confidence: float = 0.95) -> Interval
     """The interval of a mean by Student's t; infinite with fewer than two values."""
     if len(values) < 2:
         return Interval(-math.inf, math.inf)
-    half = (
-        float(t.ppf(0.5 + 0.5 * confidence, len(values) - 1)) * float(np.std(values, ddof=1)) / math.sqrt(len(values))
-    )
+    from scipy.special import stdtrit  # slow to import, and `scipy.stats` seconds slower
+
+    t = float(stdtrit(len(values) - 1, 0.5 + 0.5 * confidence))
+    half = t * float(np.std(values, ddof=1)) / math.sqrt(len(values))
     mean = float(np.mean(values))
     return Interval(mean - half, mean + half)
 

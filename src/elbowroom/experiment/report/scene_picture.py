@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from elbowroom.experiment.report.crossings import DrawnCrossing
 from elbowroom.experiment.report.svg import points, tag, title
@@ -75,6 +74,8 @@ def _start(scene: Scene) -> Floats:
 
 def _drawn(drawing: _Drawing, low: Floats, high: Floats) -> str:
     """Everything between two corners of the picture, from far to near."""
+    from scipy.spatial import ConvexHull  # slow to import, and drawn last
+
     scene, crossing, view = drawing.scene, drawing.crossing, drawing.view
     layers: list[tuple[float, str]] = []
     for name, corners in scene.obstacles.outlines:
