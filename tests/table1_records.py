@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from elbowroom.experiment.table1.cells import fold_canned, fold_cell
+from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.experiment.table1.table import Table1
-from elbowroom.experiment.table1.tasks import Table1Settings
 
 ABOUT: dict[str, Any] = {
     "command": "elbowroom table1 --seeds 4",

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from elbowroom.body.loading.inspection import inspect_avatar
 from elbowroom.errors import InputError
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing, warm_up
+from elbowroom.experiment.crossing import controller_for, run_crossing, warm_up
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.world.scene import Scene
 

@@ -12,8 +12,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.body.loading.hanim_names import hanim_name
 from elbowroom.export.animation import Animation
-from elbowroom.export.layout import RootMotion
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, RootMotion, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.geometry import quaternion
 from gltf_judge import validated
 from made_recording import made_recording
@@ -58,7 +58,7 @@ def animation_of(avatar: Humanoid, folder: Path) -> Animation:
 
 def written(animation: Animation, avatar: Humanoid, ending: str, root: str = "hips") -> bytes:
     chosen = FORMATS[ending]
-    return chosen.write(animation, avatar, chosen.layout(Wishes(root))).data
+    return WRITERS[ending](animation, avatar, chosen.layout(Wishes(root))).data
 
 
 @pytest.mark.parametrize("root", [RootMotion.HIPS, RootMotion.ROOT])

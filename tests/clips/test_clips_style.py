@@ -13,13 +13,14 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.clip import motions_of
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.style import PLAIN_STYLE, STYLES, WALK_SPEED, Style, style_named
+from elbowroom.clips.style_names import STYLE_NAMES
 from elbowroom.control.controller import Controller
 from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.pace import at_speed
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 DT = 1 / 60
@@ -38,6 +39,7 @@ def _shown(controller: Controller, seconds: float) -> np.ndarray:
 def test_the_plain_style_is_the_stock_walk() -> None:
     assert motions_of(style=style_named("plain")) is STOCK
     assert STYLES["plain"] is PLAIN_STYLE
+    assert tuple(STYLES) == STYLE_NAMES
     assert RootMotionSettings().walk_speed == WALK_SPEED
 
 

@@ -12,7 +12,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.files import is_motion_only, parse_motion
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.formats.usd.prims import parse_usda
 from elbowroom.formats.usd.skel import usd_skeletons, usd_take
 from made_recording import made_recording
@@ -30,7 +31,7 @@ def walked(tmp_path_factory: pytest.TempPathFactory) -> Animation:
 
 @pytest.fixture(scope="module")
 def text(walked: Animation) -> str:
-    return FORMATS["usda"].write(walked, BODY, FORMATS["usda"].layout(Wishes())).data.decode()
+    return WRITERS["usda"](walked, BODY, FORMATS["usda"].layout(Wishes())).data.decode()
 
 
 def place(text: str, bone: str) -> Floats:

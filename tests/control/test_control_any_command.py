@@ -7,7 +7,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 

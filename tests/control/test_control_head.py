@@ -13,7 +13,8 @@ from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene

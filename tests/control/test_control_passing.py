@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
-from elbowroom.experiment.meeting.meeting import Kind, Start, corridor, drawn, meet
-from elbowroom.experiment.meeting.meetings import WIDTHS
+from elbowroom.experiment.meeting.meeting import Start, corridor, drawn, meet
+from elbowroom.experiment.meeting.settings import WIDTHS, Kind
 from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]

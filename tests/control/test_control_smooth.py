@@ -15,8 +15,8 @@ from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,8 @@ from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.plans.rehearsal import partial_motions, standing_path
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 

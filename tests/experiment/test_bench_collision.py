@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.capsule_inputs import capsule_inputs
-from elbowroom.experiment.bench.collision import CollisionSettings
 from elbowroom.experiment.bench.rivals import rivals
+from elbowroom.experiment.bench.settings import CollisionSettings
 from elbowroom.experiment.bench.vector_code import clearance_loop_code, vector_bits
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance

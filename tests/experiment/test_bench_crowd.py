@@ -3,7 +3,8 @@
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.bench.crowd import CrowdSettings, amount, run
+from elbowroom.experiment.bench.crowd import amount, run
+from elbowroom.experiment.bench.settings import CrowdSettings
 
 
 def test_each_crowd_walks_and_stands_and_is_counted() -> None:

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.meeting.meeting import STEP, Kind, Met, Start, drawn
-from elbowroom.experiment.meeting.meetings import MeetingSettings, MeetingTask, as_dict, run_meetings
+from elbowroom.experiment.meeting.meeting import STEP, Met, Start, drawn
+from elbowroom.experiment.meeting.meetings import MeetingTask, as_dict, meeting_tasks, run_meetings
+from elbowroom.experiment.meeting.settings import Kind, MeetingSettings
 
 
 class Told:
@@ -35,7 +36,7 @@ def test_a_seed_draws_the_same_start_within_the_corridor() -> None:
 
 def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
     settings = MeetingSettings((0.95, 1.2), 3)
-    starts = [task.start for task in settings.tasks()]
+    starts = [task.start for task in meeting_tasks(settings)]
     stuck = Met(starts[1], False, False, 15.0, 0.0, 40.0)
     driven = Met(starts[4], True, False, 6.0, STEP + 0.1, 20.0)
     touched = Met(starts[5], True, True, 6.0, 0.0, 20.0)

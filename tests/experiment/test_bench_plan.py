@@ -10,9 +10,10 @@ from typer.testing import CliRunner
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError
-from elbowroom.experiment.bench.plan import CallCosts, PlanReport, PlanSettings, amount, lane
+from elbowroom.experiment.bench.plan import CallCosts, PlanReport, amount, lane
 from elbowroom.experiment.bench.plan_calls import crossing_calls
 from elbowroom.experiment.bench.plots import growth_plots
+from elbowroom.experiment.bench.settings import PlanSettings
 from elbowroom.world.scene import Scene
 
 

@@ -9,8 +9,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.general import GeneralPlan, plan_generally
 from elbowroom.experiment.bench.general_problem import CrossingProblem, crossing_problem
-from elbowroom.experiment.bench.planners import PlannersSettings, amount, run
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.bench.planners import amount, run
+from elbowroom.experiment.bench.settings import PlannersSettings
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.experiment.parallel import Processes
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.world.scene import Scene

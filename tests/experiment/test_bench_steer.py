@@ -9,7 +9,8 @@ from typer.testing import CliRunner
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError
-from elbowroom.experiment.bench.steer import SteerSettings, amount, run, steered_walk
+from elbowroom.experiment.bench.settings import STEERED, SteerSettings
+from elbowroom.experiment.bench.steer import amount, run, steered_walk
 from elbowroom.experiment.bench.steer_scenes import KEY_FLIPS, corridor, mouse_look, slalom, steered_scenes, wanted_way
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.clearance import clearance
@@ -19,7 +20,8 @@ from elbowroom.world.walkable import Stance, stance_segments
 
 def test_there_are_at_least_six_scenes_and_all_can_be_sent_to_a_server() -> None:
     scenes = steered_scenes()
-    assert len({steered.name for steered in scenes}) == len(scenes) >= 6
+    assert tuple(steered.name for steered in scenes) == STEERED
+    assert len(set(STEERED)) >= 6
     for steered in scenes:
         again = Scene.from_dict(steered.scene.to_dict())
         assert len(again.obstacles) == len(steered.scene.obstacles)

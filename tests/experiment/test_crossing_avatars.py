@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from elbowroom.body.loading.avatar_file import load_humanoid
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.world.scene import Scene
 from shared_data import SHARED, needs_shared
 

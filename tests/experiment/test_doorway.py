@@ -6,9 +6,11 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.frame import Frame
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 

@@ -10,9 +10,11 @@ from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import LOWERING, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.frame import Frame
-from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import CrossingResult, controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.world.scene import Scene
 
 HUMANOID = Humanoid.default()

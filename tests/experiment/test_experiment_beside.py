@@ -8,7 +8,8 @@ import pytest
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.control.plans.desk import Job
 from elbowroom.experiment.beside import BesideDesk
-from elbowroom.experiment.crossing import DT, CrossingSettings, controller_for, run_timed_crossing
+from elbowroom.experiment.crossing import DT, controller_for, run_timed_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.world.scene import Scene
 
 ANSWER = cast(Any, object())

@@ -5,14 +5,8 @@ import pytest
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.errors import InputError
-from elbowroom.experiment.crossing import (
-    CrossingResult,
-    CrossingSettings,
-    controller_for,
-    run_crossing,
-    start_for,
-    warm_up,
-)
+from elbowroom.experiment.crossing import CrossingResult, controller_for, run_crossing, start_for, warm_up
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.pacing import is_realtime, late_frames, shown_times
 from elbowroom.experiment.scripted_user import BACK, FORWARD, ScriptedUser
 from elbowroom.world.scene import Scene

@@ -11,7 +11,8 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course, CourseMaker, NoCourseError
-from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial import TrialResult, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import BodyVerdict, judge
 from shared_data import SHARED, needs_shared

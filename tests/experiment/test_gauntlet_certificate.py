@@ -12,7 +12,8 @@ from elbowroom.experiment.gauntlet.line import walk_along
 from elbowroom.experiment.gauntlet.motion import LEFT, RIGHT, WAIST
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED, HumanSpeeds
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance

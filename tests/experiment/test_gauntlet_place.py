@@ -13,10 +13,11 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.draw import Draw
-from elbowroom.experiment.gauntlet.place.course import MARGIN, PlaceCourseMaker
+from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
+from elbowroom.experiment.gauntlet.place.furnished import MARGIN, FurnishedPlace
 from elbowroom.experiment.gauntlet.place.furniture import furniture_of, made_up
 from elbowroom.experiment.gauntlet.place.proof import keeps_clear, proven_walk
-from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace, PlaceCourses
+from elbowroom.experiment.gauntlet.place.tasks import PlaceCourses
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.places.options import PlaceOptions

@@ -21,7 +21,8 @@ from elbowroom.experiment.gauntlet.settings import GauntletSettings
 from elbowroom.experiment.gauntlet.summary import GauntletSummary
 from elbowroom.experiment.gauntlet.sweep import STEERING
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
-from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.parallel import Processes
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.plan import RootPlanKind

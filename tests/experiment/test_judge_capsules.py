@@ -12,7 +12,8 @@ from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.obstacles import obstacles_of
 from elbowroom.experiment.judge.poses import Poser
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import pairwise_clearance
 from elbowroom.world.obstacles.obstacles import Obstacles

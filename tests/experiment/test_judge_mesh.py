@@ -18,8 +18,9 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.obstacles import obstacles_of
 from elbowroom.experiment.judge.patches import patches_of
 from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import Skin, skin_of
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh

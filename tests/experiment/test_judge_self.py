@@ -10,7 +10,8 @@ from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
-from elbowroom.experiment.judge.verdict import BodyVerdict, JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import BodyVerdict, judge
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import OVERLAP, self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath

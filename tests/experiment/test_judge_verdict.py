@@ -13,8 +13,9 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.recordings.recording import ASSIST, RESTART, Recorder, Recording, RecordingHeader
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.smoothness import smoothness
-from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge_recording
+from elbowroom.experiment.judge.verdict import Verdict, judge_recording
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 from judged_bodies import T_POSE, gliding, scene_with, upright, write_recording

@@ -8,11 +8,14 @@ import pytest
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.control.recordings.replay import replay
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.gauntlet.shapes import in_shapes
-from elbowroom.experiment.gauntlet.trial import TrialSettings, controller_on, walk_course
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge_recording
+from elbowroom.experiment.gauntlet.trial import controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge_recording
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.scene import Scene

@@ -6,12 +6,12 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from elbowroom.experiment.crossing import CrossingSettings
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.report.chart import Axis
 from elbowroom.experiment.report.crossings import DrawnCrossing, DrawTask
 from elbowroom.experiment.report.page import report_html
 from elbowroom.experiment.report.scene_picture import draw_scenes
-from elbowroom.experiment.table1.tasks import Table1Settings
+from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.world.scene import Scene
 from table1_records import ABOUT, SHORT_SCENE, made_up_table
 

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.crossing import CrossingSettings
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.paper_table import COLUMNS, paper_table
 from elbowroom.experiment.statistics import wilson
 from elbowroom.experiment.table1.cells import fold_cell
 from elbowroom.experiment.table1.files import TIME_COLUMNS, columns, table_csv, table_document, trials_document
-from elbowroom.experiment.table1.tasks import CrossingTask, Table1Settings, crossing_tasks, scene_key
+from elbowroom.experiment.table1.settings import Table1Settings
+from elbowroom.experiment.table1.tasks import CrossingTask, crossing_tasks, scene_key
 from shared_data import SHARED, needs_shared
 from table1_records import ABOUT, made_up_table, made_up_trial
 

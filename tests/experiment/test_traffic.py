@@ -11,9 +11,11 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.control.recordings.replay import replay
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge, judge_recording
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import Verdict, judge, judge_recording
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box

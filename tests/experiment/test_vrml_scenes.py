@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import ArrayLike
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import CrossingResult, controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.scene import Scene
 

@@ -12,7 +12,8 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.export.animation import Animation
-from elbowroom.export.layout import Layout, Rest, RootMotion, take_of
+from elbowroom.export.formats import Layout, Rest, RootMotion
+from elbowroom.export.layout import take_of
 from elbowroom.export.shown import ShownFrames
 from elbowroom.geometry import quaternion
 from made_recording import Made, made_recording

@@ -15,8 +15,8 @@ from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
 from elbowroom.export.avatar_glb import avatar_glb
-from elbowroom.export.layout import RootMotion
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, RootMotion, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.gltf_animating import NodeMotion, continuous, with_animation
@@ -71,7 +71,7 @@ def wanted(animation: Animation, root: RootMotion) -> Floats:
 
 def written(animation: Animation, humanoid: Humanoid, ending: str, root: RootMotion) -> tuple[bytes, tuple[str, ...]]:
     chosen = FORMATS[ending]
-    result = chosen.write(animation, humanoid, chosen.layout(Wishes(root.value)))
+    result = WRITERS[ending](animation, humanoid, chosen.layout(Wishes(root.value)))
     return result.data, result.notes
 
 

@@ -11,7 +11,7 @@ from avatar_builder import json_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.export.animation import Animation
 from elbowroom.export.avatar_glb import avatar_glb
-from elbowroom.export.layout import RootMotion
+from elbowroom.export.formats import RootMotion
 from elbowroom.export.place import place_glb, with_place
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.gltf import parse_gltf

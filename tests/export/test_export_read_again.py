@@ -12,7 +12,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.clip import Clip
 from elbowroom.clips.files import parse_motion
 from elbowroom.export.animation import Animation
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.formats.bvh import parse_bvh
 from elbowroom.geometry import quaternion
 from made_recording import made_recording
@@ -30,7 +31,7 @@ def walked(tmp_path_factory: pytest.TempPathFactory) -> Animation:
 
 def written(animation: Animation, ending: str, wishes: Wishes) -> bytes:
     chosen = FORMATS[ending]
-    return chosen.write(animation, BODY, chosen.layout(wishes)).data
+    return WRITERS[ending](animation, BODY, chosen.layout(wishes)).data
 
 
 def wanted(animation: Animation, root: str) -> Floats:

@@ -11,7 +11,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.body.loading.hanim_names import hanim_name
 from elbowroom.export.animation import Animation
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.geometry import quaternion
 from made_recording import made_recording
 
@@ -27,7 +28,7 @@ def animation(tmp_path_factory: pytest.TempPathFactory) -> Animation:
 
 def written(animation: Animation, ending: str, wishes: Wishes) -> str:
     chosen = FORMATS[ending]
-    return chosen.write(animation, STOCK, chosen.layout(wishes)).data.decode()
+    return WRITERS[ending](animation, STOCK, chosen.layout(wishes)).data.decode()
 
 
 def numbers(text: str, width: int) -> Floats:

@@ -17,9 +17,9 @@ from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.pace import slow_places
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.line.line import new_line
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]

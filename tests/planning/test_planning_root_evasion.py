@@ -16,9 +16,10 @@ from elbowroom.planning.root.evasion.evasion import EvasionFinder, EvasionSettin
 from elbowroom.planning.root.evasion.grid_search import Prices, cheapest
 from elbowroom.planning.root.evasion.profile import Course, follow_profile, turned_speed
 from elbowroom.planning.root.line.line import new_line
-from elbowroom.planning.root.motion import MotionBounds, RootMotionSettings
+from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene

@@ -12,10 +12,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import Scene
 

@@ -8,7 +8,8 @@ from elbowroom.body.dof import DOF, DofGroup, followed
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.planning.command import Command
 from elbowroom.planning.paper.local_planner import LocalPlanner
 from elbowroom.planning.paper.trunk_places import FARTHEST

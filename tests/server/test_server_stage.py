@@ -14,9 +14,9 @@ from elbowroom.body.stock import stock_avatar_path
 from elbowroom.errors import InputError
 from elbowroom.experiment.rehearsal import rehearse_detour
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.pace import at_speed
 from elbowroom.planning.root.plan import RootPlanKind
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.server.entrance.rate_limit import TokenBucket
 from elbowroom.server.kernels.warmup import warm_up
 from elbowroom.server.schema.commands import ClockMessage, Input, Overlays, Push

@@ -26,8 +26,9 @@ from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
 from elbowroom.geometry import quaternion
 from elbowroom.server.stores.library import Library
-from elbowroom.server.vmc.protocol import Locomotion, Message, Moment, Puppet, blink, messages, unity_name
-from elbowroom.server.vmc.stream import VmcSettings, VmcStream, packets
+from elbowroom.server.vmc.protocol import Message, Moment, Puppet, blink, messages, unity_name
+from elbowroom.server.vmc.settings import Locomotion, VmcSettings
+from elbowroom.server.vmc.stream import VmcStream, packets
 from elbowroom.server.wire.pose import Poser
 from godot_judge import GodotJudge
 from live_session import client_of, running

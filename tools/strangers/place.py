@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.export.avatar_glb import avatar_glb
-from elbowroom.export.layout import RootMotion
+from elbowroom.export.formats import RootMotion
 from elbowroom.export.place import place_glb, with_place
 from elbowroom.export.place_x3d import place_x3d
 from elbowroom.geometry import quaternion

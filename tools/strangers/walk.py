@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.recording import Recorder, Recording
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.export.animation import Animation
-from elbowroom.export.writers import FORMATS, Wishes
+from elbowroom.export.formats import FORMATS, Wishes
+from elbowroom.export.writers import WRITERS
 from elbowroom.world.scene import Scene
 
 SCENE = "shapes"
@@ -58,7 +60,7 @@ def exported_walk(folder: Path) -> Walk:
         run_crossing(controller, CrossingSettings(), recorder.append)
     animation = Animation.of(Recording(folder / "walk.elbow"), avatar)
     for ending, chosen in FORMATS.items():
-        written = chosen.write(animation, avatar, chosen.layout(Wishes()))
+        written = WRITERS[ending](animation, avatar, chosen.layout(Wishes()))
         (folder / f"walk.{ending}").write_bytes(written.data)
     frames = np.unique(np.linspace(0, len(animation) - 1, _SHOWN).astype(int)).tolist()
     return Walk(folder, avatar, scene, animation, frames)

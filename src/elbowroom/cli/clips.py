@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.options.arguments import check_arguments, check_file
 from elbowroom.cli.telling.output import print_json
+from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.clips.clip import Clip
@@ -40,12 +42,14 @@ def clips(
 
     Exit code 2: a file holds no motion of a humanoid; the others are listed all the same.
     """
+    check_arguments(files=[avatar], port=port)
     told = clip_options.told_by(unit, up, fps)
     rows, refusals = _rows(files, told)
     if json:
         print_json({"clips": rows, "refused": refusals})
     else:
-        _print_table(rows)
+        if rows:
+            _print_table(rows)
         for file, reason in refusals.items():
             named = Path(file.split("#")[0]).name in reason
             typer.echo(f"elbowroom: {reason if named else f'{file}: {reason}'}", err=True)
@@ -59,15 +63,16 @@ def clips(
 
 def _rows(references: list[str], told: "Told") -> tuple[list[dict[str, Any]], dict[str, str]]:
     """A row for every clip, and why files or clips were refused."""
-    from elbowroom.clips.files import open_motion
     from elbowroom.clips.reference import split_reference
-    from elbowroom.errors import InputError
 
     rows: list[dict[str, Any]] = []
     refused: dict[str, str] = {}
     for reference in references:
         path, only = split_reference(reference)
         try:
+            check_file(path)
+            from elbowroom.clips.files import open_motion
+
             file = open_motion(path, told)
             names = list(file.clips) if only is None else [file.clip(only).name]
         except InputError as error:
@@ -79,8 +84,6 @@ def _rows(references: list[str], told: "Told") -> tuple[list[dict[str, Any]], di
 
 
 def _add_row(rows: list[dict[str, Any]], refused: dict[str, str], file: "MotionFile", name: str, path: Path) -> None:
-    from elbowroom.errors import InputError
-
     try:
         rows.append({"path": str(path), **_row(file.clip(name))})
     except InputError as error:

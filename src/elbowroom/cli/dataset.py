@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.time_left import time_left_bar
@@ -57,7 +57,7 @@ def make(
     from dataclasses import replace
 
     check_arguments(files=[spec])
-    check_cluster(cluster)
+    check_workers(cluster, jobs)
     _check_installed()
     from elbowroom.dataset.spec import DatasetSpec
 
@@ -66,11 +66,11 @@ def make(
     from elbowroom.dataset.drawn_from import check_drawn_from
 
     check_drawn_from(wanted, spec)
-    compile_first(quiet=quiet)
     from elbowroom.dataset.card import check_licences
     from elbowroom.dataset.make import make_dataset
 
     check_licences(wanted)
+    compile_first(quiet=quiet)
     with chosen_workers(cluster, jobs, wanted.walks) as workers, time_left_bar("Walks", quiet) as move:
         manifest = make_dataset(wanted, out, workers, move)
     kept, left_out = sum(one.walks for one in manifest.shards), sum(len(one.rejected) for one in manifest.shards)
@@ -99,15 +99,13 @@ def check(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Compare sums and columns, and walk a sample again, bit for bit. Exit code 1: something differs."""
-    check_cluster(cluster)
+    check_workers(cluster, jobs)
     _check_installed()
     if sample < 0:
         raise InputError(f"sample: {sample} is less than 0")
     from elbowroom.dataset.manifest import FILE, Manifest
 
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise InputError(f"{folder}: holds no dataset (no manifest.json)")
+    manifest = Manifest.of(folder)
     if show is not None:
         return _show(manifest.spec, show)
     if sample:
@@ -138,6 +136,10 @@ def report(
 ) -> None:
     """Draw how near, how fast and in which postures is walked, and some walks from above, on one page."""
     _check_installed()
+    check_arguments(written=[out])
+    from elbowroom.dataset.manifest import Manifest
+
+    Manifest.of(folder)
     from elbowroom.dataset.report import write_report
 
     with time_left_bar("Files", quiet) as move:
@@ -151,6 +153,8 @@ def report(
 
 def _show(spec: "DatasetSpec", walk: int) -> None:
     """Walk one walk again and show it on the page, with its timeline, until Ctrl-C."""
+    if not 0 <= walk < spec.walks:
+        raise InputError(f"--show: walk {walk} is not between 0 and {spec.walks - 1}")
     from elbowroom.cli.play import serve_until_interrupted
     from elbowroom.cli.replay import library_of
     from elbowroom.control.recordings.recording import Recording
@@ -158,8 +162,6 @@ def _show(spec: "DatasetSpec", walk: int) -> None:
     from elbowroom.dataset.recorded import record_walk
     from elbowroom.dataset.spec import STOCK
 
-    if not 0 <= walk < spec.walks:
-        raise InputError(f"--show: walk {walk} is not between 0 and {spec.walks - 1}")
     compile_first()
     name = draw(spec, walk).avatar
     with TemporaryDirectory() as place:

@@ -11,6 +11,7 @@ from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
+from elbowroom.export.formats import Wishes, check_rate, format_of
 
 if TYPE_CHECKING:
     from elbowroom.control.recordings.recording import Recording
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 EXAMPLES = (
     "Examples:  elbowroom export run.elbow -o walk.bvh  |  elbowroom export run.elbow -o walk.bvh --fps 30 --up z"
 )
+
+_SCENES = {".glb": "GLB", ".x3d": "X3D"}  # what a scene alone is written as
 
 
 def export(
@@ -43,11 +46,7 @@ def export(
     It holds the frames as the page shows them. BVH is in centimetres with Y up and a T-pose, unless told otherwise.
     GLB has the avatar's mesh in it where its licence allows that.
     """
-    check_arguments(files=[recording, avatar], written=[out])
-    from elbowroom.control.recordings.recording import Recording
-    from elbowroom.export.animation import Animation, check_rate
-    from elbowroom.export.writers import Wishes, format_of
-
+    check_arguments(scenes=[] if scene is None else [scene], files=[recording, avatar], written=[out])
     if out.exists() and not overwrite:
         raise InputError(f"{out}: exists; choose another name or say --overwrite")
     if scene is not None or recording is None:
@@ -61,12 +60,16 @@ def export(
     check_rate(fps)
     if place and chosen.title != "GLB":
         raise InputError(f"{out}: --place is possible in .glb only")
+    from elbowroom.control.recordings.recording import Recording
+    from elbowroom.export.animation import Animation
+    from elbowroom.export.writers import WRITERS
+
     recorded = Recording(recording)
     compile_first(quiet=quiet)
     with progress_bar(said("Writing {0}", out.name), None, quiet):
         humanoid = recorded.header.avatar.load(avatar)
         animation = Animation.of(recorded, humanoid, fps)
-        written = chosen.write(animation, humanoid, layout)
+        written = WRITERS[chosen.ending](animation, humanoid, layout)
         if place:
             written = replace(written, data=_with_place(written.data, recorded, animation))
         _keep(out, written.data)
@@ -93,16 +96,16 @@ def _export_page(recording: Path, out: Path, avatar: Path | None, *, json: bool,
 
 
 def _export_scene(name: str | None, recording: Path | None, out: Path, *, json: bool) -> None:
+    if name is None or recording is not None:
+        raise InputError("export: give either a recording or --scene, such as `elbowroom export --scene d -o d.glb`")
+    if out.suffix.lower() not in _SCENES:
+        raise InputError(f"{out}: a scene is written as .glb or .x3d")
     from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.export.place import place_glb
     from elbowroom.export.place_x3d import place_x3d
 
-    if name is None or recording is not None:
-        raise InputError("export: give either a recording or --scene, such as `elbowroom export --scene d -o d.glb`")
-    writers = {".glb": ("GLB", place_glb), ".x3d": ("X3D", place_x3d)}
-    if out.suffix.lower() not in writers:
-        raise InputError(f"{out}: a scene is written as .glb or .x3d")
-    title, write = writers[out.suffix.lower()]
+    title = _SCENES[out.suffix.lower()]
+    write = place_glb if title == "GLB" else place_x3d
     scene = load_scene(name)
     data = write(scene)
     _keep(out, data)

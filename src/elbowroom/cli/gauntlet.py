@@ -11,22 +11,23 @@ from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
-from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
     from elbowroom.control.recordings.avatar_reference import AvatarReference
+    from elbowroom.experiment.gauntlet.place.furnished import FurnishedPlace
     from elbowroom.experiment.gauntlet.place.settings import PlaceGauntletSettings
-    from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace
     from elbowroom.experiment.gauntlet.runner import Progress
     from elbowroom.experiment.gauntlet.settings import Gauntlet, GauntletSettings
     from elbowroom.experiment.gauntlet.summary import GauntletSummary
-    from elbowroom.experiment.gauntlet.trial import TrialResult, TrialSettings
+    from elbowroom.experiment.gauntlet.trial import TrialResult
     from elbowroom.experiment.parallel import Workers
     from elbowroom.world.scene import Scene
 
@@ -81,11 +82,11 @@ def gauntlet(
     Exit code 0: all crossed and nothing touched, 1: not, 2: no seed gives a course.
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
-    check_cluster(cluster)
+    check_workers(cluster, jobs)
     furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
-    from elbowroom.experiment.gauntlet.trial import TrialSettings
-
     walker = _Walker(avatar, bones, height, include_hair)
+    walker.check()
+    _check_chosen(save, show)
     gauntlet = _gauntlet(furnished, level, courses, seed, TrialSettings(planner, queue), judge=judge, shapes=shapes)
     compile_first(quiet=quiet)
     gauntlet = replace(gauntlet, avatar=walker.reference())
@@ -103,7 +104,7 @@ def _gauntlet(
     level: int,
     courses: int,
     seed: int,
-    trial: "TrialSettings",
+    trial: TrialSettings,
     *,
     judge: bool,
     shapes: bool,
@@ -157,6 +158,10 @@ class _Walker(NamedTuple):
     height: float | None
     include_hair: bool
 
+    def check(self) -> None:
+        """Raises `InputError` for options that no avatar can be read by."""
+        settings_by(self.bones, self.height, self.include_hair)
+
     def load(self) -> "Humanoid":
         return chosen_avatar(self.avatar, settings_by(self.bones, self.height, self.include_hair))
 
@@ -167,10 +172,17 @@ class _Walker(NamedTuple):
         return AvatarReference.of(self.load()) if any(option for option in self) else None
 
 
+def _check_chosen(save: tuple[int, Path] | None, show: int | None) -> None:
+    """Raises `InputError` for a course that there cannot be, or a file that it cannot be kept in."""
+    if save is not None:
+        check_arguments(written=[save[1]])
+    for k in (show, None if save is None else save[0]):
+        if k is not None and k < 0:
+            raise InputError(f"course {k}: courses are counted from 0")
+
+
 def _course(gauntlet: "Gauntlet", walker: _Walker, k: int, quiet: bool) -> "Scene":
     """Course `k` as a scene."""
-    if k < 0:
-        raise InputError(f"course {k}: courses are counted from 0")
     with progress_bar("Making the course", None, quiet):
         return gauntlet.scene(walker.load(), k)
 

@@ -9,7 +9,7 @@ import typer
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
-    from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace
+    from elbowroom.experiment.gauntlet.place.furnished import FurnishedPlace
     from elbowroom.world.places.options import PlaceOptions
 
 PlaceFile = Annotated[
@@ -36,7 +36,7 @@ def chosen_place(
         return None
     if shapes:
         raise InputError(f"--shapes is for courses of a level, not for those of --place {place}: leave one out")
-    from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace
+    from elbowroom.experiment.gauntlet.place.furnished import FurnishedPlace
     from elbowroom.formats.models.kinds import kind_by_name
 
     if kind_by_name(str(place)) is None:

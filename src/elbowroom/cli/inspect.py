@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.inspect_place import as_json, draw_plan, look_over, print_place
+from elbowroom.cli.options.arguments import check_arguments, check_file
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
 from elbowroom.errors import InputError
@@ -64,6 +65,7 @@ def inspect(
     """
     from elbowroom.body.loading.settings import LoadSettings
 
+    check_arguments(files=[bones], written=[pose_sheet, plan])
     if kind not in (None, "avatar", "place"):
         raise InputError(f"--as {kind!r}: must be avatar or place")
     settings, told = LoadSettings(bones, include_hair, height), place_options(scale, up, ground, drop, passable)
@@ -89,16 +91,18 @@ def inspect(
 
 def _read(paths: list[Path], kind: str | None, settings: "LoadSettings", told: "PlaceOptions", bar: Bar) -> _Found:
     """Read all the files as avatars or places: as told, or else by what they hold."""
-    from elbowroom.body.loading.inspection import inspect_avatar
     from elbowroom.formats.models.recognised import is_of_a_place
 
     found = _Found()
     for path in paths:
         bar.note(path.name)
         try:
+            check_file(path)
             if kind == "place" or (kind is None and is_of_a_place(path)):
                 found.places.append(look_over(path, told, bar))
             else:
+                from elbowroom.body.loading.inspection import inspect_avatar
+
                 found.avatars.append(inspect_avatar(path, settings))
         except InputError as error:
             found.refused[str(path)] = str(error)

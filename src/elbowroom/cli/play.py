@@ -14,12 +14,13 @@ import typer
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options import vmc as vmc_options
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
-from elbowroom.cli.options.vmc import stream_to
+from elbowroom.cli.options.vmc import check_vmc, stream_to
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.telling.spoken import said
+from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def play(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
-    style: clip_options.StyleName = clip_options.PLAIN,
+    style: clip_options.StyleName = PLAIN_NAME,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -66,18 +67,15 @@ def play(
     """Walk an avatar through a scene in the browser. Ctrl-C ends it."""
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], port=port)
     check_arguments(clips=clip_options.named_by(swing, dodge))
-    from elbowroom.body.loading.settings import LoadSettings
-    from elbowroom.clips.style import style_named
-
-    read = LoadSettings(bones, include_hair, height)
-    style_named(style)
+    check_vmc(vmc, vmc_root)
+    read, of_place = settings_by(bones, height, include_hair), is_model(scene)
+    of_clips = clip_options.told_by(unit, None if of_place else up, fps)
+    told = place_options(scale, up if of_place else None, ground, drop, passable)
     from elbowroom.server.sessions.walk import WalkSettings
     from elbowroom.server.stores.library import Library
 
     settings = WalkSettings(planner=planner, queue_size=queue).in_style(style)
-    of_place = is_model(scene)
-    motions = clip_options.motions_by(swing, dodge, clip_options.told_by(unit, None if of_place else up, fps))
-    told = place_options(scale, up if of_place else None, ground, drop, passable)
+    motions = clip_options.motions_by(swing, dodge, of_clips)
 
     with stream_to(vmc, vmc_root, bundles=vmc_bundles) or contextlib.nullcontext() as stream:
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.workers import check_cluster
+from elbowroom.cli.options.workers import check_workers
 from elbowroom.cli.play import tell_openness
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
@@ -45,7 +45,7 @@ def serve(
     Each session is held by one server; should that be lost, its page goes on at another one, in the same place.
     """
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar], port=port)
-    check_cluster(cluster)
+    check_workers(cluster)
     from rich.console import Console
 
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")

@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.workers import Cluster, Jobs, check_cluster, chosen_workers
+from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import json_text, print_json, progress_bar
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
+from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.planning.names import FIGURE6
 
 if TYPE_CHECKING:
     from elbowroom.experiment.parallel import Workers
     from elbowroom.experiment.table1.table import Table1
-    from elbowroom.experiment.table1.tasks import Table1Settings
-
 EXAMPLES = (
     "Examples:  elbowroom table1 --scenes a,d --queues 3,5 --seeds 3  |  elbowroom table1 --seeds 20 --out results"
 )
@@ -52,10 +51,13 @@ def table1(
     check_arguments(
         scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
     )
-    check_cluster(cluster)
+    check_workers(cluster, jobs)
     settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
-    compile_first(quiet=quiet)
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
+    from elbowroom.experiment.table1.table import check
+
+    check(settings)
+    compile_first(quiet=quiet)
 
     with chosen_workers(cluster, jobs) as workers:
         with progress_bar("Opening the avatar", None, quiet):
@@ -79,7 +81,7 @@ def table1(
 
 
 def _run(
-    settings: "Table1Settings", about: dict[str, Any], out: Path, workers: "Workers", *, quiet: bool
+    settings: Table1Settings, about: dict[str, Any], out: Path, workers: "Workers", *, quiet: bool
 ) -> "tuple[Table1, str]":
     """The table, and its report."""
     from elbowroom.experiment.report.crossings import successful_crossings
@@ -98,14 +100,9 @@ def _run(
 
 def _settings(
     planner: str, scenes: str, queues: str, seeds: int, limit: float, avatar: Path | None, *, live: bool
-) -> "Table1Settings":
-    from elbowroom.experiment.table1.table import check
-    from elbowroom.experiment.table1.tasks import Table1Settings
-
+) -> Table1Settings:
     sizes = [_whole(size) for size in _listed(queues)]
-    settings = Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar, live)
-    check(settings)
-    return settings
+    return Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar, live)
 
 
 def _listed(text: str) -> tuple[str, ...]:
@@ -119,7 +116,7 @@ def _whole(text: str) -> int:
         raise InputError(f"--queues: {text[:40]!r} is not a whole number") from None
 
 
-def _about(settings: "Table1Settings", processes: int) -> dict[str, Any]:
+def _about(settings: Table1Settings, processes: int) -> dict[str, Any]:
     """What was asked, when, and on what kind of machine."""
     from elbowroom.experiment.table1.table import identity, planner_settings, warm_kernels
 
@@ -142,7 +139,7 @@ def _about(settings: "Table1Settings", processes: int) -> dict[str, Any]:
     }
 
 
-def _command(settings: "Table1Settings", processes: int) -> str:
+def _command(settings: Table1Settings, processes: int) -> str:
     words = {
         "planner": ",".join(settings.planners),
         "scenes": ",".join(settings.scenes),

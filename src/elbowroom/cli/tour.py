@@ -13,7 +13,9 @@ from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpA
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
+from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.errors import InputError
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -46,7 +48,7 @@ def tour(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
-    style: clip_options.Style = clip_options.PLAIN,
+    style: clip_options.Style = PLAIN_NAME,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -61,9 +63,9 @@ def tour(
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record, plan])
     check_arguments(clips=clip_options.named_by(swing, dodge))
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
-    from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
-
     settings = CrossingSettings(planner, queue, seed)
+    from elbowroom.experiment.crossing import controller_for, warm_up
+
     compile_first(quiet=quiet)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)
     place = open_scene(scene, told, quiet)

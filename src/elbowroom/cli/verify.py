@@ -9,6 +9,7 @@ from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
+from elbowroom.experiment.judge.settings import JudgeSettings
 
 if TYPE_CHECKING:
     from elbowroom.control.recordings.recording import Recording
@@ -37,11 +38,12 @@ def verify(
     Exit code 0: nothing touches, 1: something does.
     """
     check_arguments(files=[recording, avatar])
+    settings = JudgeSettings(rate=rate, mesh=mesh)
     from elbowroom.control.recordings.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion
-    from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+    from elbowroom.experiment.judge.verdict import judge
 
-    settings, recorded = JudgeSettings(rate=rate, mesh=mesh), Recording(recording)
+    recorded = Recording(recording)
     compile_first(quiet=quiet)
     motion = ShownMotion.of(recorded)
     scene = recorded.scene()

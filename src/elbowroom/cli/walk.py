@@ -16,6 +16,8 @@ from elbowroom.cli.options.vmc import check_vmc, in_time, stream_to
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
+from elbowroom.clips.style_names import PLAIN_NAME
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from elbowroom.control.controller import Controller
     from elbowroom.control.frame import Frame
     from elbowroom.control.recordings.recording import Recorder
-    from elbowroom.experiment.crossing import CrossingResult, CrossingSettings, Listener
+    from elbowroom.experiment.crossing import CrossingResult, Listener
     from elbowroom.experiment.tour.leg import Leg
     from elbowroom.planning.command import Command
     from elbowroom.planning.navigation.way import Place, Spot
@@ -54,7 +56,7 @@ def walk(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
-    style: clip_options.Style = clip_options.PLAIN,
+    style: clip_options.Style = PLAIN_NAME,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
     unit: clip_options.Unit = None,
@@ -79,10 +81,10 @@ def walk(
     of_clips = clip_options.told_by(unit, None if of_place else up, fps)
     told = place_options(scale, up if of_place else None, ground, drop, passable)
     reading = settings_by(bones, height, include_hair)
-    from elbowroom.control.recordings.recording import Recorder
-    from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
-
     settings = CrossingSettings(planner, queue, seed, limit)
+    from elbowroom.control.recordings.recording import Recorder
+    from elbowroom.experiment.crossing import controller_for, warm_up
+
     compile_first(quiet=quiet)
     motions = clip_options.motions_by(swing, dodge, of_clips, style)
     place = open_scene(scene, told, quiet)
@@ -100,7 +102,7 @@ def walk(
 
 
 def _walked(
-    controller: "Controller", settings: "CrossingSettings", target: "Place | Spot | None", listener: "Listener"
+    controller: "Controller", settings: CrossingSettings, target: "Place | Spot | None", listener: "Listener"
 ) -> "Leg | CrossingResult":
     """Walk to the target, or across the scene without one."""
     from elbowroom.experiment.crossing import run_crossing

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.body.clips.stock_clips import HANGING
 from elbowroom.body.dof import DofGroup, clamp
 from elbowroom.body.gait.manner import PLAIN, Manner
+from elbowroom.clips.style_names import PLAIN_NAME, name_and_share
 from elbowroom.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -58,7 +59,7 @@ class Posture:
 class Style:
     """A way to walk; without arguments the plain one. Raises `InputError` for what no body could show."""
 
-    name: str = "plain"
+    name: str = PLAIN_NAME
     speed: float = WALK_SPEED  # m/s that it likes to walk
     manner: Manner = PLAIN
     posture: Posture | None = None  # None: that of the plain walk
@@ -147,11 +148,5 @@ STYLES: Mapping[str, Style] = {
 
 def style_named(text: str) -> Style:
     """A stock style by NAME, or so much of it by NAME:SHARE, as `old:0.5`; raises `InputError`."""
-    name, _, share = text.partition(":")
-    style = STYLES.get(name)
-    if style is None:
-        raise InputError(f"style {name[:40]!r} is none of {', '.join(STYLES)}")
-    try:
-        return style.by(float(share)) if ":" in text else style
-    except ValueError:
-        raise InputError(f"style {text[:40]!r} is not as old or old:0.5") from None
+    name, share = name_and_share(text)
+    return STYLES[name] if share is None else STYLES[name].by(share)

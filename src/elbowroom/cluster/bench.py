@@ -6,33 +6,17 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from elbowroom.cluster.bench_settings import ClusterSettings
 from elbowroom.cluster.connection import connected
-from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.tasks import CourseTask
-from elbowroom.experiment.gauntlet.trial import TrialSettings
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.machine import machine_kind
 from elbowroom.experiment.opened import Thing
-from elbowroom.experiment.parallel import MAX_JOBS, Task, Workers
+from elbowroom.experiment.parallel import Task, Workers
 
 _EMPTY = 400  # tasks without work
 
 Tick = Callable[[int], None]
-
-
-@dataclass(frozen=True)
-class ClusterSettings:
-    """What is walked, and by how many at once."""
-
-    address: str = "local"
-    workers: tuple[int, ...] = (1, 2, 4)
-    level: int = 3
-    courses: int = 12
-
-    def __post_init__(self) -> None:
-        if not self.workers or not all(1 <= count <= MAX_JOBS for count in self.workers):
-            raise InputError(f"workers {self.workers}: each is 1 to {MAX_JOBS}")
-        if not 1 <= self.courses <= 10_000:
-            raise InputError(f"courses {self.courses}: 1 to 10000")
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,7 @@ def check_dataset(
     folder: Path, workers: Workers, sample: int, tick: Callable[[int, int], None] = lambda _, __: None
 ) -> Checked:
     """Compare sums and columns of all files, and walk a sample again; raises `InputError` without a manifest."""
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise InputError(f"{folder}: holds no dataset (no manifest.json)")
+    manifest = Manifest.of(folder)
     faults: list[str] = []
     whole = [written for written in manifest.shards if _is_whole(folder, written, faults)]
     numbers = [int(n) for written in whole for n in read_shard(folder / written.file).column("walk").to_pylist()]

@@ -85,6 +85,7 @@ class _Tour:
             return None  # from where it stands now
 
 
+# Each of `spec.STEERING`.
 HANDS: dict[str, Made] = {
     "straight": _straight,
     "mouse look": _looking,

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom import __version__
-from elbowroom.control.recordings.recording import this_machine
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.errors import InputError
 from elbowroom.experiment.machine import program_digest
@@ -40,6 +39,8 @@ class Manifest:
     @classmethod
     def new(cls, spec: DatasetSpec) -> "Manifest":
         """Of a folder with nothing in it yet."""
+        from elbowroom.control.recordings.recording import this_machine  # slow to import, and not needed to read one
+
         return cls(spec, (), {"version": __version__, "program": program_digest(), "machine": this_machine()})
 
     @classmethod
@@ -56,6 +57,14 @@ class Manifest:
             return cls(DatasetSpec.of(given["spec"]), shards, given["made_with"])
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             raise InputError(f"{path}: is damaged; move it away to begin anew") from None
+
+    @classmethod
+    def of(cls, folder: Path) -> "Manifest":
+        """That of a folder; raises `InputError` where there is none, or where it is damaged."""
+        manifest = cls.load(folder)
+        if manifest is None:
+            raise InputError(f"{folder}: holds no dataset (no {FILE})")
+        return manifest
 
     def save(self, folder: Path) -> None:
         """Write it, whole or not at all."""

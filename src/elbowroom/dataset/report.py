@@ -28,9 +28,7 @@ _STYLE = (
 
 def write_report(folder: Path, out: Path, progress: Callable[[int, int], None] = lambda _, __: None) -> Figures:
     """Count over all files and write the page; raises `InputError` for a folder without a dataset."""
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise InputError(f"{folder}: holds no dataset (no manifest.json)")
+    manifest = Manifest.of(folder)
     figures, kinds, drawn = Figures(), Counter[tuple[str, str, str]](), list[dict[str, Any]]()
     walks = sum(shard.walks for shard in manifest.shards)
     chosen = set(np.random.default_rng(walks).permutation(walks)[:_PLANS].tolist())

@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from elbowroom.dataset.hands import HANDS
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.levels import level_of
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
@@ -15,6 +14,7 @@ from elbowroom.world.json_place import read_json
 COURSES = "gauntlet:"
 STOCK = "stock"
 STYLE = "style:"
+STEERING = ("straight", "mouse look", "key flips", "stop and go", "strafing", "tour")  # as `hands` has them
 RATES = (60, 30, 20)  # frames a second: every frame, every second, every third
 MOST_WALKS = 10_000_000
 _MOST_BYTES = 1_000_000  # of a file
@@ -36,7 +36,7 @@ class DatasetSpec:
     places: tuple[str, ...] = ("gauntlet:3",)  # random courses of a level, stock scenes by name, files of scenes
     avatars: tuple[str, ...] = (STOCK,)  # or files
     swings: tuple[str, ...] = (STOCK,)  # or style:NAME, or motions that are walked as, FILE or FILE#CLIP
-    steering: tuple[str, ...] = ("straight",)  # see `hands`
+    steering: tuple[str, ...] = ("straight",)  # of `STEERING`
     company: tuple[int, ...] = (0,)  # how many others walk about in the same place
     seconds: float = 20.0  # at most, of each walk
     planner: str = DEFAULT_PLANNER
@@ -62,8 +62,8 @@ class DatasetSpec:
         for place in self.places:
             level(place)
         for hand in self.steering:
-            if hand not in HANDS:
-                raise InputError(f"steering: {hand[:40]!r} is none of {', '.join(HANDS)}")
+            if hand not in STEERING:
+                raise InputError(f"steering: {hand[:40]!r} is none of {', '.join(STEERING)}")
         check_planner(self.planner)
 
     @classmethod

@@ -13,14 +13,14 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
-from elbowroom.errors import InputError
 from elbowroom.experiment.beside import BesideDesk
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.experiment.replans import Replans
 from elbowroom.experiment.scripted_user import ScriptedUser
 from elbowroom.planning.command import Command
-from elbowroom.planning.names import DEFAULT_PLANNER, EXACT
+from elbowroom.planning.names import EXACT
 from elbowroom.planning.root.pace import at_speed
 from elbowroom.world.scene import Scene
 
@@ -28,25 +28,7 @@ Floats = NDArray[np.float64]
 Listener = Callable[[Command, float, Frame], None]
 
 DT = 1 / 60  # seconds of a frame
-LONGEST_LIMIT = 3600.0  # seconds
 _SIDEWAYS = 0.02  # metres, the start is drawn within this to either side
-
-
-@dataclass(frozen=True)
-class CrossingSettings:
-    """What a crossing trial varies."""
-
-    planner: str = DEFAULT_PLANNER
-    queue_size: int = 5
-    seed: int = 0  # of the planner's chance, the start and the user's patience
-    limit: float = 30.0  # seconds that the user has
-    live: bool = False  # plans are made beside playback, as in a session: their answers come as late as they really are
-
-    def __post_init__(self) -> None:
-        if self.seed < 0:
-            raise InputError(f"seed: {self.seed} is negative")
-        if not 0.0 < self.limit <= LONGEST_LIMIT:
-            raise InputError(f"limit: {self.limit} is not between 0 and {LONGEST_LIMIT:g} seconds")
 
 
 @dataclass(frozen=True)

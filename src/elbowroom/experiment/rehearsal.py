@@ -43,10 +43,10 @@ from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.root.line.line import new_line
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.ground.ground import heights_along
 from elbowroom.world.obstacles.meshes.solids import inner_boxes
 from elbowroom.world.obstacles.obstacles import Obstacles

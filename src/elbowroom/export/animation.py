@@ -11,13 +11,12 @@ from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.recordings.recording import Recording
 from elbowroom.errors import InputError
+from elbowroom.export.formats import check_rate
 from elbowroom.export.shown import ShownFrames, even_moments
 from elbowroom.formats.takes import MAX_FRAMES, MAX_POSES
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
-
-SLOWEST, FASTEST = 1.0, 240.0  # frames a second
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +109,6 @@ def check_length(place: str, seconds: float, humanoid: Humanoid, fps: float) -> 
     if seconds * fps >= most:
         long = f"{seconds:.0f} s at {fps:g} frames a second"
         raise InputError(f"{place}: {long} are more than the {most} frames that fit: lower --fps")
-
-
-def check_rate(fps: float) -> None:
-    """Raises `InputError` for frames a second that are out of range."""
-    if not SLOWEST <= fps <= FASTEST:
-        raise InputError(f"fps: {fps:g}, allowed are {SLOWEST:g} to {FASTEST:g} frames a second")
 
 
 def posed_frames(humanoid: Humanoid, q: Floats, roots: Floats) -> tuple[Floats, Floats]:

@@ -5,7 +5,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.rig import Rig
 from elbowroom.export.animation import Animation
-from elbowroom.export.layout import RootMotion
+from elbowroom.export.formats import RootMotion
 from elbowroom.formats.gltf_animating import NodeMotion, Stand, on_stands, with_animation
 from elbowroom.geometry import quaternion
 

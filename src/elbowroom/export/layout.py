@@ -1,14 +1,11 @@
 """How an animation is laid out as a skeleton of nodes: root motion, rest pose, unit and up axis."""
 
-from dataclasses import dataclass
-from enum import Enum
-
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
+from elbowroom.export.formats import Layout, Rest, RootMotion
 from elbowroom.formats.nodes import NodeTree
 from elbowroom.formats.takes import Take
 from elbowroom.geometry import quaternion
@@ -16,38 +13,6 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 
 _ARMS_DOWN = np.deg2rad(45.0)  # of the A-pose, below the horizontal
-_SMALLEST, _LARGEST = 1e-4, 1e3  # metres a unit
-
-
-class RootMotion(Enum):
-    """What carries the way through the world."""
-
-    HIPS = "hips"  # the hips' translation and rotation
-    ROOT = "root"  # a node of its own above the hips, on the ground
-    NONE = "none"  # nothing: the body moves on the spot, facing ahead
-
-
-class Rest(Enum):
-    """The pose in which all rotations are zero."""
-
-    T = "t"
-    A = "a"  # arms 45 degrees below the horizontal
-
-
-@dataclass(frozen=True)
-class Layout:
-    """What the nodes are to be like."""
-
-    root_motion: RootMotion = RootMotion.HIPS
-    rest: Rest = Rest.T
-    unit: float = 1.0  # metres
-    up: str = "y"  # "y": +Z is ahead at heading 0; "z": -Y is
-
-    def __post_init__(self) -> None:
-        if not _SMALLEST <= self.unit <= _LARGEST:
-            raise InputError(f"unit: {self.unit:g} m, allowed are {_SMALLEST:g} to {_LARGEST:g}")
-        if self.up not in ("y", "z"):
-            raise InputError(f"up: {self.up!r}, allowed are y and z")
 
 
 def take_of(animation: Animation, layout: Layout | None = None) -> Take:

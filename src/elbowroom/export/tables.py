@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.export.animation import Animation
-from elbowroom.export.layout import Layout, take_of
+from elbowroom.export.formats import Layout
+from elbowroom.export.layout import take_of
 from elbowroom.formats.tables import write_csv, write_npz
 
 _PLACE, _TURN = ("x", "y", "z"), ("qx", "qy", "qz", "qw")

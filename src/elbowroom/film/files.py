@@ -2,7 +2,6 @@
 
 import io
 import math
-import shutil
 import subprocess
 from collections.abc import Callable
 from functools import partial
@@ -13,26 +12,13 @@ from PIL import Image
 from elbowroom.errors import InputError
 from elbowroom.film.gif import write_gif
 from elbowroom.film.page import FilmedPage
+from elbowroom.film.settings import MOMENTS
 from elbowroom.film.webm import Packet, write_webm
 
-KINDS = (".mp4", ".webm", ".gif", ".png")
-MOMENTS = 16  # of a sheet
 MOST_PICTURES = 20_000
 _ACROSS = 4
 
 Progress = Callable[[int, int], object]
-
-
-def check_output(path: Path) -> None:
-    """Raises `InputError` where a film cannot be written to a path of this name on this machine."""
-    if path.suffix.lower() not in KINDS:
-        raise InputError(f"{path}: films are {', '.join(KINDS)} (a sheet of {MOMENTS} moments)")
-    if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
-        raise InputError(
-            f"{path}: mp4 needs the program ffmpeg, which is not installed; .webm, .gif and .png need nothing"
-        )
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: the folder {path.parent} does not exist")
 
 
 def write_film(page: FilmedPage, path: Path, fps: float, speed: float, progress: Progress) -> int:

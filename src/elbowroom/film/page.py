@@ -7,10 +7,10 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 from elbowroom.errors import InputError
+from elbowroom.film.settings import Look
 from elbowroom.film.webm import Packet
 from elbowroom.server.app import HOW_TO_BUILD, client_is_built
 from elbowroom.server.serving import listen, make_server, url_of
@@ -59,17 +59,6 @@ _ENCODE = """async ([picture, time, key]) => {
   const text = (data) => { let all = ""; for (const byte of data) all += String.fromCharCode(byte); return btoa(all); };
   return packets.splice(0).map(([data, at, isKey]) => [text(data), at, isKey]);
 }"""
-
-
-@dataclass(frozen=True)
-class Look:
-    """How the page shows a recording."""
-
-    size: tuple[int, int] = (1280, 720)  # pixels
-    camera: str = "side"
-    overlays: str = "none"
-    dark: bool = False
-    quality: str = "high"
 
 
 @contextmanager

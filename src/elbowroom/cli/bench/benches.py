@@ -14,6 +14,7 @@ from elbowroom.cli.bench import plan as bench_plan
 from elbowroom.cli.bench import planners as bench_planners
 from elbowroom.cli.bench import steer as bench_steer
 from elbowroom.cli.telling.output import print_json
+from elbowroom.experiment.bench.settings import CollisionSettings, PlanSettings
 
 EXAMPLES = "Examples:  elbowroom bench  |  elbowroom bench --json  |  elbowroom bench plan --scene d"
 
@@ -31,8 +32,8 @@ def both(
         return
     from elbowroom.experiment.bench import collision, plan
 
-    sizes = collision.CollisionSettings()
-    of_collision, of_planning = collision.run(sizes), plan.run(plan.PlanSettings())
+    sizes = CollisionSettings()
+    of_collision, of_planning = collision.run(sizes), plan.run(PlanSettings())
     if json:
         found = {"collision": bench_collision.as_json(of_collision, sizes.seed), "plan": of_planning.as_dict()}
         print_json(found)

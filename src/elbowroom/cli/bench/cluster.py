@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.options.workers import check_cluster
+from elbowroom.cli.options.workers import check_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.errors import InputError
@@ -25,13 +25,14 @@ def cluster(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Walk the same courses with more and more workers of a Ray cluster: how busy they are, what tasks cost beside."""
-    check_cluster(address)
-    counts = _counts(workers)
-    compile_first(quiet=quiet)
-    from elbowroom.cluster.bench import ClusterSettings, run
+    check_workers(address)
+    from elbowroom.cluster.bench_settings import ClusterSettings
 
-    settings = ClusterSettings(address, counts, level, courses)
-    with progress_bar("Walking", len(counts), quiet) as bar:
+    settings = ClusterSettings(address, _counts(workers), level, courses)
+    compile_first(quiet=quiet)
+    from elbowroom.cluster.bench import run
+
+    with progress_bar("Walking", len(settings.workers), quiet) as bar:
         report = run(settings, bar.move, lambda line: typer.echo(f"elbowroom: {line}", err=True))
     if json:
         print_json(report.as_dict())

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.experiment.bench.settings import CollisionSettings, MeshSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.bench.collision import CollisionReport, Speed
@@ -26,9 +27,9 @@ def collision(
     if mesh:
         _meshes(postures, rounds, seed, json, quiet)
         return
-    from elbowroom.experiment.bench.collision import CollisionSettings, run
-
     settings = CollisionSettings(postures=postures, boxes=boxes, rounds=rounds, seed=seed)
+    from elbowroom.experiment.bench.collision import run
+
     with progress_bar("Checking", rounds, quiet) as bar:
         report = run(settings, bar.move)
     if json:
@@ -39,12 +40,12 @@ def collision(
 
 def _meshes(postures: int, rounds: int, seed: int, json: bool, quiet: bool) -> None:
     """Capsules against triangles."""
+    settings = MeshSettings(postures=postures, rounds=rounds, seed=seed)
     from dataclasses import asdict
 
-    from elbowroom.experiment.bench.mesh_collision import MeshSettings, run
+    from elbowroom.experiment.bench.mesh_collision import run
     from elbowroom.experiment.machine import machine_kind
 
-    settings = MeshSettings(postures=postures, rounds=rounds, seed=seed)
     with progress_bar("Checking", rounds, quiet) as bar:
         report = run(settings, bar.move)
     if json:

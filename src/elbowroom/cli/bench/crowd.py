@@ -6,6 +6,7 @@ import typer
 
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.experiment.bench.settings import CrowdSettings
 
 EXAMPLES = "Examples:  elbowroom bench crowd  |  elbowroom bench crowd --avatars 1,10,100 --json"
 
@@ -21,10 +22,10 @@ def crowd(
 
     They set out one after the other, so that their plans do not fall into the same frame.
     """
-    from elbowroom.experiment.bench.crowd import CrowdSettings, amount, run
+    settings = CrowdSettings(_sizes(avatars), seconds)
+    from elbowroom.experiment.bench.crowd import amount, run
     from elbowroom.experiment.machine import machine_kind
 
-    settings = CrowdSettings(_sizes(avatars), seconds)
     compile_first(quiet=quiet)
     with progress_bar("Walking", amount(settings), quiet) as bar:
         report = run(settings, bar.move)

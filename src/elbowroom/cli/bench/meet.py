@@ -4,9 +4,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.options.workers import Jobs, chosen_workers
+from elbowroom.cli.options.workers import Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
+from elbowroom.experiment.meeting.settings import WIDTHS, MeetingSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.meeting.meetings import WidthResult
@@ -33,12 +34,13 @@ def meet(
 
     Exit code 0: all passed, nobody touched or was driven back by more than a step, 1: not.
     """
-    from elbowroom.experiment.machine import machine_kind
-    from elbowroom.experiment.meeting.meetings import WIDTHS, MeetingSettings, as_dict, run_meetings
-
     settings = MeetingSettings(WIDTHS if widths is None else _numbers(widths), starts, seed)
+    check_workers(None, jobs)
+    from elbowroom.experiment.machine import machine_kind
+    from elbowroom.experiment.meeting.meetings import as_dict, run_meetings
+
     compile_first(quiet=quiet)
-    count = len(settings.tasks())
+    count = settings.count
     with chosen_workers(None, jobs, count) as workers, progress_bar("Meeting", count, quiet) as bar:
         results = run_meetings(settings, workers, bar.move)
     if json:

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.experiment.motion.settings import MotionSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.motion.feet import Feet
@@ -31,11 +33,13 @@ def motion(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Walk scripted walks and measure them as a gait laboratory does: feet, hips, joints, smoothness, narrow gaps."""
-    from elbowroom.experiment.machine import machine_kind
-    from elbowroom.experiment.motion.report import MotionSettings, amount, run
-
     settings = MotionSettings(tuple(case or ()), _speeds(speeds))
-    humanoid = chosen_avatar(avatar, settings_by(bones, height, include_hair))
+    check_arguments(files=[avatar, bones])
+    reading = settings_by(bones, height, include_hair)
+    from elbowroom.experiment.machine import machine_kind
+    from elbowroom.experiment.motion.report import amount, run
+
+    humanoid = chosen_avatar(avatar, reading)
     compile_first(quiet=quiet)
     if plots is not None:
         _write(plots, {})

@@ -8,6 +8,7 @@ import typer
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.experiment.bench.settings import PlanSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.bench.plan import PlanReport
@@ -26,11 +27,11 @@ def plan(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Time every planning call of `exact`, root and upper body together, while an avatar crosses a scene."""
-    from elbowroom.experiment.bench.plan import PlanSettings, amount, run
-    from elbowroom.experiment.machine import machine_kind
-
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
     check_arguments(scenes=[scene])
+    from elbowroom.experiment.bench.plan import amount, run
+    from elbowroom.experiment.machine import machine_kind
+
     compile_first(quiet=quiet)
     if plots is not None:
         _make_folder(plots)

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.workers import Cluster, check_cluster, chosen_workers
+from elbowroom.cli.options.workers import Cluster, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
+from elbowroom.experiment.bench.settings import PlannersSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.bench.planners import PlannersReport
@@ -36,14 +37,16 @@ def planners(
     RRT-Connect plans the whole crossing before the first step, with the whole scene known and the root's walk given;
     ours plan as they go, obey the user, and are judged by what they showed.
     """
-    from elbowroom.experiment.bench.planners import PlannersSettings, amount, as_dict, run
-    from elbowroom.experiment.machine import machine_kind
-
     chosen = PlannersSettings(trials=trials, limit=limit)
     if scene is not None or level is not None:
         chosen = PlannersSettings(tuple(scene or ()), tuple(level or ()), trials, limit)
-    check_cluster(cluster)
+    check_workers(cluster, jobs)
     check_arguments(scenes=scene or ())
+    from elbowroom.experiment.bench.general import check_installed
+    from elbowroom.experiment.bench.planners import amount, as_dict, run
+    from elbowroom.experiment.machine import machine_kind
+
+    check_installed()
     compile_first(quiet=quiet)
     with chosen_workers(cluster, jobs) as workers, progress_bar("Crossing", amount(chosen), quiet) as bar:
         report = run(chosen, bar.move, workers)

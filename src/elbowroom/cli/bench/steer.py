@@ -12,10 +12,11 @@ import typer
 
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
+from elbowroom.experiment.bench.settings import SteerSettings
 
 if TYPE_CHECKING:
     from elbowroom.cli.doctor.session_cost import SessionCost
-    from elbowroom.experiment.bench.steer import SteerReport, SteerSettings
+    from elbowroom.experiment.bench.steer import SteerReport
 
 EXAMPLES = """Examples:  elbowroom bench steer  |  elbowroom bench steer --scene bends --scene "d, keys" --json  |
 elbowroom bench steer --scene bends --sessions 4"""
@@ -40,12 +41,10 @@ def steer(
     With `--sessions`, a real server is steered by as many clients, and it is said how soon the motion that is shown is
     the one that was asked for.
     """
-    from elbowroom.experiment.bench.steer import SteerSettings, amount, run
-    from elbowroom.experiment.bench.steer_scenes import check_steered
+    settings = SteerSettings(tuple(scene or (_LIVE if sessions else ())), seconds, rounds)
+    from elbowroom.experiment.bench.steer import amount, run
     from elbowroom.experiment.machine import machine_kind
 
-    settings = SteerSettings(tuple(scene or (_LIVE if sessions else ())), seconds, rounds)
-    check_steered(settings.scenes)
     compile_first(quiet=quiet)
     with progress_bar("Steering", len(settings.scenes) if sessions else amount(settings), quiet) as bar:
         if sessions:
@@ -62,7 +61,7 @@ def steer(
         _show(report)
 
 
-def _live(settings: "SteerSettings", sessions: int, bar: Bar) -> "Iterator[tuple[str, SessionCost]]":
+def _live(settings: SteerSettings, sessions: int, bar: Bar) -> "Iterator[tuple[str, SessionCost]]":
     """What live sessions in each scene come to."""
     from elbowroom.cli.doctor.session_cost import measure_session
     from elbowroom.experiment.bench.steer_scenes import steered_scenes

@@ -8,11 +8,14 @@ from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 import typer
 
 from elbowroom.cli.doctor.soak_text import soak_faults, soak_rows, telling
+from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.telling.output import print_json
+from elbowroom.errors import InputError
 
 EXAMPLES = """Examples:  elbowroom doctor  |  elbowroom doctor --session --scene d --sessions 4 --seconds 20 --json  |
 elbowroom doctor --load 16"""
@@ -43,6 +46,9 @@ def doctor(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
+    check_arguments(scenes=[scene])
+    if at is not None:
+        _check_address(at)
     from rich.console import Console
 
     facts = installation_facts()
@@ -74,6 +80,17 @@ def doctor(
         typer.echo(_as_text(facts))
     if faults:
         raise typer.Exit(1)
+
+
+def _check_address(url: str) -> None:
+    """Raises `InputError` for what cannot be the address of a server."""
+    try:
+        parts = urlsplit(url)
+        known = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # no port, or no address of the sixth version
+        known = False
+    if not known:
+        raise InputError(f"--at {url[:80]}: is no address of a server, such as http://127.0.0.1:8765")
 
 
 def installation_facts() -> dict[str, Any]:

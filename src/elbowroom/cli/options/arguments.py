@@ -41,13 +41,14 @@ def check_arguments(
     named = [Path(scene) for scene in scenes if scene.lower() not in stock_names() and not is_course(scene)]
     for file in (*named, *files, *(split_reference(clip)[0] for clip in clips)):
         if file is not None:
-            _check_file(file)
+            check_file(file)
     for file in written:
         if file is not None and not file.parent.is_dir():
             raise InputError(f"{file}: cannot be written (there is no folder {file.parent})")
 
 
-def _check_file(file: Path) -> None:
+def check_file(file: Path) -> None:
+    """Raises `InputError` for a file that cannot be read."""
     try:
         with file.open("rb"):
             pass

@@ -4,19 +4,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.clips.style_names import PLAIN_NAME, check_style_name, name_and_share
+
 if TYPE_CHECKING:
     from elbowroom.clips.motion_set import MotionSet
     from elbowroom.clips.told import Told
 
-PLAIN = "plain"  # the style of who asks for none
+
+def _with_share(text: str) -> str:
+    """The style as given; raises `InputError`."""
+    name_and_share(text)
+    return text
 
 
-def _known_style(text: str) -> str:
-    """The style's name as given; raises `InputError`, before anything heavy is done."""
-    if text != PLAIN:
-        from elbowroom.clips.style import style_named
-
-        style_named(text)
+def _whole(text: str) -> str:
+    """The style's name as given; raises `InputError`."""
+    check_style_name(text)
     return text
 
 
@@ -28,12 +31,17 @@ Style = Annotated[
     str,
     typer.Option(
         "--style",
-        callback=_known_style,
+        callback=_with_share,
         help="How to walk: plain, relaxed, brisk, careful, old or child; so much of it by NAME:SHARE, as old:0.5.",
     ),
 ]
 StyleName = Annotated[
-    str, typer.Option("--style", help="How to walk: plain, relaxed, brisk, careful, old or child; the page has a menu.")
+    str,
+    typer.Option(
+        "--style",
+        callback=_whole,
+        help="How to walk: plain, relaxed, brisk, careful, old or child; the page has a menu.",
+    ),
 ]
 Dodge = Annotated[
     list[str] | None,
@@ -59,7 +67,7 @@ def named_by(swing: str | None, dodge: list[str] | None) -> list[str]:
     return [*([] if swing is None else [swing]), *(dodge or ())]
 
 
-def motions_by(swing: str | None, dodge: list[str] | None, told: "Told", style: str = PLAIN) -> "MotionSet":
+def motions_by(swing: str | None, dodge: list[str] | None, told: "Told", style: str = PLAIN_NAME) -> "MotionSet":
     """The motions that the options ask for; raises `InputError`."""
     from elbowroom.clips.clip import Clip, motions_of
     from elbowroom.clips.style import style_named

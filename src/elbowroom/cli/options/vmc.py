@@ -18,9 +18,10 @@ VmcBundles = Annotated[bool, typer.Option("--vmc-bundles/--no-vmc-bundles", help
 
 def check_vmc(address: str | None, root: str) -> None:
     """Raises `InputError` for options that mean nothing, before anything else is done."""
-    if address is not None:
-        from elbowroom.server.vmc.stream import VmcSettings
+    from elbowroom.server.vmc.settings import Locomotion, VmcSettings
 
+    Locomotion.named(root)
+    if address is not None:
         VmcSettings.parse(address, root)
 
 
@@ -28,7 +29,8 @@ def stream_to(address: str | None, root: str, *, bundles: bool) -> "VmcStream | 
     """The stream that the options ask for; raises `InputError`."""
     if address is None:
         return None
-    from elbowroom.server.vmc.stream import VmcSettings, VmcStream
+    from elbowroom.server.vmc.settings import VmcSettings
+    from elbowroom.server.vmc.stream import VmcStream
 
     return VmcStream(VmcSettings.parse(address, root, bundles=bundles))
 

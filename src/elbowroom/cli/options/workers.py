@@ -16,8 +16,12 @@ Cluster = Annotated[
 ]
 
 
-def check_cluster(cluster: str | None) -> None:
-    """Raises `InputError` for what cannot be a cluster, before anything heavy is imported."""
+def check_workers(cluster: str | None, jobs: int | None = None) -> None:
+    """Raises `InputError` for what cannot be a cluster or a number of tasks, before anything heavy is imported."""
+    from elbowroom.experiment.parallel import check_jobs
+
+    if jobs is not None:
+        check_jobs(jobs)
     if cluster is not None:
         from elbowroom.cluster.connection import check_address
 

@@ -11,37 +11,17 @@ from time import process_time
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
 from elbowroom.experiment.bench.capsule_inputs import capsule_inputs, shaped_obstacles
 from elbowroom.experiment.bench.frame_check import FrameCosts, frame_costs
 from elbowroom.experiment.bench.rivals import Rival, rivals
+from elbowroom.experiment.bench.settings import CollisionSettings
 from elbowroom.experiment.bench.vector_code import vector_bits
 from elbowroom.world.obstacles.clearance import clearance, clearance_into
 
 Bools = NDArray[np.bool_]
 
 _CLOSE = 1e-6  # metres: nearer to touching than this, single precision may say either
-_MOST = 1_000_000  # postures
 _CALLS, _FEW_CALLS = 5, 2  # in a round; the best counts
-
-
-@dataclass(frozen=True)
-class CollisionSettings:
-    """The size of the benchmark."""
-
-    postures: int = 10_000
-    boxes: int = 6
-    rival_postures: int = 1_000  # the slower libraries see the first of them
-    rounds: int = 7  # each library in turn; the median counts
-    seed: int = 7
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.postures <= _MOST:
-            raise InputError(f"postures {self.postures}: allowed are 1 to {_MOST}")
-        if not 1 <= self.boxes <= 1000:
-            raise InputError(f"boxes {self.boxes}: allowed are 1 to 1000")
-        if not 1 <= self.rounds <= 1000:
-            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
 
 
 @dataclass(frozen=True)

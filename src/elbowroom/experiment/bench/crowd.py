@@ -12,7 +12,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
-from elbowroom.errors import InputError
+from elbowroom.experiment.bench.settings import CrowdSettings
 from elbowroom.experiment.crossing import start_for
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -20,23 +20,6 @@ from elbowroom.world.scene import Scene
 RATE = 60  # frames a second
 _CYCLE = 36  # frames from one new end of a plan to the next: avatars set out one after the other within so many
 _WALKING, _STANDING = Command(forward=1.0), Command()
-_MOST = 1000
-
-
-@dataclass(frozen=True)
-class CrowdSettings:
-    """What is measured."""
-
-    avatars: tuple[int, ...] = (1, 10, 100)
-    seconds: float = 2.4  # that are measured, of each crowd
-    settle: float = 1.2  # seconds before them
-
-    def __post_init__(self) -> None:
-        for count in self.avatars:
-            if not 1 <= count <= _MOST:
-                raise InputError(f"avatars {count}: allowed are 1 to {_MOST}")
-        if not self.avatars or not 0.5 <= self.seconds <= 60.0:
-            raise InputError("a crowd needs avatars, and 0.5 to 60 seconds")
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
 from elbowroom.experiment.bench.capsule_inputs import CapsuleInputs, capsule_inputs
 from elbowroom.experiment.bench.collision import Speed, checks_per_second
 from elbowroom.experiment.bench.rivals import coal_capsules
+from elbowroom.experiment.bench.settings import MeshSettings
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.meshes.touching import Touching
 from elbowroom.world.obstacles.shapes import Mesh
@@ -25,27 +25,7 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 _RINGS, _RADIUS, _THICKNESS, _BUMP = 6, 0.22, 0.08, 0.05  # metres; the bump in parts of the thickness
-_MOST = 4_000_000  # postures
 _AT_ONCE = 100_000  # postures that are compared with the tree
-
-
-@dataclass(frozen=True)
-class MeshSettings:
-    """The size of the benchmark."""
-
-    postures: int = 10_000
-    triangles: int = 100_000
-    rival_postures: int = 500  # the slower libraries see the first of them
-    rounds: int = 5
-    seed: int = 7
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.postures <= _MOST:
-            raise InputError(f"postures {self.postures}: allowed are 1 to {_MOST}")
-        if not 1_000 <= self.triangles <= 1_000_000:
-            raise InputError(f"triangles {self.triangles}: allowed are 1000 to 1000000")
-        if not 1 <= self.rounds <= 1000:
-            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
 
 
 @dataclass(frozen=True)

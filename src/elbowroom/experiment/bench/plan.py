@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.errors import InputError
 from elbowroom.experiment.bench.plan_calls import PlanCall, crossing_calls
+from elbowroom.experiment.bench.settings import PlanSettings
 from elbowroom.experiment.crossing import start_for
 from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.geometry import quaternion
@@ -19,25 +19,6 @@ from elbowroom.world.scene import Scene
 _POST = 0.03  # metres, half the thickness of a post in the lane
 _ASIDE = (0.42, 0.60)  # metres from the middle of the lane to a post: within reach of a swinging hand, and beyond
 _LANE = (1.0, 4.5)  # metres along the lane in which posts stand
-
-
-@dataclass(frozen=True)
-class PlanSettings:
-    """What is measured."""
-
-    scene: str = "d"
-    key_frames: int = 12
-    rounds: int = 20  # crossings
-    starts: int = 20  # further crossings, each from another start, as the trials of Table 1 have them
-    horizons: tuple[int, ...] = (4, 8, 12, 16, 20, 24)
-    obstacles: tuple[int, ...] = (0, 8, 16, 24, 32, 40)
-
-    def __post_init__(self) -> None:
-        if not 2 <= self.key_frames <= 100:
-            raise InputError(f"key frames {self.key_frames}: allowed are 2 to 100")
-        for name, count in (("rounds", self.rounds), ("starts", self.starts)):
-            if not 1 <= count <= 1000:
-                raise InputError(f"{name} {count}: allowed are 1 to 1000")
 
 
 @dataclass(frozen=True)

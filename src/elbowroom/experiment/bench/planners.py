@@ -13,10 +13,13 @@ from elbowroom.control.frame import Frame
 from elbowroom.errors import InputError
 from elbowroom.experiment.bench.general import GeneralPlan, check_installed, plan_generally
 from elbowroom.experiment.bench.general_problem import crossing_problem
-from elbowroom.experiment.crossing import DT, CrossingSettings, controller_for, run_timed_crossing, warm_up
+from elbowroom.experiment.bench.settings import PlannersSettings
+from elbowroom.experiment.crossing import DT, controller_for, run_timed_crossing, warm_up
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import judge
 from elbowroom.experiment.opened import Thing, opened
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
@@ -30,26 +33,6 @@ Floats = NDArray[np.float64]
 
 GENERAL = "rrt-connect"
 _COURSES = 1000  # of a level among which straight ones are looked for
-
-
-@dataclass(frozen=True)
-class PlannersSettings:
-    """What is compared."""
-
-    scenes: tuple[str, ...] = ("a", "b", "c", "d")
-    levels: tuple[int, ...] = (
-        1,
-        2,
-        3,
-    )  # of gauntlets; courses that wind are left out, the general planner walks straight
-    trials: int = 3  # seeds in a scene, courses of a level
-    limit: float = 30.0  # seconds that a user has to cross, and the general planner to plan
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.trials <= 1000:
-            raise InputError(f"trials {self.trials}: allowed are 1 to 1000")
-        if not 0.0 < self.limit <= 3600.0:
-            raise InputError(f"limit {self.limit:g}: allowed is more than 0, up to 3600 seconds")
 
 
 @dataclass(frozen=True)

@@ -15,26 +15,11 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.plans.desk import ImmediateDesk, Job
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.control.plans.wayfinder import Answer
-from elbowroom.errors import InputError
+from elbowroom.experiment.bench.settings import SteerSettings
 from elbowroom.experiment.bench.steer_scenes import SteeredScene, steered_scenes, wanted_way
 from elbowroom.experiment.crossing import DT, start_for, warm_up
 
 _STILL = 0.05  # m/s: a user who wants less stands
-
-
-@dataclass(frozen=True)
-class SteerSettings:
-    """What is measured."""
-
-    scenes: tuple[str, ...] = ()  # by name; none: all
-    seconds: float = 15.0  # of steering in each, unless the finish is reached before
-    rounds: int = 3  # walks through each, every one from another start
-
-    def __post_init__(self) -> None:
-        if not 1.0 <= self.seconds <= 600.0:
-            raise InputError(f"seconds {self.seconds:g}: allowed are 1 to 600")
-        if not 1 <= self.rounds <= 1000:
-            raise InputError(f"rounds {self.rounds}: allowed are 1 to 1000")
 
 
 class _Call(NamedTuple):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
+from elbowroom.experiment.bench.settings import check_steered
 from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
@@ -100,16 +100,8 @@ def steered_scenes(names: Sequence[str] = ()) -> tuple[SteeredScene, ...]:
     return tuple(make()._replace(name=name) for name, make in _made().items() if not names or name in names)
 
 
-def check_steered(names: Sequence[str]) -> None:
-    """Raises `InputError` if there is no scene of such a name."""
-    made = _made()
-    for name in names:
-        if name not in made:
-            raise InputError(f"steered scene {name!r} is unknown; there are {', '.join(made)}")
-
-
 def _made() -> dict[str, Callable[[], SteeredScene]]:
-    """How each scene is made, by its name."""
+    """How each scene is made, by its name: those of `STEERED`."""
     return {
         "bends": lambda: corridor("bends", 1.0),
         "narrow bends": lambda: corridor("narrow bends", 0.8),

@@ -2,26 +2,26 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.control.settings import ControlSettings
 from elbowroom.errors import InputError
-from elbowroom.experiment.gauntlet.course import CourseMaker
 from elbowroom.experiment.gauntlet.levels import level_of
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
-from elbowroom.experiment.gauntlet.shapes import in_shapes
-from elbowroom.experiment.gauntlet.tasks import CourseTask, Record
-from elbowroom.experiment.gauntlet.trial import TrialSettings
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.parallel import Task
 from elbowroom.planning.names import check_planner
-from elbowroom.world.scene import Scene
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.gauntlet.tasks import CourseTask
+    from elbowroom.world.scene import Scene
 
 MOST_COURSES = 1_000_000
 
 
-class Course(Task[Record], Protocol):
+class Course(Task[dict[str, Any]], Protocol):
     """The task of one course."""
 
     @property
@@ -71,7 +71,7 @@ class Gauntlet(Protocol):
     def tasks(self) -> Sequence[Course]:
         """A task for every course."""
 
-    def scene(self, humanoid: Humanoid, k: int) -> Scene:
+    def scene(self, humanoid: Humanoid, k: int) -> "Scene":
         """Course `k` for this body; raises `InputError` if there is none."""
 
     def told(self) -> dict[str, Any]:
@@ -109,12 +109,17 @@ class GauntletSettings:
         """The level and its margin."""
         return f"level {self.level} ({100 * level_of(self.level).margin:.0f} cm)"
 
-    def tasks(self) -> list[CourseTask]:
+    def tasks(self) -> "list[CourseTask]":
         """A task for every course."""
+        from elbowroom.experiment.gauntlet.tasks import CourseTask
+
         return [CourseTask(self.level, k, self.trial, self.judge, self.avatar, self.shapes) for k in seeds_of(self)]
 
-    def scene(self, humanoid: Humanoid, k: int) -> Scene:
+    def scene(self, humanoid: Humanoid, k: int) -> "Scene":
         """Course `k` for this body; raises `InputError` if there is none."""
+        from elbowroom.experiment.gauntlet.course import CourseMaker
+        from elbowroom.experiment.gauntlet.shapes import in_shapes
+
         course = CourseMaker.of(humanoid).course(self.level, self.seed + k)
         return (in_shapes(course) if self.shapes else course).scene
 

@@ -13,7 +13,8 @@ from elbowroom.experiment.crossing import warm_up
 from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
 from elbowroom.experiment.gauntlet.judged import judged_walk
 from elbowroom.experiment.gauntlet.shapes import in_shapes
-from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, TrialSettings, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, controller_on, walk_course
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.opened import Thing, opened
 from elbowroom.planning.command import Command
 

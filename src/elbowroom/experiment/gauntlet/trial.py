@@ -12,19 +12,11 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.gauntlet.user import CourseUser
 from elbowroom.planning.command import Command
-from elbowroom.planning.names import DEFAULT_PLANNER
 
 Listener = Callable[[Command, float, Frame], None]
-
-
-@dataclass(frozen=True)
-class TrialSettings:
-    """How courses are walked."""
-
-    planner: str = DEFAULT_PLANNER
-    queue_size: int = 5
 
 
 @dataclass(frozen=True)

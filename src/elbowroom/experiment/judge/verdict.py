@@ -8,7 +8,6 @@ import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.recording import Recording
-from elbowroom.errors import InputError
 from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness
 from elbowroom.experiment.judge.mesh_judge import MeshJudge
@@ -16,30 +15,15 @@ from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.obstacles import surroundings_of
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
+from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import Skin, skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
 
 _AT_ONCE = 240  # poses
-_HIGHEST_RATE = 10_000.0  # poses a second
 
 Progress = Callable[[float], object]  # is told how many seconds of the motion are judged
-
-
-@dataclass(frozen=True)
-class JudgeSettings:
-    """What the judge looks at, and what it calls a contact."""
-
-    rate: float = 240.0  # poses a second
-    mesh: bool = True  # where the avatar has one
-    capsule_tolerance: float = 1e-5  # metres inside an obstacle that are no contact: rounding
-    mesh_tolerance: float = 1e-5  # metres, the same for the mesh
-    self_tolerance: float = 0.02  # metres that parts of the body may be deeper in each other than in the natural walk
-
-    def __post_init__(self) -> None:
-        if not 1.0 <= self.rate <= _HIGHEST_RATE:
-            raise InputError(f"rate: {self.rate:g} is not between 1 and {_HIGHEST_RATE:g} poses a second")
 
 
 @dataclass(frozen=True)

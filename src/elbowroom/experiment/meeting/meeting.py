@@ -1,7 +1,6 @@
 """Two in a corridor: one walks, the other comes towards it or stands in its way; nobody is driven back or touched."""
 
 import math
-from enum import StrEnum
 from functools import cache
 from time import thread_time_ns
 from typing import NamedTuple
@@ -11,6 +10,7 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
+from elbowroom.experiment.meeting.settings import Kind
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
@@ -19,13 +19,6 @@ _DT = 1 / 60
 _PAST = 0.8  # metres that are between both when they have passed
 _BODY = 0.32  # metres from the middle of one who stands to the wall, at least
 _LENGTH, _HEIGHT, _THICK = 40.0, 2.2, 0.2  # metres, of the walls
-
-
-class Kind(StrEnum):
-    """What the other does."""
-
-    WALKS = "both walk"
-    STANDS = "one stands"
 
 
 class Start(NamedTuple):

@@ -5,43 +5,10 @@ from dataclasses import asdict, dataclass
 from statistics import median
 from typing import Any
 
-from elbowroom.errors import InputError
-from elbowroom.experiment.meeting.meeting import Kind, Met, Start, drawn, load_kernels, meet
+from elbowroom.experiment.meeting.meeting import Met, Start, drawn, load_kernels, meet
+from elbowroom.experiment.meeting.settings import Kind, MeetingSettings
 from elbowroom.experiment.opened import Thing
 from elbowroom.experiment.parallel import Processes, Workers
-
-WIDTHS = (0.95, 0.97, 1.0, 1.1, 1.2, 1.35, 1.45, 1.55, 1.6)  # metres
-_NARROWEST, _WIDEST, _MOST = 0.8, 10.0, 10_000
-
-
-@dataclass(frozen=True)
-class MeetingSettings:
-    """Which meetings there are. Meeting k has the seed `seed + k`."""
-
-    widths: tuple[float, ...] = WIDTHS  # metres, of the corridors
-    starts: int = 20  # in each, of each kind
-    seed: int = 0
-    kinds: tuple[Kind, ...] = tuple(Kind)
-
-    def __post_init__(self) -> None:
-        for width in self.widths:
-            if not _NARROWEST <= width <= _WIDEST:
-                raise InputError(f"width {width:g}: allowed are {_NARROWEST:g} to {_WIDEST:g} metres")
-        if not self.widths:
-            raise InputError("widths: at least one is needed")
-        if not 1 <= self.starts <= _MOST:
-            raise InputError(f"starts: {self.starts} is not a whole number from 1 to {_MOST}")
-        if not 0 <= self.seed < 2**32:
-            raise InputError(f"seed: {self.seed} is not a whole number from 0 to {2**32 - 1}")
-
-    def tasks(self) -> list["MeetingTask"]:
-        """A task for every meeting."""
-        return [
-            MeetingTask(kind, drawn(width, kind, self.seed + number))
-            for kind in self.kinds
-            for width in self.widths
-            for number in range(self.starts)
-        ]
 
 
 @dataclass(frozen=True)
@@ -60,6 +27,16 @@ class MeetingTask:
         """How it ends."""
         load_kernels()
         return meet(self.start)
+
+
+def meeting_tasks(settings: MeetingSettings) -> list[MeetingTask]:
+    """A task for every meeting."""
+    return [
+        MeetingTask(kind, drawn(width, kind, settings.seed + number))
+        for kind in settings.kinds
+        for width in settings.widths
+        for number in range(settings.starts)
+    ]
 
 
 @dataclass(frozen=True)
@@ -89,7 +66,7 @@ def run_meetings(
     progress: Callable[[int], None] = lambda _: None,
 ) -> list[WidthResult]:
     """Let all meet; `progress` hears how many have met. Raises `InputError` where workers are lost."""
-    tasks = settings.tasks()
+    tasks = meeting_tasks(settings)
     met: dict[int, Met] = {}
     for place, result in workers.run(tasks):
         met[place] = result

@@ -10,12 +10,11 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.motion.scripts import Script, at_speed, strokes
 from elbowroom.experiment.motion.trunk import chest_joint, turned_about
 from elbowroom.experiment.motion.walked import RATE, Walked, walk
-from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
-RATIOS = (0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.5)  # of the gap to the width of the shoulders
 TURNED = 20.0  # degrees of the shoulders against the way: who turns so far is said to turn (Franchak et al. 2012)
 _AT, _THICK, _LONG, _HIGH = 4.0, 0.1, 2.0, 2.2  # metres: where the walls stand, and their size
 _NEAR = 0.3  # metres before and behind the walls: what is passed

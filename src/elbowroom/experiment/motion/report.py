@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.errors import InputError
 from elbowroom.experiment.motion import bands
 from elbowroom.experiment.motion.bands import Band, at_least, at_most
 from elbowroom.experiment.motion.cost import Cost, cost
 from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
-from elbowroom.experiment.motion.gaps import RATIOS, Narrow, narrow, pass_gap
-from elbowroom.experiment.motion.scripts import SPEEDS, STEADY, Script, at_speed, scripts
+from elbowroom.experiment.motion.gaps import Narrow, narrow, pass_gap
+from elbowroom.experiment.motion.scripts import Script, scripts
+from elbowroom.experiment.motion.settings import GAPS, STEADY, MotionSettings
 from elbowroom.experiment.motion.smooth import Smoothness, smoothness
 from elbowroom.experiment.motion.sole import soles_of
 from elbowroom.experiment.motion.trunk import Trunk, trunk
@@ -26,31 +26,8 @@ from elbowroom.experiment.motion.walked import RATE, Walked, joint_track, walk
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-GAPS = "gaps"
 _TURN = "turn"
 _NATURAL = (1.0, 1.5)  # m/s: the speeds for which trunk and curves have published figures
-
-
-@dataclass(frozen=True)
-class MotionSettings:
-    """What is measured."""
-
-    cases: tuple[str, ...] = ()  # by name, "gaps" among them; none: all
-    speeds: tuple[float, ...] = SPEEDS  # m/s, of the steady walks
-    ratios: tuple[float, ...] = RATIOS  # of gaps to the width of the shoulders
-
-    def __post_init__(self) -> None:
-        for speed in self.speeds:
-            at_speed(speed)
-        for ratio in self.ratios:
-            if not 0.3 <= ratio <= 4.0:
-                raise InputError(f"ratio {ratio:g}: allowed are 0.3 to 4 shoulder widths")
-        scripts([case for case in self.cases if case != GAPS], self.speeds)
-
-    @property
-    def with_gaps(self) -> bool:
-        """Whether gaps are walked through."""
-        return not self.cases or GAPS in self.cases
 
 
 @dataclass(frozen=True)

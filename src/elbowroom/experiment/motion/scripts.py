@@ -5,16 +5,14 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from elbowroom.body.root import RootState
-from elbowroom.errors import InputError
 from elbowroom.experiment.bench.steer_scenes import slalom
+from elbowroom.experiment.motion.settings import SPEEDS, STEADY, check_cases, check_speed
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 Hand = Callable[[float, RootState], Command]  # seconds since the start, where the avatar is
 
-SPEEDS = (0.5, 0.8, 1.1, 1.4, 2.0)  # m/s
-STEADY = "steady"
 TURN_AT = 2.0  # seconds, when the walk `turn 90` is told to turn
 _AHEAD = Command(forward=1.0)
 _OPEN = 40.0  # metres of empty ground ahead
@@ -39,12 +37,9 @@ class Script(NamedTuple):
 
 
 def scripts(names: Sequence[str] = (), speeds: Sequence[float] = SPEEDS) -> tuple[Script, ...]:
-    """All walks, or those named by case; raises `InputError` if there is no such case."""
+    """All walks, or those named by case, of `SCRIPTED`; raises `InputError` if there is no such case."""
+    check_cases(names)
     every = [steady(speed) for speed in speeds] + [*_on_open_ground(), *_among_things()]
-    cases = {script.case for script in every}
-    for name in names:
-        if name not in cases:
-            raise InputError(f"case {name[:40]!r}: there are {', '.join(sorted(cases))}")
     return tuple(script for script in every if not names or script.case in names)
 
 
@@ -54,10 +49,9 @@ def steady(speed: float) -> Script:
 
 
 def at_speed(speed: float) -> Command:
-    """The command that walks straight ahead so fast, m/s."""
+    """The command that walks straight ahead so fast, m/s; raises `InputError` if nobody does."""
+    check_speed(speed)
     settings = RootMotionSettings()
-    if not 0.0 < speed <= settings.run_speed:
-        raise InputError(f"speed {speed:g}: allowed are more than 0 and up to {settings.run_speed:g} m/s")
     run = speed > settings.walk_speed
     return Command(forward=speed / (settings.run_speed if run else settings.walk_speed), run=run)
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.frame import Frame
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, run_crossing
+from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.opened import Thing
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.table import Table1

@@ -9,15 +9,16 @@ from elbowroom import __version__
 from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.control.recordings.recording import this_machine
 from elbowroom.control.settings import ControlSettings
-from elbowroom.experiment.crossing import CrossingSettings, controller_for, warm_up
+from elbowroom.experiment.crossing import controller_for, warm_up
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.machine import machine_kind, program_digest
 from elbowroom.experiment.paper_table import PaperCell, paper_table
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.cells import CannedCell, Cell, fold_canned, fold_cell
+from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.experiment.table1.tasks import (
     CannedTask,
     CrossingTask,
-    Table1Settings,
     canned_tasks,
     crossing_tasks,
     open_avatar,

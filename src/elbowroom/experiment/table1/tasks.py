@@ -9,46 +9,16 @@ from typing import Any
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
-from elbowroom.errors import InputError
 from elbowroom.experiment.beside import BesideDesk
-from elbowroom.experiment.crossing import (
-    DT,
-    CrossingSettings,
-    controller_for,
-    run_timed_crossing,
-    start_for,
-    warm_up,
-)
+from elbowroom.experiment.crossing import DT, controller_for, run_timed_crossing, start_for, warm_up
+from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.opened import Thing, opened
 from elbowroom.experiment.scripted_user import FORWARD
+from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.experiment.trial_log import digest
-from elbowroom.planning.names import FIGURE6
 from elbowroom.world.scene import Scene
 
-MAX_SEEDS = 10_000
 CANNED = "canned"
-
-
-@dataclass(frozen=True)
-class Table1Settings:
-    """Which trials the experiment consists of. Seeds are 1 to `seeds`: seed 0 would start just as the scene says."""
-
-    planners: tuple[str, ...] = (FIGURE6,)
-    scenes: tuple[str, ...] = ("a", "b", "c", "d")  # names of stock scenes, or scene files
-    queues: tuple[int, ...] = (3, 4, 5, 6, 7)
-    seeds: int = 20
-    limit: float = 30.0  # seconds that the user has
-    avatar: Path | None = None  # the stock avatar
-    live: bool = False  # plans are made beside playback
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.seeds <= MAX_SEEDS:
-            raise InputError(f"seeds: {self.seeds} is not between 1 and {MAX_SEEDS}")
-        CrossingSettings(limit=self.limit)
-        for name in ("planners", "scenes", "queues"):
-            values = getattr(self, name)
-            if not values or len(set(values)) < len(values):
-                raise InputError(f"{name}: {', '.join(map(str, values)) or 'nothing'} (give each once)")
 
 
 @dataclass(frozen=True)

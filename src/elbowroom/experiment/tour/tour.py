@@ -10,7 +10,8 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.judge.verdict import JudgeSettings, Verdict, judge
+from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.verdict import Verdict, judge
 from elbowroom.experiment.tour.leg import Leg, LegTimes, Listener, walk_to
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import Place, Spot

@@ -11,7 +11,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.evasion.profile import Profile
 from elbowroom.planning.root.line.line import TravelLine, asked_direction, new_line
 from elbowroom.planning.root.line.way_ahead import Corners, leg_at
-from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.planning.root.way_out import WayOut
 
 Floats = NDArray[np.float64]

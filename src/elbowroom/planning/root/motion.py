@@ -5,7 +5,6 @@ exactly, so every bound on speed and acceleration holds at all times and not onl
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -32,20 +31,6 @@ _GRADE_OVER = 0.12  # metres to either side between which the grade is taken
 SLOWED, SLOWED_FROM = 0.15, 0.75  # metres to a slow place: slowed down; and where that begins
 NONE_SLOW = np.empty((0, 3))  # slow places where none is
 _NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
-
-
-@dataclass(frozen=True)
-class RootMotionSettings:
-    """What the legs can do. Metres, radians, seconds."""
-
-    walk_speed: float = 1.1
-    run_speed: float = 2.2
-    back_speed: float = 0.7
-    strafe_speed: float = 0.6
-    turn_rate: float = 2.5  # greatest heading rate
-    acceleration: float = 2.0
-    braking: float = 3.0
-    turn_acceleration: float = 14.0
 
 
 class MotionBounds(NamedTuple):

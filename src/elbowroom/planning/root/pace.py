@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.settings import RootMotionSettings
 
 _MOTION = RootMotionSettings()
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from elbowroom.planning.root.evasion.evasion import WIDE, EvasionSettings
 from elbowroom.planning.root.line.route import RouteSettings
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.path import RootPath
+from elbowroom.planning.root.settings import RootMotionSettings
 
 
 class RootPlanKind(Enum):

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.clips.style import PLAIN_STYLE, STYLES, style_named
+from elbowroom.clips.style import STYLES
+from elbowroom.clips.style_names import PLAIN_NAME, check_style_name
 from elbowroom.control.controller import FORWARD, Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.journey import Journey
@@ -19,8 +20,8 @@ from elbowroom.planning.command import Command, changed
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Way
-from elbowroom.planning.root.motion import RootMotionSettings
 from elbowroom.planning.root.pace import at_speed
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.planning.stillness import is_still
 from elbowroom.server.schema.bounds import WALK_SPEEDS
 from elbowroom.server.sessions.walk_log import WalkLog
@@ -40,20 +41,20 @@ class WalkSettings:
     queue_size: int = 5
     assist: bool = True
     walk_speed: float = _MOTION.walk_speed  # m/s at forward = 1; running doubles it
-    style: str = PLAIN_STYLE.name  # a stock one
+    style: str = PLAIN_NAME  # a stock one
 
     def __post_init__(self) -> None:
         check_planner(self.planner)
         check_queue_size(self.queue_size)
-        if self.style not in STYLES:
-            raise InputError(f"style {self.style[:40]!r} is none of {', '.join(STYLES)}")
+        check_style_name(self.style)
         if not WALK_SPEEDS[0] <= self.walk_speed <= WALK_SPEEDS[1]:
             limits = f"{WALK_SPEEDS[0]:g} to {WALK_SPEEDS[1]:g} m/s"
             raise InputError(f"walking speed {self.walk_speed:g}: allowed are {limits}")
 
     def in_style(self, name: str) -> "WalkSettings":
         """The same in a stock style, at the speed that it likes; raises `InputError`."""
-        return replace(self, style=name, walk_speed=style_named(name).speed)
+        check_style_name(name)
+        return replace(self, style=name, walk_speed=STYLES[name].speed)
 
 
 class Walk:

@@ -9,7 +9,8 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation, Poses, check_length
-from elbowroom.export.writers import FORMATS, Exported, Wishes
+from elbowroom.export.formats import FORMATS, Wishes
+from elbowroom.export.writers import WRITERS, Exported
 from elbowroom.geometry import quaternion
 from elbowroom.server.stores.avatar_store import StoredAvatar
 
@@ -38,8 +39,7 @@ def save_motion(frames: bytes, avatar: StoredAvatar, ending: str) -> SavedMotion
     poses = _poses(frames, humanoid)
     check_length("motion", float(poses.times[-1] - poses.times[0]), humanoid, RATE)
     animation = Animation.of_poses("walk", humanoid.skeleton, poses, RATE)
-    chosen = FORMATS[ending]
-    written = chosen.write(animation, humanoid, chosen.layout(Wishes()))
+    written = WRITERS[ending](animation, humanoid, FORMATS[ending].layout(Wishes()))
     return SavedMotion(f"{Path(avatar.title).stem or 'avatar'}-walk.{ending}", written)
 
 

@@ -8,7 +8,6 @@ along Z: both give the same body (github.com/vrm-c/UniVRM, `Axes`).
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -18,24 +17,17 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.geometry import quaternion
+from elbowroom.server.vmc.settings import Locomotion
 from elbowroom.server.wire.pose import NodePose
 
 Floats = NDArray[np.float64]
 Message = tuple[str, tuple[Any, ...]]
 
-PORT = 39539  # of a marionette
 _LOADED, _CALIBRATED, _NORMAL_MODE = 1, 3, 0
 _ALONG_X, _ALONG_Z = np.array([-1.0, 1.0, 1.0]), np.array([1.0, 1.0, -1.0])
 _BLINK_EVERY, _BLINK_LASTS = 4.0, 0.16  # seconds
 # Unity calls the thumb's bones as VRM 0.x did.
 _THUMB = {"ThumbMetacarpal": "ThumbProximal", "ThumbProximal": "ThumbIntermediate", "ThumbDistal": "ThumbDistal"}
-
-
-class Locomotion(Enum):
-    """What carries the way: some receivers ignore the root."""
-
-    ROOT = "root"
-    HIPS = "hips"
 
 
 @dataclass(frozen=True, eq=False)

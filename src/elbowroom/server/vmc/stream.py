@@ -3,7 +3,6 @@
 import contextlib
 import socket
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message import OscMessage
@@ -11,33 +10,11 @@ from pythonosc.osc_message_builder import OscMessageBuilder
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.server.vmc.protocol import PORT, Locomotion, Message, Moment, Puppet, messages
+from elbowroom.server.vmc.protocol import Message, Moment, Puppet, messages
+from elbowroom.server.vmc.settings import VmcSettings
 
 _FITS = 1400  # bytes: a bundle of so many goes through any network in one piece
 _BUNDLE_HEAD, _LENGTH = 16, 4  # bytes of a bundle, and before each of its messages
-LOOPBACK = "127.0.0.1"
-
-
-@dataclass(frozen=True)
-class VmcSettings:
-    """Where to, and how."""
-
-    host: str = LOOPBACK
-    port: int = PORT
-    locomotion: Locomotion = Locomotion.ROOT
-    bundles: bool = True  # some receivers read single messages only
-
-    @classmethod
-    def parse(cls, address: str, locomotion: str = "root", *, bundles: bool = True) -> "VmcSettings":
-        """From `HOST:PORT`, `HOST` or `PORT`; raises `InputError`."""
-        host, colon, port = address.rpartition(":")
-        if not colon:
-            host, port = ("", address) if address.isdecimal() else (address, str(PORT))
-        if not port.isdecimal() or not 0 < int(port) < 65536:
-            raise InputError(f"vmc: {address[:60]!r} is no address: HOST:PORT with a port from 1 to 65535")
-        if locomotion not in [way.value for way in Locomotion]:
-            raise InputError(f"vmc root: {locomotion[:20]!r}, allowed are root and hips")
-        return cls(host or LOOPBACK, int(port), Locomotion(locomotion), bundles)
 
 
 class VmcStream:

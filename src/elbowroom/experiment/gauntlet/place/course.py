@@ -16,6 +16,7 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import NoCourseError
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
+from elbowroom.experiment.gauntlet.place.furnished import MARGIN
 from elbowroom.experiment.gauntlet.place.furniture import Piece, furniture_of, made_up
 from elbowroom.experiment.gauntlet.place.proof import ProvenWalk, keeps_clear, proven_walk
 from elbowroom.geometry import quaternion
@@ -33,7 +34,6 @@ from elbowroom.world.scene import Gate, Scene
 Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-MARGIN = 0.05  # metres that the proof keeps from everything
 _ATTEMPTS, _TRIES = 40, 60  # ways for a course, and places for a piece of furniture
 _SHORTEST, _LONGEST = 3.0, 25.0  # metres of way
 _LEVEL = 0.05  # metres: the way is on the floor at height 0

@@ -1,15 +1,17 @@
 """Which courses of a place are walked, and how."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.avatar_reference import AvatarReference
-from elbowroom.experiment.gauntlet.place.course import MARGIN, PlaceCourseMaker
-from elbowroom.experiment.gauntlet.place.tasks import FurnishedPlace, PlaceTask
+from elbowroom.experiment.gauntlet.place.furnished import MARGIN, FurnishedPlace
 from elbowroom.experiment.gauntlet.settings import check_walks, seeds_of
-from elbowroom.experiment.gauntlet.trial import TrialSettings
-from elbowroom.world.scene import Scene
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
+
+if TYPE_CHECKING:
+    from elbowroom.experiment.gauntlet.place.tasks import PlaceTask
+    from elbowroom.world.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -34,12 +36,16 @@ class PlaceGauntletSettings:
         """The place, its pieces of furniture and the margin."""
         return f"{self.place.path.name} with {self.place.pieces} pieces of furniture ({100 * MARGIN:.0f} cm)"
 
-    def tasks(self) -> list[PlaceTask]:
+    def tasks(self) -> "list[PlaceTask]":
         """A task for every course."""
+        from elbowroom.experiment.gauntlet.place.tasks import PlaceTask
+
         return [PlaceTask(self.place, seed, self.trial, self.judge, self.avatar) for seed in seeds_of(self)]
 
-    def scene(self, humanoid: Humanoid, k: int) -> Scene:
+    def scene(self, humanoid: Humanoid, k: int) -> "Scene":
         """Course `k` for this body; raises `InputError` if there is none."""
+        from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
+
         place = self.place
         return PlaceCourseMaker.open(humanoid, place.path, place.options, place.pieces).course(self.seed + k).scene
 

@@ -1,39 +1,21 @@
 """Courses in a place as tasks that other processes can do."""
 
-from dataclasses import asdict, dataclass, field, replace
-from pathlib import Path
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.control.recordings.avatar_reference import AvatarReference
-from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import warm_up
 from elbowroom.experiment.gauntlet.course import NoCourseError
 from elbowroom.experiment.gauntlet.judged import judged_walk
 from elbowroom.experiment.gauntlet.place.course import PlaceCourseMaker
+from elbowroom.experiment.gauntlet.place.furnished import FurnishedPlace
 from elbowroom.experiment.gauntlet.place.trial import NO_LEVEL, walk_place_course
 from elbowroom.experiment.gauntlet.tasks import NO_COURSE, CourseWalker, Record
-from elbowroom.experiment.gauntlet.trial import TrialSettings
+from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.opened import Thing, opened
-from elbowroom.world.places.options import PlaceOptions
-
-MOST_PIECES = 100
-
-
-@dataclass(frozen=True)
-class FurnishedPlace:
-    """The model of a place, and how many pieces of furniture are put beside each way through it."""
-
-    path: Path
-    sha256: str  # of the file
-    options: PlaceOptions = field(default_factory=PlaceOptions)
-    pieces: int = 8
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.pieces <= MOST_PIECES:
-            raise InputError(f"pieces: {self.pieces} is not a whole number from 1 to {MOST_PIECES}")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.body.root import RootState
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.command import BENT, Command
-from elbowroom.planning.root.motion import RootMotionSettings
+from elbowroom.planning.root.settings import RootMotionSettings
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", float, Floats)
