@@ -69,4 +69,4 @@ def test_a_folder_that_cannot_be_is_told_before_anything_is_measured(
     command = ["bench", "plan", "--plots", str(tmp_path / "file" / "pictures")]
     result = CliRunner().invoke(app, command, standalone_mode=False)
     assert result.return_value == 2
-    assert "cannot write pictures there" in result.output
+    assert "file is no folder" in result.output

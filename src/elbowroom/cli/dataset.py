@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
@@ -57,6 +57,7 @@ def make(
     from dataclasses import replace
 
     check_arguments(files=[spec])
+    check_folder(out)
     check_workers(cluster, jobs)
     _check_installed()
     from elbowroom.dataset.spec import DatasetSpec

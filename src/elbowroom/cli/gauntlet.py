@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
@@ -82,6 +82,7 @@ def gauntlet(
     Exit code 0: all crossed and nothing touched, 1: not, 2: no seed gives a course.
     """
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
+    check_folder(out)
     check_workers(cluster, jobs)
     furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
     walker = _Walker(avatar, bones, height, include_hair)

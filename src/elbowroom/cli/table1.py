@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import json_text, print_json, progress_bar
@@ -51,6 +51,7 @@ def table1(
     check_arguments(
         scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
     )
+    check_folder(out)
     check_workers(cluster, jobs)
     settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
@@ -35,6 +35,7 @@ def motion(
     """Walk scripted walks and measure them as a gait laboratory does: feet, hips, joints, smoothness, narrow gaps."""
     settings = MotionSettings(tuple(case or ()), _speeds(speeds))
     check_arguments(files=[avatar, bones])
+    check_folder(plots)
     reading = settings_by(bones, height, include_hair)
     from elbowroom.experiment.machine import machine_kind
     from elbowroom.experiment.motion.report import amount, run

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.experiment.bench.settings import PlanSettings
@@ -29,6 +29,7 @@ def plan(
     """Time every planning call of `exact`, root and upper body together, while an avatar crosses a scene."""
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)
     check_arguments(scenes=[scene])
+    check_folder(plots)
     from elbowroom.experiment.bench.plan import amount, run
     from elbowroom.experiment.machine import machine_kind
 

@@ -54,3 +54,12 @@ def check_file(file: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"{file} cannot be read: {error.strerror}") from None
+
+
+def check_folder(folder: Path | None) -> None:
+    """Raises `InputError` for a folder to come that a file is in the way of."""
+    for there in () if folder is None else (folder, *folder.parents):
+        if there.exists():
+            if not there.is_dir():
+                raise InputError(f"{folder}: cannot be written in ({there} is no folder)")
+            return
