@@ -30,6 +30,7 @@ FIGURE = figure_of(HUMANOID, MODEL)
 WIDTH = 2.0 * FIGURE.broad  # of the shoulders
 TWIST = columns_of(DofGroup.WAIST).start + 1
 AT = 2.0  # metres ahead: where things stand
+FAR = 4.0  # metres: out of sight of who sets out
 T = 0.15
 
 
@@ -161,3 +162,39 @@ def test_slowing_down_is_the_same_from_plan_to_plan_and_costs_nothing() -> None:
         later = planner.plan(RootState(*plan.path.states[k].tolist()), command, 16 - k, T, k * T)
         assert np.abs(later.path.states - plan.path.states[k:]).max() < 1e-9
         assert later.lost == pytest.approx(0.0, abs=0.01)
+
+
+def crossed_at(place: Scene) -> float:
+    """How far to the left somebody is who walks on and comes to what stands `FAR` metres ahead."""
+    planner, start = RootPlanner(HUMANOID, place), RootState()
+    for step in range(40):
+        path = planner.plan(start, Command(forward=1.0), 16, T, 2.0 * T * step).path
+        if path.states[2, 1] > FAR:
+            return float(np.interp(FAR, path.states[:, 1], path.states[:, 0]))
+        start = RootState.of(path.states[2])
+    raise AssertionError("nobody came there")
+
+
+def between(ratio: float, wide: float) -> Scene:
+    """Two posts or walls, so many shoulder widths apart and so many metres `wide`."""
+    return scene(*((side * 0.5 * (ratio * WIDTH + wide), FAR, wide, 0.1) for side in (-1.0, 1.0)))
+
+
+@pytest.mark.parametrize("wide", [0.1, 0.2, 0.3])
+@pytest.mark.parametrize("ratio", [1.0, 1.1, 1.2, 1.3])
+def test_in_the_open_one_walks_round_a_narrow_gap_with_room_to_spare(ratio: float, wide: float) -> None:
+    outside = abs(crossed_at(between(ratio, wide))) - (0.5 * ratio * WIDTH + wide)
+    assert outside > FIGURE.swinging + 0.04
+
+
+@pytest.mark.parametrize(("ratio", "wide"), [(1.4, 0.2), (1.0, 1.0), (1.1, 1.0), (1.2, 1.0)])
+def test_where_it_is_broad_enough_or_far_to_go_round_one_walks_through(ratio: float, wide: float) -> None:
+    assert abs(crossed_at(between(ratio, wide))) < 0.03
+
+
+def test_who_finds_no_way_for_the_upper_body_beside_a_gap_is_offered_the_way_through() -> None:
+    planner = RootPlanner(HUMANOID, between(1.1, 0.2))
+    start = RootState(0.0, 1.2, 0.0, 1.1)
+    plans = list(planner.candidates(start, Command(forward=1.0), 16, T))
+    assert plans[0].beside
+    assert any(not plan.beside and np.abs(plan.path.states[:, 0]).max() < 0.03 for plan in plans[1:])

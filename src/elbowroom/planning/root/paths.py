@@ -26,7 +26,7 @@ from elbowroom.planning.root.legs.hull import route_is_open
 from elbowroom.planning.root.legs.leg_check import LegCheck
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.moving_legs import MovingAround
-from elbowroom.planning.root.line.ahead import Above, RouteFinder
+from elbowroom.planning.root.line.ahead import NONE_TIGHT, Above, RouteFinder
 from elbowroom.planning.root.line.line import TravelLine, straight_route, wanted_speed, wanted_velocities
 from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.planning.root.line.way_ahead import Corners, line_of, way_ahead
@@ -122,12 +122,13 @@ class RootPaths:
         answer = query.steered(pace * wanted_velocities(asked.command, self.settings.motion))
         return _plan(asked, answer, query.checks - before, began)
 
-    def travelled(self, asked: Asked, line: TravelLine, pace: float) -> RootPlan:
-        """Along a line of travel."""
+    def travelled(self, asked: Asked, line: TravelLine, pace: float, *, through: bool = False) -> RootPlan:
+        """Along a line of travel, round gaps in it where there is room for that, or `through` them."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
         slow = self._slow(asked, line, sight)
-        if not self._moving.tracks and self._routes.above is None:
+        tight = NONE_TIGHT if through or not line.turns else slow
+        if not self._moving.tracks and self._routes.above is None and not len(tight):
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch, slow)
@@ -136,7 +137,7 @@ class RootPaths:
                 return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, sight, slow)
+        answer = query.travelled(line, pace * speed, sight, slow, tight=tight)
         return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
 
     def along(self, asked: Asked, leg: int, pace: float) -> RootPlan:
@@ -239,13 +240,15 @@ class RootPaths:
 
     def _lost(self, asked: Asked, line: TravelLine, speed: float, answer: Answer) -> float:
         duration, around = asked.horizon * asked.interval, self._query(asked).around
+        if answer.beside:
+            return crowded(self.settings, 0.0, line, answer.states, around, self._figure)
         states, ends = answer.states if answer.brisk is None else answer.brisk, answer.ends
         return seconds_lost(self.settings, line, speed, states, duration, ends=ends, around=around, figure=self._figure)
 
 
 def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
     path = RootPath(asked.start_time, asked.interval, answer.states)
-    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost)
+    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost, answer.beside)
 
 
 def _walked(states: Floats) -> float:

@@ -33,6 +33,8 @@ class RootPlannerSettings:
     beyond: float = 0.5  # and so much farther
     widest_detour: float = 1.6  # how far from the line of travel a detour may lead
     worth_it: float = 0.4  # progress beyond that of the straight route for which a detour is taken
+    worth_going_round: float = 0.6  # metres more that are walked so as not to go through a gap with turned shoulders
+    going_round: tuple[float, float] = (0.20, 0.08)  # the search for that, as those for a detour
     # Searches for a detour, in turn: the clearance that it must have, and the cells of the map.
     searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
     margin: float = 0.01  # clearance of the straight route
@@ -64,11 +66,12 @@ class RootPlan(NamedTuple):
     checks: int  # postures and places whose clearance was computed
     nanoseconds: int
     lost: float = 0.0  # seconds that it costs against a walk as commanded, evasions and turns included
+    beside: bool = False  # whether it leads round a gap that one could go through
 
     def along(self, path: RootPath) -> "RootPlan":
         """The same plan on another path."""
-        return RootPlan(path, self.kind, self.goal, self.checks, self.nanoseconds, self.lost)
+        return self._replace(path=path)
 
     def going_on(self, path: RootPath) -> "RootPlan":
         """The same plan on a path for which nothing was searched any more."""
-        return RootPlan(path, self.kind, self.goal, 0, 0, self.lost)
+        return self._replace(path=path, checks=0, nanoseconds=0)

@@ -15,7 +15,7 @@ from elbowroom.planning.root.evasion.profile import Course, follow_profile
 from elbowroom.planning.root.legs.leg_check import FreeLegs, LegCheck
 from elbowroom.planning.root.legs.lower_body import Neighbours
 from elbowroom.planning.root.legs.moving_legs import MovingAround
-from elbowroom.planning.root.line.ahead import Route, RouteFinder
+from elbowroom.planning.root.line.ahead import NONE_TIGHT, Route, RouteFinder
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.line.way_ahead import WayAhead
 from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, gets_nowhere, steer
@@ -47,6 +47,7 @@ class Answer(NamedTuple):
     ends: bool  # whether the route that was checked ends before something
     whole: bool = True  # whether it is walked as planned, to the end
     brisk: Floats | None = None  # the same were nothing narrow: who is slower there loses nothing
+    beside: bool = False  # whether it leads round a gap, as people like to: they lose nothing by that
     likewise: Floats | None = None  # the same were nothing in the way, of who walks along a way
 
 
@@ -195,12 +196,14 @@ class RootQuery:
         sight: float,
         slow: Floats = NONE_SLOW,
         way: WayAhead | None = None,
+        tight: Floats = NONE_TIGHT,
     ) -> Answer:
         """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it.
 
-        It is slower at `slow` places, as in `Travel`. Or it is walked along a `way` whose first leg is the line.
+        It is slower at `slow` places, as in `Travel`, and leads round `tight` ones where there is room. Or it is walked
+        along a `way` whose first leg is the line.
         """
-        route = self._route_along(line, sight, None if way is None else way.seen)
+        route = self._route_along(line, sight, None if way is None else way.seen, tight)
         stops, corners = route.ends, route.corners
         if way is not None and not (route.ends or route.detour):
             stops, corners = way.ends, way.walked
@@ -220,14 +223,15 @@ class RootQuery:
         states = self._crept(states, creeping)
         kind = self._kind(states, whole=number == 0, detour=route.detour)
         brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
-        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk)
+        beside = route.beside and number == 0
+        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside)
         return answer._replace(likewise=candidate(1.0)) if corners is not route.corners else answer
 
-    def _route_along(self, line: TravelLine, sight: float, way: Floats | None) -> Route:
-        """The route along a line of travel, or along a way; the same at every pace."""
-        asked = line, sight, None if way is None else way.tobytes()
+    def _route_along(self, line: TravelLine, sight: float, way: Floats | None, tight: Floats) -> Route:
+        """The route along a line of travel, or along a way, round `tight` places; the same at every pace."""
+        asked = line, sight, None if way is None else way.tobytes(), tight.tobytes()
         if self._route is None or self._route[0] != asked:
-            self._route = asked, self._routes.ahead(self.start, line, self._mapped, sight, way)
+            self._route = asked, self._routes.ahead(self.start, line, self._mapped, sight, way, tight)
             self._places += self._route[1].checks
         return self._route[1]
 

@@ -1,4 +1,8 @@
-"""The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there."""
+"""The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there.
+
+People walk round a gap in which their shoulders would have to turn, if that is not much farther: between two posts in
+the open from 1.4 shoulder widths down (A. L. Hackney & M. E. Cinelli, Q. J. Exp. Psychol. 66, 2013).
+"""
 
 import math
 from dataclasses import replace
@@ -21,6 +25,9 @@ Floats32 = NDArray[np.float32]
 _BEHIND = 0.64  # metres behind the start that a detour may use
 _MORE = 1e-3  # metres
 _SPACING = 0.04  # metres between samples along a route
+_THROUGH = 0.3  # metres: a route that comes so near to the middle of a gap leads through it
+_BACK = 0.3  # metres that the way back to the line is longer than that along it, for each metre beside it
+NONE_TIGHT = np.empty((0, 3))  # gaps where none is
 
 
 class Route(NamedTuple):
@@ -30,6 +37,7 @@ class Route(NamedTuple):
     detour: bool  # whether it leads round something
     ends: bool  # whether it ends before an obstacle
     checks: int  # places whose clearance was computed
+    beside: bool = False  # whether it leads round a gap that one could go through
 
 
 class Above(Protocol):
@@ -48,19 +56,53 @@ class RouteFinder:
         self.half = body.stance.radius + settings.margin + _MORE  # metres: half the breadth of the standing figure
 
     def ahead(
-        self, start: RootState, line: TravelLine, obstacles: Neighbours, sight: float, way: Floats | None = None
+        self,
+        start: RootState,
+        line: TravelLine,
+        obstacles: Neighbours,
+        sight: float,
+        way: Floats | None = None,
+        tight: Floats = NONE_TIGHT,
     ) -> Route:
         """The route from a start along a line of travel among `obstacles`, `sight` metres of it.
 
-        Or along a `way` (m, 2), corner points x and z, that leads along the line and then elsewhere.
+        Or along a `way` (m, 2), corner points x and z, that leads along the line and then elsewhere. It leads round
+        what stands in it, and round places (K, 2 or more), x and z, where it is `tight`, if there is room.
         """
         straight = straight_route(float(start.x), float(start.z), line, sight) if way is None else way
-        if self.above is None and route_is_open(straight, start.height, self.half, obstacles.ground):
-            return Route(straight, detour=False, ends=False, checks=0)
-        free, checks = self._free_length(straight, line, obstacles, start.height)
+        checks, free, seen = 0, math.inf, (sight, start.height)
+        if self.above is not None or not route_is_open(straight, start.height, self.half, obstacles.ground):
+            free, checks = self._free_length(straight, line, obstacles, start.height)
+        if way is None and self.above is None and len(tight):
+            looked, beside = self._beside(straight, line, obstacles, seen, tight)
+            checks += looked
+            if beside is not None:
+                return Route(beside, detour=True, ends=False, checks=checks, beside=True)
         if free >= sight:
             return Route(straight, detour=False, ends=False, checks=checks)
-        return self._round(straight, free, line, obstacles, (sight, start.height), checks)
+        return self._round(straight, free, line, obstacles, seen, checks)
+
+    def _beside(
+        self, straight: Floats, line: TravelLine, obstacles: Neighbours, seen: tuple[float, float], tight: Floats
+    ) -> tuple[int, Floats | None]:
+        """A route round `tight` places, where the straight one leaves little room, if there is one that is not much
+        longer; of both so much is `seen` from a height. And how many places were looked at."""
+        s, (sight, height), (margin, cell) = self._settings, seen, self._settings.going_round
+        if route_is_open(straight, height, self._body.stance.radius + margin, obstacles.ground):
+            return 0, None
+        ahead = line.coordinates(*straight[0].tolist())[0]
+        window = self._window(line, ahead, (cell, margin), obstacles, seen)
+        route, gained = self._searched(window, straight[0], line, margin)
+        more = _more_than_straight(route, line) - _more_than_straight(straight, line)
+        whole = gained >= sight - 2.0 * cell and more < s.worth_going_round and _away(route, tight).min() > _THROUGH
+        return window.clearance.size, route if whole else None
+
+    def _searched(self, window: WalkableMap, start: Floats, line: TravelLine, margin: float) -> tuple[Floats, float]:
+        """The route from a start (2,) over a window along a line, with a margin; metres that it gains along that."""
+        s, (ahead, left) = self._settings, line.coordinates(*start.tolist())
+        behind, middle = _cells(_BEHIND, window.cell), _cells(s.widest_detour, window.cell)
+        route = find_route(window, (behind, left + middle), middle, margin, s.route)
+        return route, line.coordinates(*route[-1].tolist())[0] - ahead
 
     def _free_length(self, route: Floats, line: TravelLine, obstacles: Neighbours, height: float) -> tuple[float, int]:
         """Metres along the route before the standing figure would touch, infinite if never; how many places it saw.
@@ -85,28 +127,35 @@ class RouteFinder:
         checks: int,
     ) -> Route:
         """The detour what stands `free` metres on in the straight route, of which so much is `seen` from a height."""
-        s, (ahead, left), sight = self._settings, line.coordinates(*straight[0].tolist()), seen[0]
+        s, ahead, sight = self._settings, line.coordinates(*straight[0].tolist())[0], seen[0]
         windows: dict[float, WalkableMap] = {}
+        most = max(margin for margin, _ in s.searches)
         for margin, cell in s.searches:
             if cell not in windows:
-                windows[cell] = self._window(line, ahead, cell, obstacles, seen)
+                windows[cell] = self._window(line, ahead, (cell, most), obstacles, seen)
                 checks += windows[cell].clearance.size
-            behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
-            route = find_route(windows[cell], (behind, left + middle), middle, margin, s.route)
-            gained = line.coordinates(*route[-1])[0] - ahead
+            route, gained = self._searched(windows[cell], straight[0], line, margin)
             if gained > free + s.worth_it:
                 return Route(route, detour=True, ends=bool(gained < sight - 2.0 * cell), checks=checks)
         return Route(shortened_route(straight, max(0.0, free - 0.05)), detour=False, ends=True, checks=checks)
 
     def _window(
-        self, line: TravelLine, ahead: float, cell: float, obstacles: Neighbours, seen: tuple[float, float]
+        self,
+        line: TravelLine,
+        ahead: float,
+        cells: tuple[float, float],
+        obstacles: Neighbours,
+        seen: tuple[float, float],
     ) -> WalkableMap:
-        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel."""
-        s, (sight, height) = self._settings, seen
+        """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel.
+
+        Of `cells` of a size, to be searched with a margin up to some.
+        """
+        s, (sight, height), (cell, margin) = self._settings, seen, cells
         behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
         shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
-        roomy = max(margin for margin, _ in s.searches) + s.route.roomy
+        roomy = margin + s.route.roomy
         first = round(behind / cell)
         window = self._body.window(obstacles, Grid(origin, line.heading, shape, cell, roomy, height, first))
         if self.above is None:
@@ -122,3 +171,17 @@ class RouteFinder:
 def _cells(length: float, cell: float) -> float:
     """`length` rounded up to whole cells, metres."""
     return math.ceil(length / cell - 1e-9) * cell
+
+
+def _away(route: Floats, places: Floats) -> Floats:
+    """Metres (K,) from places (K, 2 or more), x and z, to a route."""
+    points, _ = route_points(route, _SPACING)
+    away: Floats = np.hypot(points[:, 0] - places[:, :1], points[:, 1] - places[:, 1:2]).min(axis=1)
+    return away
+
+
+def _more_than_straight(route: Floats, line: TravelLine) -> float:
+    """Metres that a route, and the way back to its line, are longer than the way along that."""
+    ahead, left = line.coordinates(route[:, 0], route[:, 1])
+    walked = float(np.hypot(*np.diff(route, axis=0).T).sum())
+    return walked + _BACK * abs(float(left[-1])) - float(ahead[-1] - ahead[0])
