@@ -186,8 +186,8 @@ class RootPlanner:
         else:
             offers.append(_Idea(commanded.lost, self._offer(commanded, direct, before)))
         if commanded.beside and line is not None:
-            through = self._paths.travelled(asked, line, 1.0, through=True)
-            offers.append(_Idea(through.lost, self._offer(through, direct, before)))
+            squeezed = self._paths.travelled(asked, line, 1.0, through=True)
+            offers.append(_Idea(squeezed.lost, self._offer(squeezed, direct, before)))
         duration = asked.horizon * asked.interval
         offers += [_Idea(commanded.lost + duration * (1.0 - pace), pace) for pace in paces if pace < 1.0]
         if wanted_speed(asked.command, self.settings.motion) < SLOW:

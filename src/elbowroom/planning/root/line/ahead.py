@@ -1,7 +1,7 @@
 """The route that a walk along the line of travel takes: straight on, round what stands in it, or up to there.
 
 People walk round a gap in which their shoulders would have to turn, if that is not much farther: between two posts in
-the open from 1.4 shoulder widths down (A. L. Hackney & M. E. Cinelli, Q. J. Exp. Psychol. 66, 2013).
+the open from 1.4 shoulder widths down (A. L. Hackney, L. A. Vallis & M. E. Cinelli, Q. J. Exp. Psychol. 66, 2013).
 """
 
 import math
@@ -143,15 +143,15 @@ class RouteFinder:
         self,
         line: TravelLine,
         ahead: float,
-        cells: tuple[float, float],
+        searched: tuple[float, float],
         obstacles: Neighbours,
         seen: tuple[float, float],
     ) -> WalkableMap:
         """The walkable map from a little behind the start to the end of sight, on both sides of the line of travel.
 
-        Of `cells` of a size, to be searched with a margin up to some.
+        It is to be `searched` with cells of a size, and with a margin up to some.
         """
-        s, (sight, height), (cell, margin) = self._settings, seen, cells
+        s, (sight, height), (cell, margin) = self._settings, seen, searched
         behind, middle = _cells(_BEHIND, cell), _cells(s.widest_detour, cell)
         shape = (round((behind + _cells(sight, cell)) / cell) + 1, 2 * round(middle / cell) + 1)
         origin = line.point(ahead - behind, -middle)
