@@ -27,9 +27,10 @@ from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
 from elbowroom.dataset.draw import draw
 from elbowroom.dataset.figures import Figures
+from elbowroom.dataset.hands import HANDS
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.manifest import Manifest
-from elbowroom.dataset.spec import DatasetSpec
+from elbowroom.dataset.spec import STEERING, DatasetSpec
 from elbowroom.dataset.walk import WalkTask
 from elbowroom.errors import InputError
 from elbowroom.experiment.parallel import Processes
@@ -244,6 +245,10 @@ def test_check_walks_again(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(WalkTask, "run", other)
     (fault,) = check_dataset(made, Here(), 1).faults
     assert fault.endswith("walked again, q differ")
+
+
+def test_every_way_of_steering_that_a_spec_may_name_has_its_hand() -> None:
+    assert tuple(HANDS) == STEERING
 
 
 def test_draws_depend_on_nothing_but_seed_and_number() -> None:

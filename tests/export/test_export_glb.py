@@ -75,6 +75,10 @@ def written(animation: Animation, humanoid: Humanoid, ending: str, root: RootMot
     return result.data, result.notes
 
 
+def test_every_format_that_can_be_chosen_has_its_writer() -> None:
+    assert WRITERS.keys() == FORMATS.keys()
+
+
 @pytest.mark.parametrize("root", RootMotion)
 @pytest.mark.parametrize("name", RECIPES)
 def test_every_rig_moves_as_the_page_shows_it(name: str, root: RootMotion, tmp_path: Path) -> None:
