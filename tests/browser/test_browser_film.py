@@ -66,7 +66,7 @@ from elbowroom.errors import InputError
 from elbowroom.film import page
 page._PATIENCE = 5.0
 try:
-    with page.filmed_page(sys.argv[1], page.Look((64, 48))) as filmed:
+    with page.filmed_page(sys.argv[1], page.Look((64, 64))) as filmed:
         print(filmed.duration)
 except InputError as error:
     print(error)
