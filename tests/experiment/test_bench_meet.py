@@ -21,7 +21,7 @@ class Told:
 
     def run(self, tasks: Sequence[Any]) -> Iterator[tuple[int, Any]]:
         for place, task in reversed(list(enumerate(tasks))):
-            yield place, self._failing.get(task.start, Met(task.start, True, False, 4.0, 0.0, 20.0))
+            yield place, self._failing.get(task.start, Met(task.start, True, False, 4.0, 0.0, 20.0, 0))
 
 
 def test_a_seed_draws_the_same_start_within_the_corridor() -> None:
@@ -37,9 +37,9 @@ def test_a_seed_draws_the_same_start_within_the_corridor() -> None:
 def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
     settings = MeetingSettings((0.95, 1.2), 3)
     starts = [task.start for task in meeting_tasks(settings)]
-    stuck = Met(starts[1], False, False, 15.0, 0.0, 40.0)
-    driven = Met(starts[4], True, False, 6.0, STEP + 0.1, 20.0)
-    touched = Met(starts[5], True, True, 6.0, 0.0, 20.0)
+    stuck = Met(starts[1], False, False, 15.0, 0.0, 40.0, 2)
+    driven = Met(starts[4], True, False, 6.0, STEP + 0.1, 20.0, 0)
+    touched = Met(starts[5], True, True, 6.0, 0.0, 20.0, 0)
     heard: list[int] = []
     results = run_meetings(settings, Told({one.start: one for one in (stuck, driven, touched)}), heard.append)
     assert heard == list(range(1, 13))
@@ -47,7 +47,7 @@ def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
         ("both walk", 0.95, 3), ("both walk", 1.2, 3), ("one stands", 0.95, 3), ("one stands", 1.2, 3)
     ]  # fmt: skip
     first, second, *others = results
-    assert (first.passed, first.failed, first.frame_ms) == (2, (starts[1],), 40.0)
+    assert (first.passed, first.failed, first.frame_ms, first.late) == (2, (starts[1],), 40.0, 2)
     assert (second.passed, second.driven_back, second.touched, second.failed) == (3, 1, 1, (starts[4], starts[5]))
     assert all(row.well for row in others)
     assert not as_dict(results)["well"]
@@ -57,7 +57,13 @@ def test_a_meeting_of_its_own_process_is_the_same() -> None:
     start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
     met = MeetingTask(Kind.STANDS, start).run()
     assert met.well
-    assert met._replace(frame_ms=0.0) == MeetingTask(Kind.STANDS, start).run()._replace(frame_ms=0.0)
+    again = MeetingTask(Kind.STANDS, start).run()
+    assert met._replace(frame_ms=0.0, late=0) == again._replace(frame_ms=0.0, late=0)
+
+
+def test_two_whose_plans_come_late_meet_as_well() -> None:
+    start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
+    assert MeetingTask(Kind.STANDS, start, live=True).run().well
 
 
 @pytest.mark.parametrize(

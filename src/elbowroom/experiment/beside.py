@@ -1,7 +1,7 @@
 """Planning beside playback as a live session has it, in trials that run faster than life."""
 
 import math
-from time import perf_counter
+from time import perf_counter, thread_time
 
 from elbowroom.control.plans.desk import Job
 from elbowroom.control.plans.wayfinder import Answer
@@ -22,14 +22,16 @@ class BesideDesk:
         self._frames = 0  # that the answer is still held back
         self.busy = False
         self.spent = 0.0  # seconds of planning up to now
+        self.processor = 0.0  # of these, seconds that a processor was at it
         self.last = 0.0  # seconds that the last plan took
 
     def submit(self, job: Job) -> None:
         """Do the job, and hold its answer back."""
-        began = perf_counter()
+        began, worked = perf_counter(), thread_time()
         self._answer = job()
         self.last = perf_counter() - began
         self.spent += self.last
+        self.processor += thread_time() - worked
         self._frames, self.busy = math.ceil(self.last / self._dt), True
 
     def take(self) -> Answer | None:

@@ -2,7 +2,7 @@
 
 import math
 from functools import cache
-from time import thread_time_ns
+from time import thread_time
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +10,11 @@ import numpy as np
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
+from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.meeting.settings import Kind
+from elbowroom.experiment.pacing import late_frames
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
@@ -39,7 +43,8 @@ class Met(NamedTuple):
     touched: bool
     seconds: float  # until then
     back: float  # metres, the farthest that one was driven back
-    frame_ms: float  # processor time of the longest step of one, its plan included
+    frame_ms: float  # processor time of the longest step of one; with its plan, where plans are made at once
+    late: int  # frames that one of them was shown later than a frame after they were due
 
     @property
     def driven_back(self) -> bool:
@@ -83,27 +88,50 @@ def load_kernels() -> None:
     meet(Start(1.0, (0.0, 0.0), 1.5, (1.0, 1.0)), 1.5)
 
 
-def meet(start: Start, seconds: float = 15.0) -> Met:
-    """Let them walk until they have passed, or for so long."""
+class _Walker:
+    """One of both, and what its steps cost."""
+
+    def __init__(self, scene: Scene, start: RootState, pace: float, *, live: bool) -> None:
+        self._desk = BesideDesk(_DT) if live else None
+        self.controller = Controller(Humanoid.default(), scene, start=start, ahead=Lookahead(desk=self._desk))
+        self._command = Command(forward=pace)
+        self.costs: list[float] = []  # seconds of processor time, one for each step; plans made beside cost none
+
+    def step(self) -> Frame:
+        """The next frame."""
+        began, planned = thread_time(), self._planned
+        frame = self.controller.step(self._command, _DT)
+        self.costs.append(thread_time() - began - (self._planned - planned))
+        return frame
+
+    @property
+    def _planned(self) -> float:
+        return 0.0 if self._desk is None else self._desk.processor
+
+    @property
+    def late(self) -> int:
+        """How many frames were shown later than a frame after they were due."""
+        return late_frames(np.array(self.costs), _DT)
+
+
+def meet(start: Start, seconds: float = 15.0, *, live: bool = False) -> Met:
+    """Let them walk until they have passed, or for so long; `live` plans beside playback, as a session does."""
     heading = start.heading
-    humanoid, scene = Humanoid.default(), corridor(start.width, heading)
+    scene = corridor(start.width, heading)
     along = np.array([math.sin(heading), math.cos(heading)])
     first, second = placed(heading, start.left[0], 0.0), placed(heading, start.left[1], start.apart)
-    one = Controller(humanoid, scene, start=RootState(*first, heading))
-    two = Controller(humanoid, scene, start=RootState(*second, heading + math.pi))
-    farthest, back, touched, longest = np.full(2, -np.inf), 0.0, False, 0
-    for turn in range(1, round(seconds / _DT) + 1):
-        one.others, two.others = (two.prediction(),), (one.prediction(),)
-        frames = []
-        for walker, pace in zip((one, two), start.paces, strict=True):
-            began = thread_time_ns()
-            frames.append(walker.step(Command(forward=pace), _DT))
-            longest = max(longest, thread_time_ns() - began)
-        mine, yours = frames
+    one = _Walker(scene, RootState(*first, heading), start.paces[0], live=live)
+    two = _Walker(scene, RootState(*second, heading + math.pi), start.paces[1], live=live)
+    farthest, back, touched, passed, turn = np.full(2, -np.inf), 0.0, False, False, 0
+    while not passed and turn < round(seconds / _DT):
+        turn += 1
+        one.controller.others = (two.controller.prediction(),)
+        two.controller.others = (one.controller.prediction(),)
+        mine, yours = one.step(), two.step()
         touched |= mine.touching or yours.touching
         come = np.array([mine.root[:2] @ along, start.apart - yours.root[:2] @ along])
         farthest = np.maximum(farthest, come)
         back = max(back, float((farthest - come).max()))
-        if come.sum() > start.apart + _PAST:
-            return Met(start, True, touched, turn * _DT, back, longest / 1e6)
-    return Met(start, False, touched, seconds, back, longest / 1e6)
+        passed = bool(come.sum() > start.apart + _PAST)
+    longest = 1e3 * max(one.costs + two.costs)
+    return Met(start, passed, touched, turn * _DT, back, longest, one.late + two.late)

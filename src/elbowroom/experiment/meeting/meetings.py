@@ -17,6 +17,7 @@ class MeetingTask:
 
     kind: Kind
     start: Start
+    live: bool = False
 
     @property
     def things(self) -> tuple[Thing[Any], ...]:
@@ -26,13 +27,13 @@ class MeetingTask:
     def run(self) -> Met:
         """How it ends."""
         load_kernels()
-        return meet(self.start)
+        return meet(self.start, live=self.live)
 
 
 def meeting_tasks(settings: MeetingSettings) -> list[MeetingTask]:
     """A task for every meeting."""
     return [
-        MeetingTask(kind, drawn(width, kind, settings.seed + number))
+        MeetingTask(kind, drawn(width, kind, settings.seed + number), settings.live)
         for kind in settings.kinds
         for width in settings.widths
         for number in range(settings.starts)
@@ -51,7 +52,8 @@ class WidthResult:
     driven_back: int  # meetings in which somebody was, by more than `STEP`
     back: float  # metres, the farthest
     seconds: float  # until they had passed, in half of the meetings
-    frame_ms: float  # processor time of the longest step of one avatar, its plan included
+    frame_ms: float  # processor time of the longest step of one avatar; with its plan, where plans are made at once
+    late: int  # frames shown later than a frame after they were due
     failed: tuple[Start, ...]
 
     @property
@@ -93,5 +95,6 @@ def _result(kind: Kind, met: list[Met]) -> WidthResult:
         back=max(one.back for one in met),
         seconds=median(one.seconds for one in met),
         frame_ms=max(one.frame_ms for one in met),
+        late=sum(one.late for one in met),
         failed=tuple(one.start for one in met if not one.well),
     )

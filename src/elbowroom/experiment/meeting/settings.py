@@ -24,6 +24,7 @@ class MeetingSettings:
     starts: int = 20  # in each, of each kind
     seed: int = 0
     kinds: tuple[Kind, ...] = tuple(Kind)
+    live: bool = False  # plans are made beside playback, as in a session: their answers come as late as they really are
 
     def __post_init__(self) -> None:
         for width in self.widths:
