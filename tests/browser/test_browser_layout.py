@@ -9,7 +9,7 @@ from live_page import LivePage
 Open = Callable[..., LivePage]
 
 PANELS = ("#brand", "#bar", "#hud", "#status", "#menu", "#inset")
-SIZES = [(1280, 720), (1000, 600), (900, 600), (640, 480), (621, 700), (390, 844), (844, 390), (320, 568)]
+SIZES = [(1280, 720), (900, 600), (621, 700), (390, 844), (844, 390), (320, 568)]
 PHONES = [pytest.param((390, 844), id="portrait"), pytest.param((844, 390), id="landscape")]
 SMALLEST = """
 () => [...document.querySelectorAll("button, select, input:not([hidden]), summary")]

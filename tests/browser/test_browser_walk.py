@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pytest
 
 from live_page import LivePage
 from live_server import LiveServer
@@ -37,6 +38,7 @@ def distance_to_boxes(boxes: list[dict[str, Any]], point: list[float]) -> float:
     return min(distances)
 
 
+@pytest.mark.long
 def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer) -> None:
     boxes: Any = live_server.get_json("/api/scenes/a")["obstacles"]
     live = open_page("scene=a&speed=1.6")

@@ -32,7 +32,7 @@ def controller(planner: str = "exact") -> Controller:
     return Controller(Humanoid.default(), Scene.of("push", THINGS, finish=(0.0, 6.0)), planner=planner)
 
 
-@pytest.mark.parametrize("planner", ["exact", "figure6"])
+@pytest.mark.parametrize("planner", ["exact", pytest.param("figure6", marks=pytest.mark.long)])
 def test_nobody_who_walks_or_stands_is_touched_by_what_is_pushed_at_him(planner: str) -> None:
     rng = np.random.default_rng(7)
     walker = controller(planner)

@@ -39,7 +39,7 @@ from made_walk import FPS, made_walk
 from place_builder import Boxes, write_place
 
 SPEC = DatasetSpec(
-    walks=5, shard=2, seconds=2.0, places=("gauntlet:2", "doorway", "traffic"), steering=("straight", "key flips")
+    walks=4, shard=2, seconds=1.2, places=("gauntlet:2", "doorway", "traffic"), steering=("straight", "key flips")
 )
 STOCK_SPEC = Path(__file__).parents[2] / "examples" / "dataset.json"
 
@@ -79,7 +79,7 @@ def test_interrupted_backwards_and_grown_it_is_the_same_to_the_byte(made: Path, 
     broken = tmp_path / "broken"
     with pytest.raises(KeyboardInterrupt):
         make_dataset(SPEC, broken, Here(3, backwards=True))
-    assert 0 < len(list(broken.glob("*.parquet"))) < 3
+    assert len(list(broken.glob("*.parquet"))) == 1
     make_dataset(SPEC, broken, Here())
     assert contents(broken) == contents(made)
     grown = tmp_path / "grown"
@@ -210,7 +210,7 @@ def test_the_report_counts_every_frame(made: Path, tmp_path: Path) -> None:
 
 def test_motion_is_small(tmp_path: Path) -> None:
     """At most 6 kB a second for configuration, contacts and clearance."""
-    make_dataset(DatasetSpec(walks=2, seconds=10.0, places=("gauntlet:3",)), tmp_path, Here())
+    make_dataset(DatasetSpec(walks=1, seconds=6.0, places=("gauntlet:3",)), tmp_path, Here())
     (file,) = tmp_path.glob("*.parquet")
     found = pq.ParquetFile(file).metadata.row_group(0)
     columns = [found.column(k) for k in range(found.num_columns)]

@@ -88,7 +88,7 @@ def every_way(lattice: Lattice) -> tuple[int, float]:
     return 0, 0.0
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=12)
 @given(st.integers(0, 10_000))
 def test_same_feasibility_and_optimum_as_trying_every_way(seed: int) -> None:
     lattice = random_lattice(seed)

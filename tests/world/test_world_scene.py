@@ -152,7 +152,7 @@ def _read_unless_start_is_blocked(mutant: Any) -> None:
             raise
 
 
-PARTS = 8  # of the mutants, the first of which is looked at every time
+PARTS = 16  # of the mutants, the first of which is looked at every time
 
 
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.long) for part in range(1, PARTS))])
