@@ -2,7 +2,8 @@
 
 There are three kinds. A `kernel` computes with fast mathematics: for batches of distances. An `exact_kernel` keeps to
 IEEE arithmetic: for searches and state that must repeat bit for bit. A `helper` is inlined into the kernels that call
-it and computes as they do. Kernels of both kinds may call each other and be called from Python.
+it and computes as they do. Kernels of both kinds may call each other and be called from Python. A kernel is compiled
+with all that it calls: what is long, calls much and is called in one place is a helper, or all of it is compiled twice.
 
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
@@ -56,7 +57,7 @@ def exact_kernel(function: Function) -> Function:
 
 
 def helper(function: Function) -> Function:
-    """Compile a helper that is inlined into the kernels of its own file."""
+    """Compile a helper that is inlined into the kernels that call it."""
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 

@@ -56,7 +56,7 @@ def carriers_at(ids: Longs, places: Floats, turns: Floats, entries: Longs) -> Ca
     return out
 
 
-@exact_kernel
+@helper
 def node_costs(
     scratch: Scratch, group: Group, carriers: Carriers, task: GroupTask, weights: Weights, extras: ExtraNodes
 ) -> tuple[Floats32, float, int]:

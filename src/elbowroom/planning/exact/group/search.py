@@ -66,7 +66,7 @@ def _carrier(cache: GroupCache, task: GroupTask, k: int) -> Carrier:
     )
 
 
-@exact_kernel
+@helper
 def _proven(
     question: _Question, keys: Floats, tangents: Floats, gentle: bool, entries: Longs, touches: Bools
 ) -> tuple[int, bool]:
@@ -132,7 +132,7 @@ def _beside(touches: Bools) -> Bools:
     return beside
 
 
-@exact_kernel
+@helper
 def _close(
     lattice: Lattice, work: Work, edges: ClosedEdges, nodes: Longs, touches: Bools, looked_at: Bools
 ) -> tuple[int, float]:
@@ -152,7 +152,7 @@ def _close(
     return first, farthest
 
 
-@exact_kernel
+@helper
 def _close_promising(
     question: _Question, lattice: Lattice, work: Work, edges: ClosedEdges, first: int, best: float
 ) -> int:

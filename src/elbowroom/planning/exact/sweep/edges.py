@@ -53,7 +53,7 @@ def close_near(lattice: Lattice, work: Work, depth: int, source: int, target: in
     closed[source, target] = True
 
 
-@exact_kernel
+@helper
 def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen: Bools, found: Longs) -> int:
     """The steps of a key interval through which a way might go that costs at most `most`, without those `seen`.
 
@@ -130,7 +130,7 @@ def _posed_between(
             lanes[c, 6, n] = postures.limb.radii[c]
 
 
-@exact_kernel
+@helper
 def close_edges(
     scratch: Scratch,
     postures: Postures,

@@ -139,7 +139,7 @@ def root_sweeps(ways: RootSweeps, chain: KinematicChain, states: Floats, interva
     return out
 
 
-@exact_kernel
+@helper
 def _root_sweep(
     ways: RootSweeps, chain: KinematicChain, a: Floats, b: Floats, interval: float, stamp: float, scratch: RootScratch
 ) -> int:

@@ -48,7 +48,7 @@ def new_node_clearances(count: int, size: int, width: int) -> NodeClearances:
     )
 
 
-@exact_kernel
+@helper
 def interval_clearances(
     scratch: Scratch,
     tables: NodeClearances,

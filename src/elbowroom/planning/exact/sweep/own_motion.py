@@ -164,7 +164,7 @@ def _beside(keys: Floats, goals: Floats, states: Floats) -> Indices:
     return chosen[:count]
 
 
-@exact_kernel
+@helper
 def _prove(
     parts: OwnParts, underfoot: Underfoot, shown: Shown, chosen: Indices, least: Floats, groups: Indices
 ) -> None:
