@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.cycle import foot_poses, home_of, stride_of
-from elbowroom.body.gait.footholds import gliding, onward, settled, standing
+from elbowroom.body.gait.cycle import flat_place, foot_poses, home_of, stride_of
+from elbowroom.body.gait.footholds import beside, gliding, onward, settled, standing
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from feet_walks import DT, GAIT, WANTED, Velocities, in_world, path, random_wish, walked
 
 MODEL = body_model(proportional_humanoid())
+LIFT, SWING = ROOT_STATE + 4, ROOT_STATE + 5  # of the left foot
 EVERY = [*WANTED.values(), *(random_wish(seed) for seed in range(6))]
 
 
@@ -68,13 +69,19 @@ def test_feet_and_hips_move_without_a_jump(wanted: Callable[[float], Velocities]
     assert np.abs(np.diff(sinks[:, 0])).max() < 2.0 * DT
 
 
-def test_an_even_walk_is_that_of_the_cycle() -> None:
+def test_an_even_walk_goes_where_the_cycle_does() -> None:
+    """Only the roll of its feet is another one."""
     roots = path(lambda _: (1.1, 0.0, 0.0), 400)
     rows = walked(roots)
-    feet, sinks = posed_feet(GAIT.legs, GAIT.scale, GAIT.half_leg, rows, np.zeros(len(rows)))
-    cycle, drops = foot_poses(GAIT.legs, GAIT.scale, roots)
-    assert np.abs(feet - cycle)[240:, :, :3].max() < 0.02
-    assert np.abs(sinks[:, 0] - drops)[240:].max() < 0.01
+    stride = stride_of(GAIT.scale, 1.1, 0.0, 0.0)
+    for row in rows[240:]:
+        for side in range(2):
+            foot = row[ROOT_STATE + FOOT * side :]
+            place = flat_place(GAIT.legs, stride, side, (row[6] + 0.5 * side) % 1.0)
+            assert np.abs(foot[:2] - place[:2]).max() < 0.02
+    _, sinks = posed_feet(GAIT.legs, GAIT.scale, GAIT.half_leg, rows, np.zeros(len(rows)))
+    _, drops = foot_poses(GAIT.legs, GAIT.scale, roots)
+    assert np.abs(sinks[:, 0] - drops)[240:].max() < 0.02
 
 
 @pytest.mark.parametrize("at", [25, 95, 110])
@@ -90,6 +97,61 @@ def test_feet_that_glide_are_soon_where_the_cycle_has_them_and_do_not_jump(at: i
     assert off[25:].max() < 0.005
     ways = np.linalg.norm(np.diff(feet - cycle, axis=0)[:, :, :3], axis=2)
     assert ways.max() < 3.0 * DT
+
+
+@pytest.mark.parametrize("wanted", ["turn in place", "strafe"])
+def test_a_foot_that_goes_aside_or_round_is_over_its_place_before_it_comes_down(wanted: str) -> None:
+    """It would rub over the ground: in the last 4 mm it moves by no more than half a millimetre."""
+    rows, moved = walked(path(WANTED[wanted])), []
+    for side in range(2):
+        low = (rows[:, SWING + FOOT * side] > 0.5) & (rows[:, LIFT + FOOT * side] < 0.004)
+        moved += np.abs(np.diff(in_world(rows, side), axis=0))[low[1:] & low[:-1], :2].max(axis=1).tolist()
+    assert len(moved) > 4
+    assert max(moved) < 5e-4
+
+
+@pytest.mark.parametrize("wanted", EVERY)
+def test_a_foot_leaps_nowhere(wanted: Callable[[float], Velocities]) -> None:
+    """Not in the last moment of its swing either, where the place that it goes to has changed."""
+    rows = walked(path(wanted))
+    fastest = 5.0 + 2.2 * np.hypot(rows[:, 3], rows[:, 4]).max()
+    for side in range(2):
+        moved = np.hypot(*np.diff(in_world(rows, side), axis=0)[:, :2].T)
+        assert moved.max() < fastest * DT
+
+
+@pytest.mark.parametrize("dt", [1 / 30, 1 / 60, 1 / 90])
+def test_a_foot_lands_where_it_is_due_between_two_frames_too(dt: float) -> None:
+    """In an even walk it is a stride ahead of where it stood, and under the root in the middle of its stance."""
+    stride = stride_of(GAIT.scale, 1.1, 0.0, 0.0)
+    roots = np.zeros((round(8.0 / dt), ROOT_STATE))
+    roots[:, 3], roots[:, 1] = 1.1, 1.1 * dt * np.arange(len(roots))
+    roots[:, 6] = dt / stride.period * np.arange(len(roots))
+    rows = [beside(GAIT, roots[0])]
+    for root in roots[1:]:
+        rows.append(onward(GAIT, rows[-1], root, dt))
+    even = np.array(rows)[round(4.0 / dt) :]
+    for side in range(2):
+        u = (even[:, 6] + 0.5 * side) % 1.0
+        due = even[:, 1] + home_of(GAIT.legs, stride, side)[1] - 1.1 * stride.period * (u - 0.5 * stride.duty)
+        apart = np.abs(in_world(even, side)[:, 1] - due)[(u > 0.1) & (u < 0.5)]
+        assert apart.max() < 0.004
+
+
+def test_feet_that_glide_and_hold_stand_until_the_cycle_lifts_them() -> None:
+    """Whatever the root does; without it they slide as soon as velocities change."""
+    rows = walked(path(WANTED["a bend"]))
+    farthest = []
+    for holds in (True, False):
+        glides = [rows[70]]
+        for row in rows[71:130]:
+            glides.append(gliding(GAIT, glides[-1], row, DT, holds=holds))
+        shown = np.array(glides)
+        stays = standing(shown)[1:] & standing(shown)[:-1]
+        moved = [np.abs(np.diff(in_world(shown, side), axis=0))[stays[:, side]].max() for side in range(2)]
+        farthest.append(max(moved))
+    assert farthest[0] < 1e-12
+    assert farthest[1] > 1e-4
 
 
 def test_who_turns_in_place_steps() -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.gait.footholds import settled, standing
+from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.control.controller import Controller
@@ -120,3 +121,11 @@ def test_between_two_walls_it_does_not_move_where_legs_stay_clear(width: float) 
     assert slides(rows) < 1e-9
     assert rows[-1, 1] > 2.6
     assert 0.0 < room.min() < 0.1
+
+
+def test_in_a_doorway_that_is_passed_sideways_it_does_not_move() -> None:
+    """Where legs that step would come too near it is the swinging foot that makes way."""
+    controller = Controller(Humanoid.default(), Scene.load("doorway"))
+    rows = np.array([controller.step(Command(forward=1.0), FRAME).root for _ in range(330)])
+    assert slides(rows) < 1e-3
+    assert np.abs(rows[:, 2]).max() > 1.2

@@ -13,7 +13,7 @@ from elbowroom.cli.main import app
 from elbowroom.errors import InputError
 from elbowroom.experiment.motion.gaps import shoulder_width, walls
 from elbowroom.experiment.motion.plots import motion_plots
-from elbowroom.experiment.motion.report import amount, run
+from elbowroom.experiment.motion.report import MotionReport, amount, run
 from elbowroom.experiment.motion.scripts import at_speed, scripts, steady
 from elbowroom.experiment.motion.settings import SCRIPTED, SPEEDS, MotionSettings
 from elbowroom.experiment.motion.walked import walk
@@ -44,12 +44,26 @@ def test_feet_stand_for_as_much_of_a_stride_as_the_walk_says() -> None:
     assert feet_standing(1.0, np.zeros((1, 7))).all()
 
 
-def test_a_report_has_figures_bands_and_pictures() -> None:
-    settings, done = MotionSettings(("steady", "stop", "gaps"), (0.8, 1.1), (1.5,)), list[int]()
+@pytest.fixture(scope="module")
+def report() -> MotionReport:
+    """Of natural speeds, a stop and a gap."""
+    settings, done = MotionSettings(("steady", "stop", "gaps"), (1.1, 1.4), (1.5,)), list[int]()
     report = run(Humanoid.default(), settings, done.append)
     assert done == list(range(1, amount(settings) + 1))
+    return report
+
+
+def test_hip_knee_and_ankle_go_through_a_stride_as_peoples_do(report: MotionReport) -> None:
+    for gait in report.gaits:
+        assert gait.curves.inside >= 0.95
+        assert max(gait.curves.outside.values()) < 1e-9
+        assert min(gait.curves.ankle) > -30.0  # no ballet dancer's
+        assert gait.curves.humps == 1
+
+
+def test_a_report_has_figures_bands_and_pictures(report: MotionReport) -> None:
     assert set(report.feet) == {"steady", "stop"}
-    assert [gait.speed for gait in report.gaits] == [0.8, 1.1]
+    assert [gait.speed for gait in report.gaits] == [1.1, 1.4]
     assert report.feet["steady"].as_planned.stances > 10
     assert report.narrow is not None
     assert report.narrow.passages[0].passed

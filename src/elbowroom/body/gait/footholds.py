@@ -20,6 +20,7 @@ from elbowroom.body.gait.cycle import (
     stride_of,
 )
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_of
+from elbowroom.body.gait.roll import least_lift, straight_part
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel, kernel, plain
 
@@ -41,12 +42,13 @@ _SWINGS = (0.20, 0.36, 0.80)  # seconds of a standard leg's swing: at least, to 
 _TURNING = 0.25  # metres of a standard leg: so much way over the ground is a radian
 _OVER = 0.04  # of the cycle, by which a foot may stand longer than in an even walk
 _LATE = 0.75  # of the cycle's swing: who has not lifted a foot by then leaves it
-_LEAST_LIFT, _STEP_LIFT = 0.5, 0.056  # of the swing of a long stride, metres of a standard leg
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
 _ROLL_RATE, _LIFT_RATE, _HASTE = 16.0, 1.5, 2.0  # rad/s, m/s: no foot tilts or is lifted faster; a recorded one is
 _FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
 _NEARLY = 0.12  # metres: so near it lands
+_DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
+_OVER_PLACE, _LATE_SPEED = 0.02, 1.0  # metres from its place; m/s that it hurries there by; of a standard leg
 _GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
 _AT_LEAST = 0.2  # of its swing is over, for a foot that does
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
@@ -189,9 +191,10 @@ def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None
 def _goal(
     own: OwnSteps, legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
 ) -> tuple[float, float, float]:
-    """Where a foot has to land in `left` seconds, seen from the root; `later` (7,) is scratch.
+    """Where a foot has to land in `left` seconds, or had to if that is negative, seen from the root.
 
-    Under the root in the middle of its stance, and no farther from the root than in an even walk.
+    Under the root in the middle of its stance, and no farther from the root than in an even walk. `later` (7,) is
+    scratch.
     """
     _root_later(root, coming, left, later)
     stride = own_stride_of(own, scale, later[3], later[4], later[5])
@@ -253,6 +256,22 @@ def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float])
 
 
 @exact_kernel
+def _time_over_ground(
+    stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], foot: Floats
+) -> float:
+    """Seconds in which a swinging foot goes over its place; none if it is there.
+
+    `times` are the seconds until it lands, and until it should be over that place. It takes more of them where that has
+    changed since.
+    """
+    (lands, over), wide = times, _TURNING * stride.scale
+    way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z]) + wide * abs(goal[2] - foot[_YAW])
+    if over <= 0.0 and way < _OVER_PLACE * stride.scale:
+        return 0.0
+    return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale))), lands))
+
+
+@exact_kernel
 def _land(foot: Floats) -> None:
     foot[_SWING] = foot[_LIFT] = 0.0
     for i in range(3):
@@ -269,22 +288,31 @@ def _swing(
     foot: Floats,
     twin: Floats,
 ) -> float:
-    """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants."""
+    """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants.
+
+    In steps aside and round it is over its place before it comes down: it would rub over the ground.
+    """
     (dt, left), done = times, foot[_SWING]
-    part = dt / (left + dt)
-    after = done + (1.0 - done) * part
-    before, then = own_detour(own, stride, side, done), own_detour(own, stride, side, after)
+    after = done + (1.0 - done) * dt / (left + dt)
+    way = 1.0 - _DOWN * (1.0 - straight_part(stride))  # of the swing, in which it goes over the ground
+    over, there = min(done / way, 1.0), min(after / way, 1.0)
+    before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
     for i in range(3):
         foot[i] -= before[i]
-        _towards(foot, i, goal[i], part, left + dt)
+    time = _time_over_ground(stride, goal, (left + dt, (left + dt) * (way - done) / (1.0 - done)), foot)
+    for i in range(3):
+        if time > 0.0:
+            _towards(foot, i, goal[i], min(dt / time, 1.0), time)
+        else:
+            foot[_VELOCITY + i] = 0.0
         foot[i] += then[i]
     half = 0.5 * stride.duty * stride.period
     sag = min(max(0.5 * stride.forward * stride.turn * half * half, -0.1 * stride.scale), 0.1 * stride.scale)
-    foot[_X] -= sag * 16.0 * ((after * (1.0 - after)) ** 2 - (done * (1.0 - done)) ** 2)
+    foot[_X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
     x, z = _beside_twin(side, foot[_X] - twin[_X], foot[_Z] - twin[_Z], 0.0, stride.scale)
     foot[_X], foot[_Z], foot[_SWING] = twin[_X] + x, twin[_Z] + z, after
     pitch, lift = own_roll(own, stride, side, stride.duty + (1.0 - stride.duty) * after)
-    low = _LEAST_LIFT * _STEP_LIFT * stride.scale * 16.0 * (after * (1.0 - after)) ** 2
+    low = least_lift(stride, after)
     most = _LIFT_RATE * dt if own.speed <= 0.0 else _HASTE * _LIFT_RATE * dt
     foot[_LIFT] += min(max(max(lift, low) - foot[_LIFT], -most), most)
     if left <= 0.0:
@@ -297,6 +325,13 @@ def _lifted_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
     """Seconds, up to `dt`, since a foot was lifted that stood a frame ago."""
     since = (_position(root[6], side) - stride.duty) * stride.period
     return float(since if 0.0 < since < dt and not _rests(root) else dt)
+
+
+@exact_kernel
+def _landed_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
+    """Seconds, up to `dt`, since the cycle has landed a foot that swung a frame ago."""
+    u = _position(root[6], side)
+    return float(min(u * stride.period, dt) if u < 0.5 * stride.duty and not _rests(root) else 0.0)
 
 
 @exact_kernel
@@ -346,7 +381,8 @@ def step_feet(
         if foot[_SWING] > 0.0 or lifted == side:
             since = _lifted_since(stride, side, root, dt) if lifted == side else dt
             left = max(_time_left(own, legs, stride, side, root, foot, twin, since), 0.0)
-            goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, left, later), twin, scale)
+            lands = left if left > 0.0 else -_landed_since(stride, side, root, dt)
+            goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, lands, later), twin, scale)
             needed = _time_needed(stride, foot, goal)
             if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
@@ -359,14 +395,15 @@ def step_feet(
 
 
 @exact_kernel
-def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, out: Floats) -> None:
+def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, holds: bool, out: Floats) -> None:
     """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
 
-    They go as the walking cycle has them, and what they are beside it becomes less. Under a root that rests they end up
-    flat on the ground and stand, wherever in the cycle that is.
+    They go as the walking cycle has them, and what they are beside it becomes less; if it `holds`, while they swing,
+    and one that stands stays until the cycle lifts it. Under a root that rests they end up flat on the ground and
+    stand, wherever in the cycle that is.
     """
-    for i in range(ROOT_STATE):
-        out[i] = root[i]
+    _carry(before, root, out)
+    holds = holds and not _rests(root)
     first, stride = stride_of(scale, before[3], before[4], before[5]), stride_of(scale, root[3], root[4], root[5])
     for side in range(2):
         foot, was = out[ROOT_STATE + FOOT * side :], before[ROOT_STATE + FOOT * side :]
@@ -374,6 +411,10 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
         u = _position(root[6], side)
         x, z, yaw, swung = flat_place(legs, stride, side, u)
         pitch, lift = roll_of(stride, u)
+        if holds and swung <= 0.0 and (was[_SWING] <= 0.0 or was[_LIFT] < _FLAT):
+            _land(foot)
+            _tilt(foot, pitch, dt)
+            continue
         dx, dz, turned = was[_X] - x0, was[_Z] - z0, was[_YAW] - yaw0
         left = max(1.0 - dt * _GLIDE * np.sqrt(scale) / max(np.hypot(dx, dz), 1e-9), 0.0)
         twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
@@ -420,10 +461,13 @@ def onward(
     return out
 
 
-def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float) -> Floats:
-    """`root` (7 or more,) with feet (WITH_FEET,) that go from those of `before` to those of the walking cycle."""
+def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float, *, holds: bool = False) -> Floats:
+    """`root` (7 or more,) with feet (WITH_FEET,) that go from those of `before` to those of the walking cycle.
+
+    If it `holds`, only while they swing.
+    """
     out = np.empty(WITH_FEET)
-    glide_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, out)
+    glide_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, holds, out)
     return out
 
 

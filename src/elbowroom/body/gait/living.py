@@ -49,10 +49,11 @@ _FASTEST = 2.0  # m/s: these grow no more
 _LIST_AT, _CHEST_AT = 0.14, 0.02  # of the stride, when the left side is highest, and the chest turned farthest left
 _LIST_ELSE, _CHEST_LIST = 0.3, -0.25  # of the list, in steps aside, and of the chest
 _TOGETHER, _AGAINST = 0.3, 0.9  # m/s from which on the chest turns against the hips, and does so fully
-_RIPPLE, _RIPPLE_AT = 0.018, 0.12  # metres each way at 1 m/s; of the stride, when the hips are fastest
-_BOB, _LOWEST = 0.003, 0.08  # metres, of the hips up and down beside what is planned; when they are lowest by it
+_RIPPLE, _RIPPLE_AT = 0.0194, 0.12  # metres each way at 1 m/s; of the stride, when the hips are fastest
+_BEFORE = 0.0040  # metres at 1 m/s that hips are ahead of where they are planned: late in its stance a leg is straight
+_BOB, _LOWEST = 0.0030, 0.335  # metres, of the hips up and down beside what is planned; when they are lowest by it
 _LEAN, _NODS, _NODS_AT = 0.015, 0.008, 0.1  # radians of the chest at 1 m/s, and each way
-_GAZE = 0.012  # radians at 1 m/s that the head nods as the body rises: it looks at one place
+_GAZE, _LOW = 0.012, 0.08  # radians at 1 m/s that the head nods as the body rises; of the stride, when it is lowest
 _BREATHS, _BREATH = 0.22, 0.010  # a second; radians of the chest
 _STATION, _SHIFT = 6.0, 1.8  # seconds from shift to shift of the weight, and that one takes
 _SHIFTED = np.array([0.018, 0.028, -0.03, -0.012, 0.01])  # metres aside; radians: list, turn, chest's list and turn
@@ -88,14 +89,15 @@ def _walk(stride: Stride, phase: float, out: Floats) -> float:
     side = min(max(_SWAY[0] - _SWAY[1] * (speed - 0.7), _SWAY[2]), _SWAY[3])
     out[ASIDE] = scale * (0.5 * much * side + rest * _SWAY_ELSE) * _wave(phase, 0.5 * stride.duty)
     out[UP] = -scale * much * min(speed, 1.0) * _BOB * _wave(2.0 * phase, 2.0 * _LOWEST)
-    out[AHEAD] = way * scale * much * _RIPPLE * min(speed, 1.5) * _wave(2.0 * phase, 2.0 * _RIPPLE_AT + 0.25)
+    out[AHEAD] = way * _RIPPLE * _wave(2.0 * phase, 2.0 * _RIPPLE_AT + 0.25) + max(way, 0.0) * _BEFORE
+    out[AHEAD] *= scale * much * min(speed, 1.5)
     out[TURN] = -way * much * _radians(_PELVIS_TURN, speed) * _wave(phase, 0.0)
     out[LIST] = (much + _LIST_ELSE * rest) * _radians(_PELVIS_LIST, speed) * _wave(phase, _LIST_AT)
     against = _smooth((speed - _TOGETHER) / (_AGAINST - _TOGETHER))
     out[CHEST_TURN] = way * much * against * _radians(_CHEST_TURN, speed) * _wave(phase, _CHEST_AT)
     out[CHEST_LIST] = _CHEST_LIST * out[LIST]
     out[CHEST_BEND] = much * min(speed, _FASTEST) * (way * _LEAN + _NODS * _wave(2.0 * phase, 2.0 * _NODS_AT))
-    out[HEAD_NOD] = -much * min(speed, _FASTEST) * _GAZE * _wave(2.0 * phase, 2.0 * _LOWEST)
+    out[HEAD_NOD] = -much * min(speed, _FASTEST) * _GAZE * _wave(2.0 * phase, 2.0 * _LOW)
     return part
 
 

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride, home_of, roll_of, stride_of
+from elbowroom.body.gait.cycle import Stride, home_of, stride_of
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
+from elbowroom.body.gait.roll import ahead_part, stepping_roll
 from elbowroom.jit import kernel, plain
 
 Floats = NDArray[np.float64]
@@ -40,10 +41,7 @@ CYCLE = OwnSteps(0.0, 0.0, np.zeros((2, 3)), np.zeros((2, 2 * KEYS + 1, PATH)))
 @kernel
 def _share(own: OwnSteps, stride: Stride) -> float:
     """How far feet go as recorded: the part of the steps that leads ahead."""
-    if own.speed <= 0.0 or stride.forward <= 0.0:
-        return 0.0
-    ahead = stride.forward * stride.forward
-    return float(ahead / (ahead + stride.lateral * stride.lateral + (0.3 * stride.scale * stride.turn) ** 2))
+    return ahead_part(stride) if own.speed > 0.0 else 0.0
 
 
 @kernel
@@ -93,7 +91,7 @@ def own_home(own: OwnSteps, legs: Floats, stride: Stride, side: int) -> tuple[fl
 @kernel
 def own_roll(own: OwnSteps, stride: Stride, side: int, u: float) -> tuple[float, float]:
     """Pitch of a foot at cycle position `u`, radians, positive toes down; and how high it is lifted, metres."""
-    pitch, lift = roll_of(stride, u)
+    pitch, lift = stepping_roll(stride, u)
     share = _share(own, stride)
     if share > 0.0:
         gain, place = _gain(own, stride), _place(stride, u)

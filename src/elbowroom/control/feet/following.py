@@ -24,6 +24,9 @@ Indices = NDArray[np.int64]
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _ARMS = plain(2)
+STEPS, HOLDS, GLIDES = range(
+    3
+)  # how feet follow: to where the root is to come; as the cycle swings them; as it has them
 
 
 class ArmsAndLegs(NamedTuple):
@@ -60,16 +63,16 @@ def arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
 
 @exact_kernel
 def followed(
-    who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, glides: bool
+    who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, how: int
 ) -> tuple[Floats, Floats32, Floats32]:
     """How a root state (7 or more,) with an upper body (LOCAL,) is shown `dt` seconds after `before` (SHOWN,).
 
-    As `Followed`. Feet step to where the root is to come, or glide into the walking cycle. `coming` (m, 8) is as in
-    `step_feet`, `room` as in `live`.
+    As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which. `coming`
+    (m, 8) is as in `step_feet`, `room` as in `live`.
     """
     row, planned, legs, scale = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.whole.gait_legs, who.whole.scale
-    if glides:
-        glide_feet(legs, scale, before, planned, dt, row[:WITH_FEET])
+    if how != STEPS:
+        glide_feet(legs, scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
     else:
         step_feet(legs, scale, who.own, before, planned, dt, coming, row[:WITH_FEET])
     live(who.body, before, dt, room, coming, upper[_TWIST] + upper[_HEAD_TURN], row)

@@ -19,7 +19,7 @@ from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
 from elbowroom.control.feet.feet import Moment
-from elbowroom.control.feet.following import Followed, Follower, followed
+from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.shared import Shared
 
@@ -79,10 +79,10 @@ class Stepping:
 
     def next(self, moment: Moment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
-        after = self._followed(moment, posed, glides=False)
+        after = self._followed(moment, posed, STEPS)
         around = moment.look(after.root, posed.upper, after.axes)
         if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
-            after = self._followed(moment, posed, glides=True)
+            after = self._glided(moment, posed, lasts=around.lasts)
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
         return Playback(after.root, upper, posed.upper_velocity)
 
@@ -99,9 +99,9 @@ class Stepping:
             yield alive, stance
             if lively(moment.shown.root) or lively(alive.root):
                 yield self.next(still, posed), stance
-        for glides in (True, False):
+        for how in (GLIDES, STEPS):
             for posed, stance in played:
-                yield posed._replace(root=self._followed(still, posed, glides=glides).root), stance
+                yield posed._replace(root=self._followed(still, posed, how).root), stance
         for posed, stance in played:
             root = onward(self._gait, moment.shown.root, posed.root, 0.0)
             if not self._is_strained(root, posed.upper):
@@ -112,10 +112,18 @@ class Stepping:
         rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own)
         return moment.room_along(rows, upper) >= _CLEAR
 
-    def _followed(self, moment: Moment, posed: Playback, *, glides: bool) -> Followed:
-        """A pose on feet that step or glide, with hips, chest and head that live."""
+    def _glided(self, moment: Moment, posed: Playback, *, lasts: bool) -> Followed:
+        """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it."""
+        if lasts:
+            held = self._followed(moment, posed, HOLDS)
+            if moment.look(held.root, posed.upper, held.axes).room >= _CLEAR:
+                return held
+        return self._followed(moment, posed, GLIDES)
+
+    def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
+        """A pose on feet that follow in one of the ways, with hips, chest and head that live."""
         before, coming, root, upper = moment.shown.root, moment.ahead, posed.root, posed.upper
-        return Followed(*followed(self._follower, before, root, upper, coming, moment.dt, moment.room, glides))
+        return Followed(*followed(self._follower, before, root, upper, coming, moment.dt, moment.room, how))
 
     def _alive(self, moment: Moment, root: Floats, posed: Playback) -> Playback:
         """A pose on a root with feet (WITH_FEET,), with hips, chest and head that live."""
