@@ -48,7 +48,7 @@ _ROLL_RATE, _LIFT_RATE, _HASTE = 16.0, 1.5, 2.0  # rad/s, m/s: no foot tilts or 
 _FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
 _NEARLY = 0.12  # metres: so near it lands
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
-_OVER_PLACE, _LATE_SPEED = 0.02, 1.0  # metres from its place; m/s that it hurries there by; of a standard leg
+_THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
 _GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
 _AT_LEAST = 0.2  # of its swing is over, for a foot that does
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
@@ -259,14 +259,14 @@ def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float])
 def _time_over_ground(
     stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], foot: Floats
 ) -> float:
-    """Seconds in which a swinging foot goes over its place; none if it is there.
+    """Seconds in which a swinging foot goes over its place; none where it is there.
 
     `times` are the seconds until it lands, and until it should be over that place. It takes more of them where that has
     changed since.
     """
     (lands, over), wide = times, _TURNING * stride.scale
     way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z]) + wide * abs(goal[2] - foot[_YAW])
-    if over <= 0.0 and way < _OVER_PLACE * stride.scale:
+    if over <= 0.0 and way < _THERE * stride.scale:
         return 0.0
     return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale))), lands))
 
