@@ -6,6 +6,7 @@ from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.gait.cycle import (
     STANDARD_LEG,
+    STEEPEST,
     feet_standing,
     foot_poses,
     hips_sinks,
@@ -189,9 +190,32 @@ def test_who_crouches_keeps_the_feet_where_they_were(motion: tuple[float, float,
     model, crouched = sole_points(1.72, roots, lowering)
     # an upright leg that is nearly straight is a little short of its target, most so in a run: its knee does not snap
     np.testing.assert_allclose(crouched, upright, atol=0.015)
-    hips = [[kinematics.hips_position(model, lowered_by(by), root) for by in (0.0, lowering)] for root in roots]
+    hips = [[middle_of_hips(model, lowered_by(by), root) for by in (0.0, lowering)] for root in roots]
     sunk = np.diff(np.array(hips), axis=1)[:, 0]
     np.testing.assert_allclose(sunk[:, 1], -lowering * 0.25 * model.gait.legs[:, 8:10].sum(), atol=1e-12)
+
+
+def middle_of_hips(model: BodyModel, q: Floats, root: Floats) -> Floats:
+    """The middle between the joints of the legs (3,) in the root frame."""
+    middle = model.offsets[model.figure.legs[:, 0]].mean(axis=0)
+    turned, hips = kinematics.joint_pose(model, q, root)
+    place: Floats = hips + quaternion.rotate(turned[0], middle)
+    return place
+
+
+def test_who_goes_down_leans_forward_from_the_hips_and_the_deeper_the_more() -> None:
+    lowerings = np.linspace(0.0, LOWERINGS[-1], 200)
+    leans = hips_sinks(0.4, np.zeros(200), lowerings)[:, 2]
+    assert leans[0] == 0.0
+    assert np.all(np.diff(leans) >= 0.0)
+    assert np.diff(leans).max() <= STEEPEST * lowerings[1]
+    assert leans[lowerings < 0.1].max() < np.deg2rad(5.0)  # knees alone do it
+    assert np.deg2rad(30.0) < leans[-1] < np.deg2rad(40.0)
+    for height in HEIGHTS:
+        model = body_model(proportional_humanoid(height))
+        turned = kinematics.local_rotations(model, lowered_by(0.4), np.zeros(7))[0]
+        lean = hips_sinks(0.4, np.zeros(1), np.array([0.4]))[0, 2]
+        np.testing.assert_allclose(turned, quaternion.about_axis(0, lean), atol=1e-12)
 
 
 @pytest.mark.parametrize("motion", MOTIONS)
@@ -206,7 +230,10 @@ def test_crouching_legs_keep_to_the_range_of_their_joints(motion: tuple[float, f
         thigh, shin = rotations[:, :, 0], rotations[:, :, 1]
         feet, _ = foot_poses(model.gait.legs, model.gait.scale, roots)
         flat = np.abs(feet[..., 4]) < np.deg2rad(5.0)
-        lean = quaternion.rotate(quaternion.multiply(thigh, shin), [0.0, 1.0, 0.0])
+        hips = quaternion.about_axis(0, hips_sinks(1.0, np.zeros(1), np.array([lowering]))[0, 2])
+        lean = quaternion.rotate(quaternion.multiply(hips, quaternion.multiply(thigh, shin)), [0.0, 1.0, 0.0])
+        upward = quaternion.rotate(thigh, [0.0, -1.0, 0.0])[..., 1].max()
+        assert motion[0] > 2.0 or upward < np.sin(np.deg2rad(30.0))  # hips flex by 120
         bent = np.arccos(lean[..., 1]) - feet[..., 4]
         assert bent[flat].max() < np.deg2rad(64.0 if motion[0] > 2.0 else 58.0)  # a run's stance reaches farther back
 

@@ -27,6 +27,7 @@ def test_posing_and_back_gives_the_same_configuration() -> None:
     for _ in range(200):
         q = random_posture(rng)
         turns = local_rotations(model, q, np.zeros(7))
+        turns[0] = quaternion.IDENTITY  # all else is told against hips, which lean as they go down
         for joint in range(1, len(turns)):
             turns[joint] = quaternion.multiply(turns[skeleton.parents[joint]], turns[joint])
         np.testing.assert_allclose(waist_angles(turns[chest]), q[DofGroup.WAIST.at][:2], atol=1e-9)

@@ -8,6 +8,7 @@ import pytest
 from elbowroom.body import dof
 from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import LOWERING, DofGroup, limits
+from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import CrossingResult, controller_for, run_crossing
@@ -56,6 +57,24 @@ def test_lower_than_a_bent_back_it_is_passed_by_who_can_crouch() -> None:
     result, frames = cross(0, 20.0, scene=lower(BEAM, 0.12))
     assert result.passed
     assert min(frame.clearance for frame in frames) >= 0.0
+
+
+@pytest.mark.parametrize("height", [1.72, 1.3])
+def test_a_beam_hardly_above_the_pelvis_is_passed_bent_from_the_hips(height: float) -> None:
+    """The lowest there is: 1.10 m for an avatar of 1.72 m; back, hips and knees share it."""
+    humanoid = HUMANOID if height == 1.72 else proportional_humanoid(height)
+    under = 1.10 / 1.72 * height
+    beam = {"type": "box", "name": "beam", "center": [0.0, under + 0.3, 1.6], "size": [6.0, 0.6, 0.2]}
+    scene = Scene.of("low", [beam], finish=(0.0, 3.0))
+    result, frames = cross(0, 25.0, humanoid, scene)
+    assert result.passed
+    assert min(frame.clearance for frame in frames) >= 0.0
+    q, roots = np.array([frame.q for frame in frames]), np.array([frame.root for frame in frames])
+    assert np.all(q[:, LOWERING] < 0.6)
+    assert np.deg2rad(40.0) < q[:, DofGroup.WAIST.at.start].max() <= np.deg2rad(80.0)
+    verdict = judge(ShownMotion.at_rate(q, roots), humanoid, scene, JudgeSettings(mesh=False))
+    assert verdict.capsules.touching == 0
+    assert verdict.itself.touching == 0
 
 
 def test_a_body_that_cannot_crouch_stops_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, columns_of, limits
+from elbowroom.body.gait.cycle import hips_lean
 from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
@@ -50,12 +51,14 @@ def keeping_gaze(goals: Floats, waists: Floats) -> Floats:
     out = goals.copy()
     for t in range(out.shape[0]):
         bend, twist = goals[t, _WAIST], goals[t, _WAIST + 1]
-        if max(abs(waists[t, 0] - bend), abs(waists[t, 1] - twist)) < _SAME:
+        lean = hips_lean(goals[t, _WAIST + 2]) - hips_lean(waists[t, 2])
+        if max(abs(waists[t, 0] - bend), abs(waists[t, 1] - twist), abs(lean)) < _SAME:
             continue
         nod, turn = goals[t, _HEAD], goals[t, _HEAD + 1]
         x, y, z = np.sin(turn) * np.cos(nod), -np.sin(nod), np.cos(turn) * np.cos(nod)  # in the chest's frame
         y, z = y * np.cos(bend) - z * np.sin(bend), y * np.sin(bend) + z * np.cos(bend)
         x, z = x * np.cos(twist) + z * np.sin(twist), z * np.cos(twist) - x * np.sin(twist)  # in the pelvis's
+        y, z = y * np.cos(lean) - z * np.sin(lean), y * np.sin(lean) + z * np.cos(lean)  # in that of the other pelvis
         twist, bend = -waists[t, 1], -waists[t, 0]
         x, z = x * np.cos(twist) + z * np.sin(twist), z * np.cos(twist) - x * np.sin(twist)
         y, z = y * np.cos(bend) - z * np.sin(bend), y * np.sin(bend) + z * np.cos(bend)

@@ -51,39 +51,49 @@ def _about_left(angle: float) -> Quaternion:
 
 
 @kernel
-def carried_turns(row: Floats) -> tuple[Quaternion, Quaternion, Quaternion]:
+def hips_turn(row: Floats, lean: float) -> Quaternion:
+    """What hips that lean forward by `lean` are turned by in the root's axes, `xyzw`, carried as a row says or not."""
+    leaning = _about_left(lean)
+    return leaning if row.shape[0] <= WITH_FEET else _times(_turned(row[TURN], row[LIST]), leaning)
+
+
+@kernel
+def carried_turns(row: Floats, lean: float) -> tuple[Quaternion, Quaternion, Quaternion]:
     """What a row (SHOWN,) turns hips, lowest joint of the spine, and lowest joint of the neck by, `xyzw`.
 
-    Each is a rotation in the axes of the joint above, and goes before what the posture turns the joint by.
+    Each is a rotation in the axes of the joint above, and goes before what the posture turns the joint by. The hips
+    lean forward by `lean` radians, which takes the spine along.
     """
-    hips = _turned(row[TURN], row[LIST])
+    hips, leaning = hips_turn(row, lean), _about_left(lean)
     chest = _times(_turned(row[CHEST_TURN], row[CHEST_LIST]), _about_left(row[CHEST_BEND]))
     head = _times(_turned(row[HEAD_TURN], 0.0), _about_left(row[HEAD_NOD]))
     back = (-hips[0], -hips[1], -hips[2], hips[3])
     level = (-chest[0], -chest[1], -chest[2], chest[3])
-    return hips, _times(back, chest), _times(head, level)
+    return hips, _times(back, _times(chest, leaning)), _times(head, level)
 
 
 @kernel
-def shifted_by(row: Floats, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """How far a row (SHOWN,) moves a point of the hips that is planned at (x, y, z) from the middle of the hip joints.
+def shifted_by(row: Floats, lean: float, x: float, up: float, ahead: float) -> tuple[float, float, float]:
+    """How far a row (SHOWN,) moves a point of the hips that is `x`, `up`, `ahead` of the middle of the hip joints.
 
-    Metres in the root's axes. A row without carriage moves nothing.
+    Metres in the root's axes, with hips that lean forward by `lean` radians. A row without carriage does nothing more.
     """
+    sine, cosine = math.sin(lean), math.cos(lean)
+    y, z = cosine * up - sine * ahead, sine * up + cosine * ahead
     if row.shape[0] <= WITH_FEET:
-        return 0.0, 0.0, 0.0
+        return 0.0, y - up, z - ahead
     a, b, c, w = _turned(row[TURN], row[LIST])
     tx, ty, tz = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
     return (
         row[ASIDE] + w * tx + b * tz - c * ty,
-        row[UP] + w * ty + c * tx - a * tz,
-        row[AHEAD] + w * tz + a * ty - b * tx,
+        row[UP] + (y - up) + w * ty + c * tx - a * tz,
+        row[AHEAD] + (z - ahead) + w * tz + a * ty - b * tx,
     )
 
 
 @kernel
-def carried_hip(legs: Floats, row: Floats, side: int) -> tuple[float, float, float]:
-    """Where a leg's joint at the hip is in the root's frame; `legs` (2, 3 or more) tell first where it was planned."""
+def carried_hip(legs: Floats, row: Floats, lean: float, side: int) -> tuple[float, float, float]:
+    """Where a leg's joint at the hip is in the root's frame; `legs` (2, 3 or more) tell first where it is upright."""
     hip, twin = legs[side], legs[1 - side]
-    x, y, z = shifted_by(row, 0.5 * (hip[0] - twin[0]), 0.5 * (hip[1] - twin[1]), 0.5 * (hip[2] - twin[2]))
+    x, y, z = shifted_by(row, lean, 0.5 * (hip[0] - twin[0]), 0.5 * (hip[1] - twin[1]), 0.5 * (hip[2] - twin[2]))
     return hip[0] + x, hip[1] + y, hip[2] + z

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.carriage import carried_hip, carried_turns
+from elbowroom.body.gait.carriage import carried_hip, hips_turn
 from elbowroom.body.root import WITH_FEET
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.jit import kernel
@@ -74,7 +74,7 @@ def _relative(a: Floats, b: Floats, out: Floats) -> None:
 def leg_rotations(rest: Floats, feet: Floats, sinks: Floats, rows: Floats) -> Floats:
     """Normalised local rotations (N, 2, 4, 4) of thigh, shin, foot and toes; left leg first.
 
-    `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) from `gait.foot_poses`; `sinks` (N, 2) from `gait.hips_sinks`. The
+    `rest` (2, 9) from `leg_rest`; `feet` (N, 2, 6) from `gait.foot_poses`; `sinks` (N, 3) from `gait.hips_sinks`. The
     knee bends forward, in the plane through hip and ankle that turns by half the foot's yaw, and outward as the hips
     go back in a crouch. A target out of reach is approached straight. Legs hang on hips as `rows` (N, 7 or more) carry
     them (`carriage`).
@@ -87,13 +87,15 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats, rows: Floats) -> Fl
             _bone_basis(x, y, z, 1.0, 0.0, 0.0, at_rest[side, bone])
     thigh, shin, foot, hips, carried = np.empty(4), np.empty(4), np.empty(4), np.empty(4), rows.shape[1] > WITH_FEET
     for n in range(len(feet)):
-        if carried:
-            hips[0], hips[1], hips[2], hips[3] = carried_turns(rows[n])[0]
+        lean = sinks[n, 2]
+        turned = carried or lean > 0.0
+        if turned:
+            hips[0], hips[1], hips[2], hips[3] = hips_turn(rows[n], lean)
         for side in range(2):
             r, f = rest[side], feet[n, side]
             upper = np.sqrt(r[3] * r[3] + r[4] * r[4] + r[5] * r[5])
             lower = np.sqrt(r[6] * r[6] + r[7] * r[7] + r[8] * r[8])
-            x, y, z = carried_hip(rest, rows[n], side)
+            x, y, z = carried_hip(rest, rows[n], lean, side)
             dx, dy, dz = f[0] - x, f[1] - y + sinks[n, 0], f[2] - z + sinks[n, 1]
             distance = np.sqrt(dx * dx + dy * dy + dz * dz)
             dx, dy, dz = dx / distance, dy / distance, dz / distance
@@ -114,7 +116,7 @@ def leg_rotations(rest: Floats, feet: Floats, sinks: Floats, rows: Floats) -> Fl
             _turn_between(at_rest[side, 1], posed, scratch, shin)
             cy, sy, cp, sp = np.cos(0.5 * f[3]), np.sin(0.5 * f[3]), np.cos(0.5 * f[4]), np.sin(0.5 * f[4])
             foot[0], foot[1], foot[2], foot[3] = cy * sp, sy * cp, -sy * sp, cy * cp
-            if carried:
+            if turned:
                 _relative(hips, thigh, out[n, side, 0])
             else:
                 for i in range(4):

@@ -178,7 +178,7 @@ def _chain_of(
     arm = _arm(skeleton, group if group.is_arm else ARMS[0])
     return posing.Chain(
         figure.base, figure.parents, figure.offsets, posed.order, posed.joints, posed.ends,
-        start, end, carries, group.is_arm, column, arm, half_leg,
+        start, end, carries, group.is_arm, column, arm, half_leg, -figure.offsets[figure.legs[:, 0]].mean(axis=0)[1:],
     )  # fmt: skip
 
 
@@ -222,13 +222,13 @@ def _states(values: ArrayLike) -> Floats:
 
 
 def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
-    """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 2), see `gait.hips_sinks`."""
+    """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 3), see `gait.hips_sinks`."""
     feet, sinks = lower_body(model.gait, states, np.ascontiguousarray(lowerings))
     return leg_rotations(model.leg_rest, feet, sinks, states), sinks
 
 
 def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
-    """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 2) as in `gait.hips_sinks`.
+    """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 3) as in `gait.hips_sinks`.
 
     The feet are those of the states (N, WITH_FEET or more), or of the walking cycle where these have none (N, 7).
     """

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.carriage import carried_turns, shifted_by
+from elbowroom.body.gait.carriage import carried_turns, hips_turn, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.jit import kernel, plain
@@ -87,6 +87,7 @@ class Chain(NamedTuple):
     column: Column
     arm: Arm
     half_leg: float  # metres, the unit of a lowering
+    hinge: Floats  # (2,) metres that the hips joint is above and ahead of the middle between those of the legs
 
 
 class Columns(NamedTuple):
@@ -235,11 +236,12 @@ def _turn_before(turn: tuple[float, float, float, float], local: Floats, joint: 
 
 
 @kernel
-def hips_shift(figure: Figure, row: Floats) -> tuple[float, float, float]:
-    """How far the hips joint is, in the root's axes, from where it was planned."""
+def hips_shift(figure: Figure, row: Floats, lean: float) -> tuple[float, float, float]:
+    """How far the hips joint is, in the root's axes, from where it was planned upright."""
     one, other, offsets = figure.legs[0, 0], figure.legs[1, 0], figure.offsets
     return shifted_by(
         row,
+        lean,
         -0.5 * (offsets[one, 0] + offsets[other, 0]),
         -0.5 * (offsets[one, 1] + offsets[other, 1]),
         -0.5 * (offsets[one, 2] + offsets[other, 2]),
@@ -247,10 +249,12 @@ def hips_shift(figure: Figure, row: Floats) -> tuple[float, float, float]:
 
 
 @kernel
-def _carry_hips(figure: Figure, row: Floats, rotations: Floats, places: Floats, scratch: Floats) -> None:
-    """Carry the hips as a row (SHOWN,) says; they are where they were planned, turned by the heading alone."""
-    _set(scratch, _FIRST, carried_turns(row)[0])
-    x, y, z = hips_shift(figure, row)
+def _carry_hips(figure: Figure, row: Floats, lean: float, rotations: Floats, places: Floats, scratch: Floats) -> None:
+    """Lean the hips, and carry them as a row (SHOWN,) says; they are where they were planned, turned by the heading."""
+    if row.shape[0] <= WITH_FEET and lean <= 0.0:
+        return
+    _set(scratch, _FIRST, hips_turn(row, lean))
+    x, y, z = hips_shift(figure, row, lean)
     _offset(rotations, _FIRST, (x, y, z), places, _FIRST, places, _FIRST, _FIRST)
     for i in range(4):
         scratch[1, i] = rotations[0, i]
@@ -258,9 +262,9 @@ def _carry_hips(figure: Figure, row: Floats, rotations: Floats, places: Floats, 
 
 
 @kernel
-def _carry_trunk(figure: Figure, row: Floats, local: Floats, scratch: Floats) -> None:
+def _carry_trunk(figure: Figure, row: Floats, lean: float, local: Floats, scratch: Floats) -> None:
     """Chest and head as a row (SHOWN,) carries them, beyond their posture."""
-    _, chest, head = carried_turns(row)
+    _, chest, head = carried_turns(row, lean)
     columns = figure.columns
     _turn_before(chest, local, columns.joints[columns.begins[_WAIST]], scratch)
     _turn_before(head, local, columns.joints[columns.begins[_HEAD]], scratch)
@@ -279,13 +283,16 @@ def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, s
 
 
 @kernel
-def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats) -> Floats:
-    """Local rotations (J, 4) of a posture `q` (DOF,), legs (2, 4, 4), carried as a row (7 or more,) says."""
+def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats, lean: float) -> Floats:
+    """Local rotations (J, 4) of a posture `q` (DOF,), legs (2, 4, 4), carried as a row (7 or more,) says.
+
+    Its hips lean forward by `lean` radians.
+    """
     local, scratch = figure.base.copy(), np.empty((2, 4))
     _set_body(figure, q, leg_rotations, local, scratch)
     if row.shape[0] > WITH_FEET:
-        _carry_trunk(figure, row, local, scratch)
-        _set(local, _FIRST, carried_turns(row)[0])
+        _carry_trunk(figure, row, lean, local, scratch)
+    _set(local, _FIRST, hips_turn(row, lean))
     return local
 
 
@@ -293,7 +300,7 @@ def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats) ->
 def pose_body(
     figure: Figure, capsules: CapsuleChain, q: Floats, roots: Floats, leg_rotations: Floats, sinks: Floats
 ) -> tuple[Segments, Floats, Floats]:
-    """The body in the world for postures (N, DOF), roots (N, 7 or more), legs (N, 2, 4, 4) and hips' sinks (N, 2).
+    """The body in the world for postures (N, DOF), roots (N, 7 or more), legs (N, 2, 4, 4) and hips' sinks (N, 3).
 
     Returns capsules (C, 6, N), and place (N, 3) and rotation (N, 4) of the chest's frame.
     """
@@ -304,9 +311,9 @@ def pose_body(
     for n in range(len(q)):
         _set_body(figure, q[n], leg_rotations[n], local, scratch)
         _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
+        _carry_hips(figure, roots[n], sinks[n, 2], rotations, places, scratch)
         if roots.shape[1] > WITH_FEET:
-            _carry_hips(figure, roots[n], rotations, places, scratch)
-            _carry_trunk(figure, roots[n], local, scratch)
+            _carry_trunk(figure, roots[n], sinks[n, 2], local, scratch)
         _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
         _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
         for i in range(3):
@@ -325,8 +332,7 @@ def pose_legs(figure: Figure, capsules: CapsuleChain, roots: Floats, leg_rotatio
     for n in range(len(roots)):
         _set_legs(figure.legs, leg_rotations[n], local)
         _place_hips(roots[n], figure.offsets[0], sinks[n], rotations, places, _FIRST)
-        if roots.shape[1] > WITH_FEET:
-            _carry_hips(figure, roots[n], rotations, places, scratch)
+        _carry_hips(figure, roots[n], sinks[n, 2], rotations, places, scratch)
         _chain(capsules.order, figure.parents, figure.offsets, local, rotations, places)
         _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
     return out
@@ -355,6 +361,16 @@ def pose_scratch(chain: Chain) -> PoseScratch:
 
 
 @kernel
+def _sink(chain: Chain, lowering: float, rotations: Floats, places: Floats) -> None:
+    """Put the hips, at which a chain begins, where a lowering has them in the pelvis frame."""
+    below, behind, lean = hips_sink(chain.half_leg, 0.0, lowering)
+    up, ahead, sine, cosine = chain.hinge[0], chain.hinge[1], np.sin(lean), np.cos(lean)
+    y, z = cosine * up - sine * ahead - up - below, sine * up + cosine * ahead - ahead - behind
+    _place(chain.start, rotations, places, 0.0, y, z, 0.0)
+    rotations[chain.start, 0], rotations[chain.start, 3] = np.sin(0.5 * lean), np.cos(0.5 * lean)
+
+
+@kernel
 def pose_chain_into(
     chain: Chain,
     configurations: Floats,
@@ -377,8 +393,7 @@ def pose_chain_into(
         else:
             _set_column(chain.column, configurations[n, 0], configurations[n, 1], scratch.local)
             if configurations.shape[1] > 2:
-                below, behind = hips_sink(chain.half_leg, 0.0, configurations[n, 2])
-                _place(chain.start, scratch.rotations, scratch.places, 0.0, -below, -behind, 0.0)
+                _sink(chain, configurations[n, 2], scratch.rotations, scratch.places)
         _chain(chain.order, chain.parents, chain.offsets, scratch.local, scratch.rotations, scratch.places)
         if len(out):
             _segments(chain.joints, chain.ends, scratch.rotations, scratch.places, scratch.row, first + n, out)

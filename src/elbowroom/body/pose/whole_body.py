@@ -97,7 +97,7 @@ def _taken_apart(body: WholeBody) -> PosedBy:
 
 @helper
 def _lower_body(by: PosedBy, roots: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
-    """Local rotations (N, 2, 4, 4) of the legs' joints, and sinks (N, 2) of the hips."""
+    """Local rotations (N, 2, 4, 4) of the legs' joints, and sinks (N, 3) of the hips."""
     if roots.shape[1] > ROOT_STATE:
         feet, sinks = posed_feet(by.gait_legs, by.scale, by.half_leg, roots, lowerings)
     else:
@@ -115,10 +115,10 @@ def posed_joints(body: WholeBody, q: Floats, root: Floats) -> tuple[Floats, Floa
     """
     by, rows = _taken_apart(body), root.reshape((1, len(root)))
     legs, sinks = _lower_body(by, rows, q[LOWERING : LOWERING + 1].copy())
-    x, y, z = posing.hips_shift(by.figure, root)
+    x, y, z = posing.hips_shift(by.figure, root, sinks[0, 2])
     rest = by.figure.offsets[0]
     hips = np.array([rest[0] + x, rest[1] + y - sinks[0, 0], rest[2] + z - sinks[0, 1]])
-    return posing.pose_local(by.figure, q, legs[0], root), hips
+    return posing.pose_local(by.figure, q, legs[0], root, sinks[0, 2]), hips
 
 
 @exact_kernel

@@ -27,6 +27,7 @@ _SPINE_PARTS = {"spine": 0.40, "chest": 0.35, "upperChest": 0.25}
 _NECK_PARTS = {"neck": 0.5, "head": 0.5}
 _SIDES = "left", "right"
 _RIGHT, _UP, _AHEAD = 0, 1, 2  # axes
+_LEAN, _LEANING = 0.6, 0.45  # radians that lowered hips lean forward at most, and the lowering at which they do
 _SETBACK = 0.5  # how far lowered hips go back, against how far they go down
 _SPLAY = 1.2  # radians that the knees open for each leg length that the hips go back
 _SOFT = 0.004  # of the leg: a knee that straightens more slows down
@@ -62,7 +63,7 @@ class Poser:
         _pose_arm(self.skeleton, "right", -1.0, q[:, DofGroup.RIGHT_ARM.at], rotations)
         lowered = 0.25 * self._gait.legs[:, 8:10].sum() * lowering[:, None]
         moved = -sinks[:, :1] * np.eye(3)[_UP] - _SETBACK * lowered * np.eye(3)[_AHEAD]
-        carriage = _carriage(roots)
+        carriage = _carriage(roots, _lean(lowering))
         middle = 0.5 * sum(self.skeleton.positions[self.skeleton.index(f"{side}UpperLeg")] for side in _SIDES)
         for side, name in enumerate(_SIDES):
             hip = self.skeleton.positions[self.skeleton.index(f"{name}UpperLeg")]
@@ -112,12 +113,20 @@ class _Carriage(NamedTuple):
     """How hips, chest and head are carried beyond the planned pose, in the root's axes."""
 
     moved: Floats  # (N, 3) metres
-    hips: Floats  # (N, 4)
-    chest: Floats  # (N, 4)
+    hips: Floats  # (N, 4), leaning
+    chest: Floats  # (N, 4) of where it was planned: on hips that lean
+    bent: Floats  # (N, 4) the same without the lean
     gaze: Floats  # (N, 4) of the head against where it was planned
 
 
-def _carriage(roots: Floats) -> _Carriage:
+def _lean(lowering: Floats) -> Floats:
+    """Radians (N,) that the hips lean forward about the joints of the legs."""
+    part = np.clip(lowering / _LEANING, 0.0, 1.0)
+    lean: Floats = _LEAN * part**2 * (3.0 - 2.0 * part)
+    return lean
+
+
+def _carriage(roots: Floats, lean: Floats) -> _Carriage:
     told = roots[:, WITH_FEET:]
     if not told.shape[1]:
         told = np.zeros((len(roots), 10))
@@ -126,7 +135,9 @@ def _carriage(roots: Floats) -> _Carriage:
     chest = quaternion.multiply(quaternion.about_axis(_UP, chest_turn), quaternion.about_axis(_AHEAD, chest_raised))
     chest = quaternion.multiply(chest, quaternion.about_axis(_RIGHT, bend))
     looks = quaternion.multiply(quaternion.about_axis(_UP, gaze), quaternion.about_axis(_RIGHT, nod))
-    return _Carriage(told[:, :3], hips, chest, looks)
+    leaning = quaternion.about_axis(_RIGHT, lean)
+    on_hips = quaternion.multiply(chest, leaning)
+    return _Carriage(told[:, :3], quaternion.multiply(hips, leaning), on_hips, chest, looks)
 
 
 def _carry(skeleton: Skeleton, carriage: _Carriage, out: Floats) -> None:
@@ -136,7 +147,7 @@ def _carry(skeleton: Skeleton, carriage: _Carriage, out: Floats) -> None:
     out[:, 0] = carriage.hips
     against = quaternion.multiply(quaternion.conjugate(carriage.hips), carriage.chest)
     out[:, spine] = quaternion.multiply(against, out[:, spine])
-    back = quaternion.multiply(carriage.gaze, quaternion.conjugate(carriage.chest))
+    back = quaternion.multiply(carriage.gaze, quaternion.conjugate(carriage.bent))
     out[:, neck] = quaternion.multiply(back, out[:, neck])
 
 

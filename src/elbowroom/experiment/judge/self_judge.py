@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 
 _SPEEDS = (0.0, 0.5, 1.1, 1.6, 2.2)  # m/s of the natural walk
 _PHASES = 24
+_CREASE = 0.02  # metres that belly and thighs may be deeper in each other: flesh gives where hips flex
 _BALLS = 4  # along an axis
 _ROW = (2.0 * np.arange(_BALLS) + 1.0) / _BALLS - 1.0  # their places, in half lengths from the middle
 
@@ -39,6 +40,7 @@ class SelfJudge:
         natural = self._shapes.placed(_natural_poses(humanoid))
         every = range(len(natural.turns))
         self._natural = np.array([min(0.0, *(self._distance(natural, n, a, b) for n in every)) for a, b in self._pairs])
+        self._natural[_creases(humanoid, self._pairs)] -= _CREASE
 
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the parts do at N poses, whose numbers begin at `first`."""
@@ -90,6 +92,15 @@ def _pairs(humanoid: Humanoid) -> NDArray[np.int64]:
     trunk = [i for i, group in enumerate(capsules.groups) if group is DofGroup.WAIST]
     legs = [i for i, group in enumerate(capsules.groups) if group is DofGroup.ROOT and bones[i] != "hips"]
     return np.array(pairs + [(one, other) for one in trunk for other in legs], np.int64)
+
+
+def _creases(humanoid: Humanoid, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which pairs (P, 2) are the lowest part of the trunk and a thigh."""
+    names = humanoid.skeleton.names
+    bones = np.array([names[joint] for joint in humanoid.capsules.joints])
+    belly = next(bone for bone in SPINE if bone in names)
+    creases: NDArray[np.bool_] = (bones[pairs[:, 0]] == belly) & np.char.endswith(bones[pairs[:, 1]], "UpperLeg")
+    return creases
 
 
 def _natural_poses(humanoid: Humanoid) -> Posed:

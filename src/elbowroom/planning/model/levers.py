@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.carriage import ASIDE, CHEST_TURN, HEAD_TURN, OF_HIPS, POSING, UP
-from elbowroom.body.gait.cycle import hips_sinks
+from elbowroom.body.gait.cycle import STEEPEST, hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.pose.posing import Column
@@ -43,9 +43,14 @@ _OF_FEET = MOVES + 2 * _FOOT_MOVES  # how many moves come before those of the ca
 _COMPONENTS = np.array([[columns_of(group).start, group.size] for group in LOCAL_GROUPS])
 
 
-def lift_of(model: BodyModel) -> float:
-    """How far the hips move, down and back, for a unit of lowering, metres."""
-    return float(np.linalg.norm(hips_sinks(model.gait.half_leg, np.zeros(1), np.ones(1))))
+def lifts_of(model: BodyModel, spans: Floats) -> Floats:
+    """How far what is `spans` (C,) metres from the hips joint moves for a unit of lowering, metres (C,).
+
+    Hips go down and back, and lean with all that is on them.
+    """
+    sunk = float(np.linalg.norm(hips_sinks(model.gait.half_leg, np.zeros(1), np.ones(1))[0, :2]))
+    lifts: Floats = sunk + STEEPEST * (_apart(model) + spans)
+    return lifts
 
 
 def levers_of(model: BodyModel, limb: Limb) -> Floats:
@@ -60,7 +65,7 @@ def levers_of(model: BodyModel, limb: Limb) -> Floats:
         return _arm_levers(model, limb)
     levers = np.zeros((len(chain.joints), MOVES))
     levers[:, 0] = _column_levers(model, chain.column, chain.joints, chain.ends, chain.start)
-    levers[:, _LOWERING] = lift_of(model) if chain.carries else 0.0
+    levers[:, _LOWERING] = lifts_of(model, _lengths(model, chain.joints, chain.ends)) if chain.carries else 0.0
     return levers
 
 
@@ -206,7 +211,8 @@ def body_levers(humanoid: Humanoid) -> BodyLevers:
 
 
 def _measured(model: BodyModel) -> BodyLevers:
-    capsules, waist, lift = model.body.posed, model.chains[DofGroup.WAIST], lift_of(model)
+    capsules, waist = model.body.posed, model.chains[DofGroup.WAIST]
+    spans = _lengths(model, capsules.joints, capsules.ends)
     from_pelvis, from_chest = np.zeros((2, len(model.body.radii), (len(LOCAL_GROUPS) + 1) * MOVES))
     for group in LOCAL_GROUPS:
         parts, at = model.capsules_of(group).indices, _columns(DofGroup.WAIST).start
@@ -216,16 +222,17 @@ def _measured(model: BodyModel) -> BodyLevers:
             )
         for levers, frame in ((from_pelvis, waist.start), (from_chest, waist.end)):
             levers[parts, at] = _column_levers(model, waist.column, capsules.joints[parts], capsules.ends[parts], frame)
-        from_pelvis[parts, at + _LOWERING] = lift
+        from_pelvis[parts, at + _LOWERING] = lifts_of(model, spans[parts])
     legs, bob = model.roots.indices, np.zeros(from_pelvis.shape[1])
     from_pelvis[legs, -MOVES:], lowered, bob[-MOVES:] = _stride_levers(model)
     from_pelvis[legs, _columns(DofGroup.WAIST).start + _LOWERING] = lowered
-    aside, (of_legs, of_hips) = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * lift, _foot_levers(model)
+    of_legs, of_hips = _foot_levers(model)
+    aside = float(np.hypot(*model.offsets[0, [0, 2]])) + _LOWEST * float(lifts_of(model, np.zeros(1))[0])
     steps = np.zeros((len(from_pelvis), _OF_FEET + POSING))
     steps[:, : len(of_hips)] = of_hips
     steps[:, _OF_FEET:] += _carriage_levers(model)
     steps[legs], steps[legs, : len(of_hips)] = 0.0, of_legs
-    return BodyLevers(Levers(from_pelvis, bob, steps, aside + _lengths(model)), from_chest)
+    return BodyLevers(Levers(from_pelvis, bob, steps, aside + spans), from_chest)
 
 
 def _carriage_levers(model: BodyModel) -> Floats:
@@ -234,7 +241,8 @@ def _carriage_levers(model: BodyModel) -> Floats:
     Hips that turn take the spine's lowest joint along, a chest that turns takes all above it; the head turns back
     against the chest, and by itself.
     """
-    levers, spans = np.zeros((len(model.body.radii), POSING)), _lengths(model)
+    capsules = model.body.posed
+    levers, spans = np.zeros((len(capsules.joints), POSING)), _lengths(model, capsules.joints, capsules.ends)
     below = int(model.chains[DofGroup.WAIST].column.joints[0])
     levers[:, : UP + 2 - ASIDE] = 1.0
     levers[:, UP + 2 - ASIDE : OF_HIPS] = float(np.linalg.norm(model.offsets[below])) + _apart(model)
@@ -250,10 +258,10 @@ def _apart(model: BodyModel) -> float:
     return float(np.linalg.norm(model.offsets[model.figure.legs[:, 0]].mean(axis=0)))
 
 
-def _lengths(model: BodyModel) -> Floats:
-    """How far the axis of each capsule (C,) gets from the hips, metres."""
-    out: Floats = np.linalg.norm(model.body.posed.ends.reshape(-1, 2, 3), axis=2).max(axis=1)
-    for c, joint in enumerate(model.body.joints):
+def _lengths(model: BodyModel, joints: Indices, ends: Floats) -> Floats:
+    """How far the axes of capsules (C,), on joints and with ends (C, 6) in their frames, get from the hips, metres."""
+    out: Floats = np.linalg.norm(ends.reshape(-1, 2, 3), axis=2).max(axis=1)
+    for c, joint in enumerate(joints):
         at = int(joint)
         while at > 0:
             out[c] += np.linalg.norm(model.offsets[at])

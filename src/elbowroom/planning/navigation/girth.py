@@ -10,7 +10,7 @@ from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_cap
 from elbowroom.body.root import ROOT_STATE
 
 _WALK, _PHASES = 1.1, 32  # m/s; moments of a stride
-_STOOPED = 0.72  # of the height: lower than this the deepest duck is no help
+_STOOPED = 0.62  # of the height: lower than this the deepest duck is no help
 _MAP_ERROR = 0.02  # metres by which a map may say too little between its points
 
 

@@ -21,7 +21,7 @@ Links = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
 STEP = 0.4  # metres: the knee of an adult; higher is climbed, not walked
-STOOPED = 1.3  # metres of headroom under which nobody passes, however bent
+STOOPED = 1.3  # metres of headroom: with less a floor is nothing to walk on, however deep one bends
 _SAME = 0.1  # metres: surfaces in a cell that are closer are one, the highest
 _ENOUGH = 0.5  # m² of a region at the height of a floor: less is not the floor
 _SIDES = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])

@@ -17,7 +17,7 @@ from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
-from elbowroom.planning.model.levers import MOVES, ROTATION, lift_of
+from elbowroom.planning.model.levers import MOVES, ROTATION, lifts_of
 from elbowroom.planning.model.limb import Limb
 from elbowroom.planning.root.path import interpolate_between, rates_at
 
@@ -95,10 +95,8 @@ def chain_of(model: BodyModel, waist: Limb, reach: float) -> KinematicChain:
         float(share) * (_stretch(model.offsets, spine[i + 1 :]) + reach) for i, share in enumerate(shares)
     )
     span = float(np.hypot(*model.offsets[0, [0, 2]])) + stem + reach
-    gait = model.gait
-    return KinematicChain(
-        gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, lift_of(model)
-    )
+    gait, lift = model.gait, float(lifts_of(model, np.array([stem + reach]))[0])
+    return KinematicChain(gait.legs, gait.scale, model.offsets[0].copy(), gait.half_leg, waist, span, lever, lift)
 
 
 def _stretch(offsets: Floats, joints: NDArray[np.int64]) -> float:

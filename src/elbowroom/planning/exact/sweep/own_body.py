@@ -32,7 +32,8 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-_PHASES, _SPEED = 8, 1.1  # of the stride
+_PHASES = 8  # of the stride
+_SPEED, _SLOW = 1.1, 0.4  # m/s
 _REMEMBERED = 128  # surroundings of a group
 
 
@@ -62,7 +63,7 @@ class OwnBody:
 
     def resting(self, group: DofGroup, postures: Postures) -> Bools:
         """Which postures (W,) touch the body at some phase of the natural walk, all other groups being natural."""
-        states = _walking()
+        states = _walking(_SPEED)
         natural = self._goals(RootPath(0.0, 1.0, states))
         parts = self.parts(group, neighbours_of(group), self.seen(natural, states))
         found = [touches_body(postures.lanes, postures.balls, axes, parts.allowed, SPARE) for axes in parts.axes]
@@ -70,11 +71,11 @@ class OwnBody:
         return touching
 
     def folded(self, waists: Floats) -> Bools:
-        """Which waists (V, d) lay the trunk on the thighs at some phase of the natural walk.
+        """Which waists (V, d) lay the trunk on the thighs at some phase of a slow walk, as who bends deep walks.
 
         Nothing is kept to spare: a duck is deep, and the motion between its postures is proven by itself.
         """
-        states, uppers = _walking(), with_waist(waists)
+        states, uppers = _walking(_SLOW), with_waist(waists)
         gaps = self_clearances(
             self.model, self.pairs, np.tile(states, (len(waists), 1)), np.repeat(uppers, len(states), axis=0)
         )[SEARCH_ORDER.index(DofGroup.WAIST)]
@@ -94,8 +95,8 @@ class OwnBody:
         )  # fmt: skip
 
 
-def _walking() -> Floats:
+def _walking(speed: float) -> Floats:
     """Root states (N, 7) of a stand and of a walk at several phases."""
     states = np.zeros((_PHASES + 1, ROOT_STATE))
-    states[1:, 3], states[1:, 6] = _SPEED, np.arange(_PHASES) / _PHASES
+    states[1:, 3], states[1:, 6] = speed, np.arange(_PHASES) / _PHASES
     return states
