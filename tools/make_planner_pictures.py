@@ -110,10 +110,10 @@ def slice_table(humanoid: Humanoid) -> str:
 def random_scene(seed: int) -> Scene:
     """Boxes on both sides of a walk, at the height of arms and shoulders."""
     rng = np.random.default_rng(seed)
-    count = 6
+    count = 5
     side = rng.choice([-1.0, 1.0], count)
     centers = np.stack(
-        [side * rng.uniform(0.3, 0.6, count), rng.uniform(0.8, 1.6, count), rng.uniform(0.8, 1.6, count)]
+        [side * rng.uniform(0.2, 0.45, count), rng.uniform(0.8, 1.6, count), rng.uniform(0.8, 1.6, count)]
     )
     boxes = Obstacles.boxes(centers.T, np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)), rng.uniform(0.04, 0.16, (count, 3)))
     return replace(Scene.load("empty"), obstacles=boxes)

@@ -1,6 +1,7 @@
 """The judge on a body's own parts: a contact worked out by hand, the natural walk, and the planner's own opinion."""
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, DofGroup
@@ -50,6 +51,18 @@ def test_a_forearm_laid_across_the_chest_is_found_and_named() -> None:
     assert verdict.touching >= 20 * 4 - 4
     assert {contact.part for contact in verdict.contacts} <= {"leftForearm", "leftHand", "leftUpperArm"}
     assert verdict.deepest > 0.02
+
+
+@pytest.mark.parametrize("height", [1.3, 1.72, 1.95])
+def test_the_planner_looks_at_each_pair_that_the_judge_looks_at_and_allows_no_more(height: float) -> None:
+    body = proportional_humanoid(height)
+    judged, planned = SelfJudge(body).allowed(), self_pairs(body_model(body))
+    radii = body.capsules.radii
+    for one, other, limit in zip(planned.first, planned.second, planned.limits, strict=True):
+        deepest = judged.pop((min(one, other), max(one, other))) - JudgeSettings().self_tolerance
+        spare = limit - radii[one] - radii[other] - deepest
+        assert -1e-6 < spare < 4.1e-3  # metres; those of belly and thigh are 4 mm
+    assert not judged
 
 
 def test_judge_and_planner_agree_pose_by_pose() -> None:

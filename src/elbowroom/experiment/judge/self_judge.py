@@ -1,9 +1,9 @@
-"""A body against itself: arms against trunk, head, legs and each other, trunk against legs, by the other library.
+"""A body against itself: arms against trunk, head, legs and each other, these against legs, by the other library.
 
 Capsules wrap the mesh generously, and some builds hold their arms against their sides. So what counts is how much
 deeper two parts are in each other than ever in the natural walk of this avatar; that is measured here, once, on poses
-of the judge's own. What a joint holds together is not looked at: parts of one arm, the trunk's parts, and an upper arm
-against the trunk below the neck.
+of the judge's own. What a joint holds together is not looked at: parts of one arm, the trunk's parts, trunk and pelvis,
+and an upper arm against pelvis and trunk below the neck.
 """
 
 import numpy as np
@@ -41,6 +41,11 @@ class SelfJudge:
         every = range(len(natural.turns))
         self._natural = np.array([min(0.0, *(self._distance(natural, n, a, b) for n in every)) for a, b in self._pairs])
         self._natural[_creases(humanoid, self._pairs)] -= _CREASE
+
+    def allowed(self) -> dict[tuple[int, int], float]:
+        """How near the pairs of capsules that are looked at may come without a tolerance, metres; below 0 is inside."""
+        pairs: list[list[int]] = np.sort(self._pairs, axis=1).tolist()
+        return {(one, other): float(near) for (one, other), near in zip(pairs, self._natural, strict=True)}
 
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the parts do at N poses, whose numbers begin at `first`."""
@@ -91,7 +96,10 @@ def _pairs(humanoid: Humanoid) -> NDArray[np.int64]:
     pairs += [(one, other) for one in left for other in right]
     trunk = [i for i, group in enumerate(capsules.groups) if group is DofGroup.WAIST]
     legs = [i for i, group in enumerate(capsules.groups) if group is DofGroup.ROOT and bones[i] != "hips"]
-    return np.array(pairs + [(one, other) for one in trunk for other in legs], np.int64)
+    pairs += [(one, other) for one in trunk for other in legs]
+    head = [i for i, group in enumerate(capsules.groups) if group is DofGroup.HEAD]
+    below = [i for i, group in enumerate(capsules.groups) if group is DofGroup.ROOT]
+    return np.array(pairs + [(one, other) for one in head for other in below], np.int64)
 
 
 def _creases(humanoid: Humanoid, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -3,9 +3,9 @@
 A pair of capsules may overlap by 2 cm, as capsules wrap the mesh generously and contact of their rims is no contact of
 bodies; or that much more than it does when the avatar stands and walks naturally, as some builds leave it no choice.
 So the natural walk is free for every avatar. Belly and thighs may overlap by 3.6 cm: they meet at the hips, where flesh
-gives. Not looked at is what a joint holds together: the parts of one arm, the
-parts of the trunk, the trunk against the pelvis, and an upper arm against the trunk below the neck, where its shoulder
-is rooted.
+gives. Not looked at is what a joint holds together: the parts of one arm, the parts of the trunk, the trunk against the
+pelvis, and an upper arm against the pelvis and the trunk below the neck, where its shoulder is rooted; who folds over
+the thighs can bring it to the legs.
 """
 
 from typing import NamedTuple
@@ -90,8 +90,8 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
         least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
         belly, thighs = one.joints == model.chains[group].column.joints[0], np.isin(two.joints, model.figure.legs[:, 0])
         least[np.ix_(belly, thighs)] -= CREASE - OVERLAP
-    elif other not in CHILDREN:
-        least[0] = EXEMPT  # its joint is rooted there
+    elif group.is_arm and other not in CHILDREN:
+        least[0, two.joints == 0 if other is DofGroup.ROOT else slice(None)] = EXEMPT  # its joint is rooted there
     return least
 
 
