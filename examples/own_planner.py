@@ -8,7 +8,7 @@ import elbowroom as er
 Floats = NDArray[np.float64]
 
 # Waist: bend, twist, lowering. Each arm: flexion, abduction, rotation of the shoulder; elbow. Head: nod, turn. Degrees.
-WAISTS, FOLDED, AHEAD = ([0, 0, 0], [0, 40, 0], [0, -40, 0], [25, 0, 0], [55, 0, 20]), [35, -5, 60, 125], [0, 0]
+WAISTS, FOLDED, AHEAD = ([0, 0, 0], [0, 40, 0], [0, -40, 0], [25, 0, 0], [55, 0, 0]), [35, -5, 60, 125], [0, 0]
 GESTURES = np.radians([waist + FOLDED + FOLDED + AHEAD for waist in WAISTS])
 
 
