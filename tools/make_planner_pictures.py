@@ -30,6 +30,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 INTERVAL, SPEED = 0.15, 1.1  # seconds, m/s
 OTHERWISE = 0.2  # radians between two waists that are not the same
 TRIES = 400  # random scenes in which the joint step is looked for
+FEW = 16  # waists: as many rows are told apart
 CLOSED, FREE_NEAR, FREE_FAR, WAY, OTHER = "#3b3f46", (226, 240, 217), (88, 140, 96), "#c8511b", "#2c6f93"
 STYLE = "font: 13px sans-serif; fill: #333"
 
@@ -125,7 +126,7 @@ def _differs(waist: Floats, dressing: UpperBodySearch, depth: int) -> bool:
 
 
 def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArray[np.int64]]:
-    """The first random scene where an arm has no way under the waist's, and under another waist has one; and that."""
+    """The first random scene where an arm has no way under the waist's, and under one of a few others has; and that."""
     path = walk(12, 0.0)
     for seed in range(TRIES):
         dressing = dressing_of(UpperBodyPlanner(humanoid, random_scene(seed), ExactSettings()), path)
@@ -136,7 +137,9 @@ def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArra
         answer = step.search()
         depth = dressing.blocked[1]
         if len(answer.nodes) and _differs(step.configurations(0, depth)[answer.nodes[depth, 0]], dressing, depth):
-            return dressing, step, answer.nodes
+            step.fill(depth, np.ones(step.filled.shape[1], np.bool_))
+            if np.isfinite(step.nodes[0].base[depth]).sum() <= FEW:
+                return dressing, step, answer.nodes
     raise SystemExit(f"no scene of {TRIES} needs the joint step")
 
 
@@ -144,7 +147,6 @@ def joint_picture(humanoid: Humanoid) -> str:
     """The blocked slice: waists down, postures of the left and of the right arm across."""
     dressing, step, nodes = failed_alone(humanoid)
     depth = dressing.blocked[1]
-    step.fill(depth, np.ones(step.filled.shape[1], np.bool_))
     rows = np.flatnonzero(np.isfinite(step.nodes[0].base[depth]))
     rows = rows[np.argsort(step.nodes[0].base[depth, rows], kind="stable")]
     assert dressing.blocked[0] > 0

@@ -45,7 +45,7 @@ def scene(seed: int) -> Scene:
     aside, up, ahead = rng.uniform([0.18, 0.4, 0.9], [0.27, 0.6, 1.7], (count, 3)).T
     centers = np.stack([side * (aside + halves[:, 0]), up, ahead], axis=1)
     boxes = Obstacles.boxes(
-        np.concatenate([[[0.0, 1.5, 1.35]], centers]),
+        np.concatenate([[[0.0, 1.4, 1.35]], centers]),
         np.tile([0.0, 0.0, 0.0, 1.0], (count + 1, 1)),
         np.concatenate([[[1.5, 0.1, 0.06]], halves]),
     )
