@@ -1,17 +1,18 @@
-"""Where feet will be that step on as the root goes on: the rows that `footholds` makes, one after the other."""
+"""Where feet will be that step or glide on as the root goes on: the rows of `footholds`, one after the other."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
-from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.footholds import glide_feet, step_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, plain
 
 Floats = NDArray[np.float64]
 
 _PIECE = 0.05  # seconds between two rows, nearly
+_STEP, _GLIDE = plain(True), plain(False)  # whether feet step
 
 
 def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, own: OwnSteps = CYCLE) -> Floats:
@@ -20,7 +21,12 @@ def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, own: 
     The root goes straight from one of the states that it is to come to, `ahead` (m, 8) with the seconds from now, to
     the next, past the first that is `until` seconds away.
     """
-    return _steps_ahead(gait.legs, gait.scale, own, row, ahead, until)
+    return _feet_ahead(gait.legs, gait.scale, own, row, ahead, until, _STEP)
+
+
+def glides_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float) -> Floats:
+    """The same of feet that glide from where they are in `row` into the walking cycle."""
+    return _feet_ahead(gait.legs, gait.scale, CYCLE, row, ahead, until, _GLIDE)
 
 
 @exact_kernel
@@ -29,7 +35,9 @@ def _pieces(span: float) -> int:
 
 
 @exact_kernel
-def _steps_ahead(legs: Floats, scale: float, own: OwnSteps, row: Floats, ahead: Floats, until: float) -> Floats:
+def _feet_ahead(
+    legs: Floats, scale: float, own: OwnSteps, row: Floats, ahead: Floats, until: float, steps: bool
+) -> Floats:
     first, last, since, count = 0, 0, 0.0, 1
     while first < len(ahead) and ahead[first, 0] <= 0.0:
         first += 1
@@ -47,7 +55,10 @@ def _steps_ahead(legs: Floats, scale: float, own: OwnSteps, row: Floats, ahead: 
                 root[i] = begin[i] + share * (ahead[n, 1 + i] - begin[i])
             for k in range(n, len(ahead)):
                 coming[k, 0] = ahead[k, 0] - since - share * span
-            step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
+            if steps:
+                step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
+            else:
+                glide_feet(legs, scale, rows[at], root, span / pieces, False, rows[at + 1])
             at += 1
         since = ahead[n, 0]
     return rows

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled, standing
-from elbowroom.body.gait.footholds_ahead import steps_ahead
+from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
 from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body
@@ -113,11 +113,16 @@ class Stepping:
         return moment.room_along(rows, upper) >= _CLEAR
 
     def _glided(self, moment: Moment, posed: Playback, *, lasts: bool) -> Followed:
-        """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it."""
+        """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it.
+
+        And as long as they could glide from there: planned feet are proven free, those that stay behind them are not.
+        """
         if lasts:
             held = self._followed(moment, posed, HOLDS)
             if moment.look(held.root, posed.upper, held.axes).room >= _CLEAR:
-                return held
+                back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN)
+                if moment.room_along(back, posed.upper) >= _CLEAR:
+                    return held
         return self._followed(moment, posed, GLIDES)
 
     def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
