@@ -41,6 +41,7 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return file.read_bytes()
 
 
+@pytest.mark.long
 def test_several_files_are_taken_one_after_the_other(open_page: Open, walk: bytes) -> None:
     live = open_page("scene=empty", viewport=SMALL)
     live.drop(("cat.vrm", b"no avatar"), ("mine.vrm", STOCK.read_bytes()), ("one.elbow", walk), ("two.elbow", walk))

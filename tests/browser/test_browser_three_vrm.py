@@ -83,7 +83,11 @@ def compare(three: ThreeJudge, humanoid: Humanoid, data: bytes) -> None:
         assert not shown, "bones that three-vrm has and we have not"
 
 
-@pytest.mark.parametrize("path", REAL, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [*REAL[::2], *(pytest.param(path, marks=pytest.mark.long) for path in REAL[1::2])],
+    ids=lambda path: path.stem,
+)
 def test_real_files_are_posed_as_in_three_vrm(three: ThreeJudge, path: Path) -> None:
     compare(three, load_humanoid(path), path.read_bytes())
 

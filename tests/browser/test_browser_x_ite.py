@@ -69,7 +69,11 @@ def positions(figure: HanimFigure, rotations: Floats | None) -> Floats:
     return tree.world_matrices(local)[nodes, :3, 3]
 
 
-@pytest.mark.parametrize("path", REAL, ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path",
+    [*REAL[::2], *(pytest.param(path, marks=pytest.mark.long) for path in REAL[1::2])],
+    ids=lambda path: path.name,
+)
 def test_joints_of_real_files(x_ite: XIte, path: Path) -> None:
     compare(x_ite, path.read_bytes(), path.name)
 

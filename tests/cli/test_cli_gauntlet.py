@@ -78,6 +78,7 @@ def test_a_wrong_call_ends_with_2_and_one_line(arguments: list[str]) -> None:
     assert not outcome.stdout
 
 
+@pytest.mark.long
 def test_another_avatar_gets_courses_of_its_own_and_its_mesh_is_judged(tmp_path: Path) -> None:
     avatar = ["--avatar", str(stock_avatar_path()), "--height", "1.9"]
     arguments = ["gauntlet", "--level", "1", "--courses", "1", "--jobs", "1", "--judge", "-q", *avatar]

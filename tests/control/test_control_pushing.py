@@ -140,6 +140,7 @@ def test_a_push_is_recorded_played_again_bit_for_bit_and_told_as_a_track(tmp_pat
     assert few.poses(times)[0] == pytest.approx(centers, abs=5e-3)
 
 
+@pytest.mark.long
 def test_a_run_that_began_anew_after_a_push_is_told_as_one_scene_as_it_was(tmp_path: Path) -> None:
     fan = {"type": "box", "name": "fan", "size": [0.3, 1.0, 0.3], "repeat": "loop"}
     quarter = [{"center": [3.0 + k, 0.5, 3.0], "yaw": 1.5 * k, "seconds": 0.31} for k in (0, 1, 2)]

@@ -72,6 +72,7 @@ def test_the_rows_tell_where_they_were(made: Path) -> None:
             assert np.hypot(*way) > 0.2 or turned > 1.0  # and go somewhere, or turn first to where they will go
 
 
+@pytest.mark.long
 def test_walked_again_they_are_the_same(made: Path) -> None:
     checked = check_dataset(made, Processes(1), 1)
     assert checked.faults == ()

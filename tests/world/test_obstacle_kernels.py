@@ -102,7 +102,7 @@ def test_hard_shapes(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("gap", [1e-3, 1.1e-5])
+@pytest.mark.parametrize("gap", [pytest.param(1e-3, marks=pytest.mark.long), 1.1e-5])
 def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None:
     """Obstacles moved along the line between the nearest points, until a wanted gap, or overlap, is left."""
     rng = np.random.default_rng(11)
