@@ -13,6 +13,7 @@ Floats = NDArray[np.float64]
 
 _PIECE = 0.05  # seconds between two rows, nearly
 _STEP, _GLIDE = plain(True), plain(False)  # whether feet step
+_HELD = plain(False)  # whether feet that stand stay, where they glide
 
 
 def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, own: OwnSteps = CYCLE) -> Floats:
@@ -58,7 +59,7 @@ def _feet_ahead(
             if steps:
                 step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
             else:
-                glide_feet(legs, scale, rows[at], root, span / pieces, False, rows[at + 1])
+                glide_feet(legs, scale, rows[at], root, span / pieces, _HELD, rows[at + 1])
             at += 1
         since = ahead[n, 0]
     return rows
