@@ -1,11 +1,11 @@
-"""Feet foreseen at once are those that step on one row after the other."""
+"""Feet foreseen at once are those that step, or glide, on one row after the other."""
 
 import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
-from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
-from elbowroom.body.gait.footholds_ahead import steps_ahead
+from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward
+from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
@@ -36,7 +36,7 @@ def drawn(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return row, ahead
 
 
-def one_by_one(row: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+def one_by_one(row: np.ndarray, ahead: np.ndarray, *, steps: bool = True) -> np.ndarray:
     rows, since, left = [row], 0.0, ahead[ahead[:, 0] > 0.0]
     for n, (until, *_) in enumerate(left):
         pieces = max(round((until - since) / PIECE), 1)
@@ -44,7 +44,8 @@ def one_by_one(row: np.ndarray, ahead: np.ndarray) -> np.ndarray:
         for k in range(1, pieces + 1):
             share = k / pieces
             coming[:, 0] = left[n:, 0] - since - share * (until - since)
-            rows.append(onward(GAIT, rows[-1], begin + share * (left[n, 1:] - begin), (until - since) / pieces, coming))
+            root, dt = begin + share * (left[n, 1:] - begin), (until - since) / pieces
+            rows.append(onward(GAIT, rows[-1], root, dt, coming) if steps else gliding(GAIT, rows[-1], root, dt))
         since = until
         if since >= UNTIL:
             break
@@ -55,6 +56,7 @@ def one_by_one(row: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 def test_they_are_those_that_step_on_one_after_the_other(seed: int) -> None:
     row, ahead = drawn(seed)
     assert np.abs(steps_ahead(GAIT, row, ahead, UNTIL) - one_by_one(row, ahead)).max() < 1e-12
+    assert np.abs(glides_ahead(GAIT, row, ahead, UNTIL) - one_by_one(row, ahead, steps=False)).max() < 1e-12
 
 
 def test_where_nothing_is_known_it_is_the_row_itself() -> None:
