@@ -11,22 +11,27 @@ Open = Callable[..., LivePage]
 A, B, X, Y, LB, RB, RT, BACK, START, UP, DOWN, LEFT, RIGHT = 0, 1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 14, 15
 
 PAD = """
-window.pad = { axes: [0, 0, 0, 0], down: [] };
-navigator.getGamepads = () => [{
-  connected: true, mapping: "standard", id: "stub", index: 0, timestamp: 0, axes: window.pad.axes,
-  buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: window.pad.down.includes(i), touched: false, value: 0 })),
-}];
+window.pad = { axes: [0, 0, 0, 0], down: [], tapped: null, read: 0 };
+navigator.getGamepads = () => {
+  const pad = window.pad, down = pad.tapped === null ? pad.down : [pad.tapped];
+  pad.tapped = null;
+  pad.read += 1;
+  return [{
+    connected: true, mapping: "standard", id: "stub", index: 0, timestamp: 0, axes: pad.axes,
+    buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: down.includes(i), touched: false, value: 0 })),
+  }];
+};
 """
-TWO_FRAMES = "async () => { for (let k = 0; k < 2; k += 1) await new Promise(requestAnimationFrame); }"
+TAP = """async (button) => {
+  window.pad.tapped = button;
+  for (const until = window.pad.read + 2; window.pad.read < until;) await new Promise(requestAnimationFrame);
+}"""
 
 
 def press(live: LivePage, *buttons: int) -> None:
-    """Press buttons one after the other, each for two frames."""
+    """Press buttons one after the other, each until the page has read it once: held, it would act again."""
     for button in buttons:
-        live.page.evaluate(f"window.pad.down = [{button}]")
-        live.page.evaluate(TWO_FRAMES)
-        live.page.evaluate("window.pad.down = []")
-        live.page.evaluate(TWO_FRAMES)
+        live.page.evaluate(TAP, button)
 
 
 def focused(live: LivePage) -> str:
