@@ -50,3 +50,24 @@ def _until(condition: Callable[[], bool]) -> bool:
             return False
         time.sleep(0.1)
     return True
+
+
+TOLD_TWICE = """
+import os, signal
+import elbowroom.cli.main as main
+
+def command(standalone_mode):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        os.kill(os.getpid(), signal.SIGTERM)
+        print("put away")
+
+main.app = command
+main.run()
+"""
+
+
+def test_who_is_told_to_end_twice_puts_away_what_was_begun() -> None:
+    ran = subprocess.run([sys.executable, "-c", TOLD_TWICE], check=False, capture_output=True, text=True)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (128 + signal.SIGTERM, "put away\n", "")

@@ -107,7 +107,11 @@ def run() -> None:
 
 
 def _told_to_end(sig: int, _frame: FrameType | None) -> None:
-    """Leave as after an error, so that what a command has begun ends with it: servers, workers, recordings."""
+    """Leave as after an error, so that what a command has begun ends with it: servers, workers, recordings.
+
+    Who ends a group of processes says so more than once: that breaks off nothing of this.
+    """
+    signal.signal(sig, signal.SIG_IGN)
     raise SystemExit(128 + sig)
 
 
