@@ -1,18 +1,24 @@
 """The first start: two processes compile, each kernel is told once, and a failure costs only time."""
 
+import ast
 import gc
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numba
 import pytest
 
+import elbowroom
 from elbowroom.cli.bench.compile import compiled_in
+from elbowroom.jit import kernels_made
 from elbowroom.server.kernels import compiling, kernel_cache
 from elbowroom.server.kernels.compiling import PARTS, command_for, compile_apart, compile_parts
+
+PACKAGE = Path(elbowroom.__file__).parent
 
 
 def _printing(monkeypatch: pytest.MonkeyPatch, programs: dict[str, str]) -> None:
@@ -141,3 +147,42 @@ def test_compiled_files_are_counted_by_kernel(tmp_path: Path) -> None:
         (tmp_path / name).touch()
     (tmp_path / "slots.find-4.py311.nbi").touch()
     assert compiled_in(tmp_path) == {"proof.limb_way": 2, "slots.find": 1}
+
+
+LIVE = "body", "clips", "control", "planning", "world"  # rooms that a session and its readers work in
+SELDOM = {"touching"}  # files of these that benchmarks alone work with
+REHEARSED = """
+from elbowroom.jit import kernels_made
+from elbowroom.server.kernels.compiling import PARTS, compile_part
+for part in PARTS:
+    compile_part(part, lambda *_: None)
+for made in kernels_made():
+    if made.stats.cache_hits or made.stats.cache_misses:
+        print(f"{made.py_func.__module__}.{made.py_func.__qualname__}")
+"""
+
+
+def entered(path: Path) -> tuple[set[str], set[str]]:
+    """The kernels that a file's plain functions call by name, and those that its compiled ones do."""
+    module = import_module(".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts)))
+    made = {id(one): f"{one.py_func.__module__}.{one.py_func.__qualname__}" for one in kernels_made()}
+    plain, compiled = set[str](), set[str]()
+    for function in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(function, ast.FunctionDef):
+            marks = {mark.id for mark in function.decorator_list if isinstance(mark, ast.Name)}
+            calls = [node.func for node in ast.walk(function) if isinstance(node, ast.Call)]
+            called = [getattr(module, call.id, None) for call in calls if isinstance(call, ast.Name)]
+            names = {made[id(one)] for one in called if id(one) in made}
+            (compiled if marks & {"kernel", "exact_kernel", "helper"} else plain).update(names)
+    return plain, compiled
+
+
+def test_no_kernel_is_left_to_be_compiled_while_somebody_plays() -> None:
+    """Each that Python enters is entered once by the compilers, or is compiled with one that calls it."""
+    files = [path for room in LIVE for path in sorted((PACKAGE / room).rglob("*.py")) if path.stem not in SELDOM]
+    found = [entered(path) for path in files]
+    entries, within = (set[str]().union(*(one[side] for one in found)) for side in range(2))
+    run = subprocess.run([sys.executable, "-c", REHEARSED], check=True, capture_output=True, text=True)
+    rehearsed = set(run.stdout.split())
+    assert len(rehearsed) > 100
+    assert sorted(entries - within - rehearsed) == []

@@ -10,7 +10,9 @@ import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
+from elbowroom.body.gait.cycle import feet_standing, stride_length
 from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled
+from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
@@ -53,6 +55,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.places.columns import surface_keys
+from elbowroom.world.places.enclosed import enclosed
 from elbowroom.world.places.layers import link_surfaces
 from elbowroom.world.scene import Scene, on_ground
 
@@ -139,10 +142,14 @@ def rehearse_narrow(humanoid: Humanoid) -> None:
 
 
 def rehearse_feet(humanoid: Humanoid) -> None:
-    """Stand, glide, step and live."""
+    """Stand, glide, step and live, and look how feet will step and glide."""
     gait, root = body_model(humanoid).gait, np.zeros(ROOT_STATE)
     row = gliding(gait, beside(gait, root), root, 0.01)
     settled(gait, onward(gait, row, root, 0.01))
+    for ahead in (steps_ahead, glides_ahead):
+        ahead(gait, row, np.concatenate([[0.1], root])[None], 0.1)
+    feet_standing(1.0, root[None])
+    stride_length(_SPEED)
     living(body_of(gait), np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
 
 
@@ -150,6 +157,7 @@ def rehearse_place() -> None:
     """Look a triangle over as if it were a place."""
     surface_keys(np.eye(3)[None], 1.0, (2, 2))
     cell = np.zeros(1, np.int64)
+    enclosed(cell, np.zeros(1), np.eye(3)[None], 1.0, (2, 2))
     link_surfaces(cell, np.zeros(1), np.array([0, 1]), 1, 1, 0.1)
 
 

@@ -45,7 +45,7 @@ def _times(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 @kernel
-def _about_left(angle: float) -> Quaternion:
+def about_left(angle: float) -> Quaternion:
     """A rotation about the axis to the left."""
     return math.sin(0.5 * angle), 0.0, 0.0, math.cos(0.5 * angle)
 
@@ -53,23 +53,30 @@ def _about_left(angle: float) -> Quaternion:
 @kernel
 def hips_turn(row: Floats, lean: float) -> Quaternion:
     """What hips that lean forward by `lean` are turned by in the root's axes, `xyzw`, carried as a row says or not."""
-    leaning = _about_left(lean)
+    leaning = about_left(lean)
     return leaning if row.shape[0] <= WITH_FEET else _times(_turned(row[TURN], row[LIST]), leaning)
 
 
 @kernel
-def carried_turns(row: Floats, lean: float) -> tuple[Quaternion, Quaternion, Quaternion]:
-    """What a row (SHOWN,) turns hips, lowest joint of the spine, and lowest joint of the neck by, `xyzw`.
+def carried_turns(row: Floats, lean: float) -> tuple[Quaternion, Quaternion]:
+    """What a row (SHOWN,) turns the lowest joint of the spine and the lowest joint of the neck by, `xyzw`.
 
     Each is a rotation in the axes of the joint above, and goes before what the posture turns the joint by. The hips
     lean forward by `lean` radians, which takes the spine along.
     """
-    hips, leaning = hips_turn(row, lean), _about_left(lean)
-    chest = _times(_turned(row[CHEST_TURN], row[CHEST_LIST]), _about_left(row[CHEST_BEND]))
-    head = _times(_turned(row[HEAD_TURN], 0.0), _about_left(row[HEAD_NOD]))
+    hips, leaning = hips_turn(row, lean), about_left(lean)
+    chest = _times(_turned(row[CHEST_TURN], row[CHEST_LIST]), about_left(row[CHEST_BEND]))
+    head = _times(_turned(row[HEAD_TURN], 0.0), about_left(row[HEAD_NOD]))
     back = (-hips[0], -hips[1], -hips[2], hips[3])
     level = (-chest[0], -chest[1], -chest[2], chest[3])
-    return hips, _times(back, _times(chest, leaning)), _times(head, level)
+    return _times(back, _times(chest, leaning)), _times(head, level)
+
+
+@kernel
+def leant_by(lean: float, up: float, ahead: float) -> tuple[float, float]:
+    """How far up and ahead a point moves, metres, as hips lean: it is `up`, `ahead` of the middle of the hip joints."""
+    sine, cosine = math.sin(lean), math.cos(lean)
+    return cosine * up - sine * ahead - up, sine * up + cosine * ahead - ahead
 
 
 @kernel
@@ -78,16 +85,16 @@ def shifted_by(row: Floats, lean: float, x: float, up: float, ahead: float) -> t
 
     Metres in the root's axes, with hips that lean forward by `lean` radians. A row without carriage does nothing more.
     """
-    sine, cosine = math.sin(lean), math.cos(lean)
-    y, z = cosine * up - sine * ahead, sine * up + cosine * ahead
+    rises, goes = leant_by(lean, up, ahead)
     if row.shape[0] <= WITH_FEET:
-        return 0.0, y - up, z - ahead
+        return 0.0, rises, goes
+    y, z = up + rises, ahead + goes
     a, b, c, w = _turned(row[TURN], row[LIST])
     tx, ty, tz = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
     return (
         row[ASIDE] + w * tx + b * tz - c * ty,
-        row[UP] + (y - up) + w * ty + c * tx - a * tz,
-        row[AHEAD] + (z - ahead) + w * tz + a * ty - b * tx,
+        row[UP] + rises + w * ty + c * tx - a * tz,
+        row[AHEAD] + goes + w * tz + a * ty - b * tx,
     )
 
 

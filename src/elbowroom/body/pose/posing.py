@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.carriage import carried_turns, hips_turn, shifted_by
+from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.jit import kernel, plain
@@ -264,7 +264,7 @@ def _carry_hips(figure: Figure, row: Floats, lean: float, rotations: Floats, pla
 @kernel
 def _carry_trunk(figure: Figure, row: Floats, lean: float, local: Floats, scratch: Floats) -> None:
     """Chest and head as a row (SHOWN,) carries them, beyond their posture."""
-    _, chest, head = carried_turns(row, lean)
+    chest, head = carried_turns(row, lean)
     columns = figure.columns
     _turn_before(chest, local, columns.joints[columns.begins[_WAIST]], scratch)
     _turn_before(head, local, columns.joints[columns.begins[_HEAD]], scratch)
@@ -364,10 +364,9 @@ def pose_scratch(chain: Chain) -> PoseScratch:
 def _sink(chain: Chain, lowering: float, rotations: Floats, places: Floats) -> None:
     """Put the hips, at which a chain begins, where a lowering has them in the pelvis frame."""
     below, behind, lean = hips_sink(chain.half_leg, 0.0, lowering)
-    up, ahead, sine, cosine = chain.hinge[0], chain.hinge[1], np.sin(lean), np.cos(lean)
-    y, z = cosine * up - sine * ahead - up - below, sine * up + cosine * ahead - ahead - behind
-    _place(chain.start, rotations, places, 0.0, y, z, 0.0)
-    rotations[chain.start, 0], rotations[chain.start, 3] = np.sin(0.5 * lean), np.cos(0.5 * lean)
+    rises, goes = leant_by(lean, chain.hinge[0], chain.hinge[1])
+    _place(chain.start, rotations, places, 0.0, rises - below, goes - behind, 0.0)
+    _set(rotations, chain.start, about_left(lean))
 
 
 @kernel

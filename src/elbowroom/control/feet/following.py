@@ -24,9 +24,9 @@ Indices = NDArray[np.int64]
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _ARMS = plain(2)
-STEPS, HOLDS, GLIDES = range(
-    3
-)  # how feet follow: to where the root is to come; as the cycle swings them; as it has them
+# How feet follow: they step to where the root is to come; they glide as the walking cycle swings them, and stay where
+# they stand; they glide as the cycle has them, standing or not.
+STEPS, HOLDS, GLIDES = range(3)
 
 
 class ArmsAndLegs(NamedTuple):

@@ -92,9 +92,9 @@ def load_kernels() -> None:
 class _Walker:
     """One of both, and what its steps cost."""
 
-    def __init__(self, scene: Scene, start: RootState, pace: float, *, live: bool) -> None:
+    def __init__(self, humanoid: Humanoid, scene: Scene, start: RootState, pace: float, *, live: bool) -> None:
         self._desk = BesideDesk(_DT) if live else None
-        self.controller = Controller(Humanoid.default(), scene, start=start, ahead=Lookahead(desk=self._desk))
+        self.controller = Controller(humanoid, scene, start=start, ahead=Lookahead(desk=self._desk))
         self._command = Command(forward=pace)
         self.costs: list[float] = []  # seconds of processor time, one for each step; plans made beside cost none
 
@@ -118,11 +118,11 @@ class _Walker:
 def meet(start: Start, seconds: float = 15.0, *, live: bool = False) -> Met:
     """Let them walk until they have passed, or for so long; `live` plans beside playback, as a session does."""
     heading = start.heading
-    scene = corridor(start.width, heading)
+    humanoid, scene = Humanoid.default(), corridor(start.width, heading)
     along = np.array([math.sin(heading), math.cos(heading)])
     first, second = placed(heading, start.left[0], 0.0), placed(heading, start.left[1], start.apart)
-    one = _Walker(scene, RootState(*first, heading), start.paces[0], live=live)
-    two = _Walker(scene, RootState(*second, heading + math.pi), start.paces[1], live=live)
+    one = _Walker(humanoid, scene, RootState(*first, heading), start.paces[0], live=live)
+    two = _Walker(humanoid, scene, RootState(*second, heading + math.pi), start.paces[1], live=live)
     farthest, back, touched, passed, turn = np.full(2, -np.inf), 0.0, False, False, 0
     while not passed and turn < round(seconds / _DT):
         turn += 1
