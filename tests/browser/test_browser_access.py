@@ -83,6 +83,7 @@ def test_axe_finds_nothing_serious_wherever_one_can_be(open_page: Open, looks: l
     assert {place: barriers for place, barriers in found.items() if barriers} == {}
 
 
+@pytest.mark.long
 def test_another_key_walks_once_it_is_given_and_after_a_reload(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.wait("s.scene === 'empty'")

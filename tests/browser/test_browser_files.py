@@ -55,6 +55,7 @@ def test_several_files_are_taken_one_after_the_other(open_page: Open, walk: byte
     live.excuse_refusals()
 
 
+@pytest.mark.long
 def test_what_is_wrong_with_a_recording_is_said_and_the_walk_goes_on(open_page: Open, walk: bytes) -> None:
     live = open_page("scene=empty&lang=zh-TW", viewport=SMALL)
     newer = walk.replace(MAGIC, MAGIC[:-2] + b"9\n", 1)

@@ -47,6 +47,7 @@ def test_a_webm_is_played_by_a_browser(chromium: object, recording: Path, tmp_pa
 
 
 @pytest.mark.usefixtures("chromium")
+@pytest.mark.long
 def test_a_sheet_has_sixteen_moments_and_none_like_another(recording: Path, tmp_path: Path) -> None:
     film(recording, tmp_path / "sheet.png", "--sheet")
     sheet = Image.open(tmp_path / "sheet.png")
@@ -78,7 +79,7 @@ except InputError as error:
     ("page", "said"),
     [
         ("data:text/html,<title>nothing</title>", "the page was not drawn within 5 s: a smaller --size or"),
-        (DEAF, "2"),
+        pytest.param(DEAF, "2", marks=pytest.mark.long),
     ],
     ids=["nothing comes up", "keys are missed"],
 )

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
@@ -31,6 +33,7 @@ def test_a_click_on_the_floor_is_gone_to_and_a_key_takes_over(open_page: Open) -
     live.page.keyboard.up("s")
 
 
+@pytest.mark.long
 def test_a_drag_looks_around_and_goes_nowhere(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.settle()

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from elbowroom.control.recordings.recording import Recording
 from live_page import LivePage
 
@@ -26,6 +28,7 @@ def test_the_walk_so_far_is_saved_as_a_recording(open_page: Open, tmp_path: Path
     assert recording.header.scene["name"] == "d"
 
 
+@pytest.mark.long
 def test_walks_can_be_replayed_after_the_page_is_loaded_again(open_page: Open) -> None:
     live = open_page("scene=d")
     live.wait("s.scene === 'd'")

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
@@ -51,6 +53,7 @@ def test_a_thing_is_pushed_into_the_way_with_the_mouse_and_the_avatar_evades_it(
     live.wait("s.pushed.length === 0")
 
 
+@pytest.mark.long
 def test_a_finger_pushes_on_the_right_half(open_page: Open) -> None:
     live = open_page("scene=d", viewport=(800, 600), has_touch=True)
     live.wait("s.scene === 'd'")

@@ -42,6 +42,7 @@ def test_a_run_plays_from_a_file_and_asks_the_network_for_nothing(chromium: Any,
     assert len([url for url in asked if url.startswith("file:")]) == 1
 
 
+@pytest.mark.long
 def test_a_run_plays_in_the_frame_of_a_notebook(chromium: Any, run: Path, tmp_path: Path) -> None:
     notebook = tmp_path / "notebook.html"
     notebook.write_text(f"<!doctype html><body>{er.show(run, height=400)._repr_html_()}", "utf-8")
@@ -52,6 +53,7 @@ def test_a_run_plays_in_the_frame_of_a_notebook(chromium: Any, run: Path, tmp_pa
     page.close()
 
 
+@pytest.mark.long
 def test_a_walk_is_saved_from_the_page_as_a_page(open_page: Open, chromium: Any, tmp_path: Path) -> None:
     live = open_page("scene=d", viewport=(1280, 800), accept_downloads=True)
     live.wait("s.scene === 'd'")

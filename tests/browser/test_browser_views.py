@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable
 
+import pytest
+
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
@@ -33,6 +35,7 @@ def test_keys_and_buttons_choose_a_camera_and_w_walks_away_from_the_back(open_pa
     live.page.wait_for_selector("#inset", state="hidden")
 
 
+@pytest.mark.long
 def test_the_address_says_what_is_shown_and_the_back_button_goes_back(open_page: Open) -> None:
     live = open_page("scene=empty&camera=side&speed=0.8&overlays=path", viewport=(1100, 700))
     state = live.wait("s.settings.walkSpeed === 0.8 && location.search.includes('planner=exact')")

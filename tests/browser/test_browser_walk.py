@@ -109,6 +109,7 @@ def test_steering_keys_steer_past_lists(open_page: Open) -> None:
     assert live.state()["settings"]["scene"] == "empty"
 
 
+@pytest.mark.long
 def test_arrow_keys_belong_to_a_list_reached_by_key_until_escape(open_page: Open) -> None:
     live = open_page("scene=a")
     live.wait("s.scene === 'a'")
@@ -150,6 +151,7 @@ def test_arrow_keys_turn_towards_the_side_of_the_picture(open_page: Open) -> Non
     live.page.keyboard.up("ArrowLeft")
 
 
+@pytest.mark.long
 def test_assist_off_goes_through_things(open_page: Open) -> None:
     live = open_page("scene=d&speed=0.4")  # slowly: it is within each thing for a while
     live.page.click("#assist")

@@ -53,6 +53,7 @@ def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
     assert not as_dict(results)["well"]
 
 
+@pytest.mark.long
 def test_a_meeting_of_its_own_process_is_the_same() -> None:
     start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
     met = MeetingTask(Kind.STANDS, start).run()
