@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
+from elbowroom.planning.carried import carried
 from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.problem import GroupTask, Guide
 from elbowroom.planning.exact.lattice.lattice import EXTRA
@@ -52,6 +53,10 @@ class PathProblem(NamedTuple):
         reached = last.known if begins.ahead else len(goals)
         previous = np.concatenate([last.keys[:reached], goals[reached:]])
         return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.required))
+
+    def under(self, waists: Floats) -> "PathProblem":
+        """The same with what head and arms would like under a path of the waist (n+1, 3)."""
+        return self._replace(goals=carried(self.goals, waists))
 
     def task(
         self, group: DofGroup, carriers: Longs, added: Floats32 | None = None, follow: Guide | None = None

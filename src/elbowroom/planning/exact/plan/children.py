@@ -14,7 +14,6 @@ from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, 
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
-from elbowroom.planning.gaze import keeping_gaze
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -84,7 +83,7 @@ class ChildSearch:
 
     def _take(self, waist: GroupPath) -> None:
         """Search under this path of the waist from now on."""
-        self._problem = self._given._replace(goals=keeping_gaze(self._given.goals, waist.keys))
+        self._problem = self._given.under(waist.keys)
 
     def _searched(
         self,

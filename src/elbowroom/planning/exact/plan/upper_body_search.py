@@ -30,7 +30,6 @@ from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
-from elbowroom.planning.gaze import keeping_gaze
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -127,7 +126,7 @@ class UpperBodySearch:
 
     def _cost(self, found: GroupPaths) -> float:
         """What paths cost that are free: distance from the goals and its changes, squared radians."""
-        cost, goals = 0.0, keeping_gaze(self.goals, found.paths[0].keys)
+        cost, goals = 0.0, self.problem.under(found.paths[0].keys).goals
         for group, path in zip(SEARCH_ORDER, found.paths, strict=False):
             away = path.keys - goals[:, columns_of(group)]
             cost += float(np.sum(away**2) + self.weights.step * np.sum(np.diff(away, axis=0) ** 2))
@@ -155,7 +154,7 @@ class UpperBodySearch:
         """Whether a group that could follow the waist finds no path under it, or only one far from its goals."""
         if found.failed is not None:
             return len(found.paths) > 0
-        goals = keeping_gaze(self.goals, found.paths[0].keys)
+        goals = self.problem.under(found.paths[0].keys).goals
         for group, path in zip(SEARCH_ORDER[1:], found.paths[1:], strict=False):
             if np.linalg.norm(path.keys - goals[:, columns_of(group)], axis=1).max() > _PRESSED:
                 return True
@@ -278,11 +277,12 @@ class UpperBodySearch:
 
     def joint_step(self, waist: GroupPath) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
-        caches, task = self.caches, self.problem.task(DofGroup.WAIST, self.problem.roots)
-        children = []
+        caches, whole = self.caches, waist.reached == self.path.horizon
+        problem = self.problem.under(waist.keys) if whole else self.problem
+        task, children = problem.task(DofGroup.WAIST, problem.roots), []
         for group in CHILDREN:
-            child_task, most = self.problem.task(group, waist.entries), np.inf
-            if waist.reached == self.path.horizon:
+            child_task, most = problem.task(group, waist.entries), np.inf
+            if whole:
                 most = self._room_at_start(group, child_task, waist)
             children.append(child_nodes(caches.group(group), child_task, self.weights.keeping, most))
         return JointStep(
