@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import ARMS, LOCAL, SEARCH_ORDER, DofGroup, clamp, columns_of, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, group_capsules
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of
@@ -21,7 +24,7 @@ from elbowroom.planning.exact.sweep.own_body_nodes import (
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.self_contact import axis_distance
-from elbowroom.planning.model.self_pairs import EXEMPT, seen_from_chest
+from elbowroom.planning.model.self_pairs import EXEMPT, seen_from_chest, self_clearances, self_pairs, with_waist
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -149,3 +152,15 @@ def test_no_ball_hides_a_posture() -> None:
         ]
         assert found[v] == (min(gaps) < 0.0) or abs(min(gaps)) < UNSURE
     assert 0.1 < found.mean() < 0.9
+
+
+def test_what_the_clips_bend_to_is_walked_in_at_full_pace() -> None:
+    """Belly and thighs keep apart at every moment of a stride: else who comes in some of them finds no way on."""
+    states = np.zeros((16, ROOT_STATE))
+    states[:, 3], states[:, 6] = 1.1, np.arange(16) / 16
+    waists = np.concatenate([clip.sample(np.linspace(0.0, clip.duration, 6)) for clip in stock_clips(DofGroup.WAIST)])
+    for model in (body_model(Humanoid.default()), MODEL):
+        pairs = self_pairs(model, natural_walk())
+        uppers, roots = np.repeat(with_waist(waists), 16, axis=0), np.tile(states, (len(waists), 1))
+        gaps = self_clearances(model, pairs, roots, uppers)[SEARCH_ORDER.index(DofGroup.WAIST)]
+        assert gaps.min() > 1e-3  # what is asked of a motion far ahead
