@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
+from elbowroom.control.frame import Frame
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.settings import JudgeSettings
@@ -47,7 +48,8 @@ def under(bottom: float, z: float) -> Scene:
 @pytest.mark.parametrize("bottom", [1.10, 1.25, 1.40])
 def test_arms_of_who_ducks_hang_and_soon_swing_again(bottom: float) -> None:
     scene = under(bottom, 1.8)
-    controller, frames = Controller(HUMANOID, scene, seed=0), []
+    controller = Controller(HUMANOID, scene, seed=0)
+    frames: list[Frame] = []
     while controller.root.z < 4.0 and len(frames) < 4.5 * RATE:
         frames.append(controller.step(Command(forward=1.0), 1 / RATE))
     q, roots = np.array([frame.q for frame in frames]), np.array([frame.root for frame in frames])

@@ -59,7 +59,8 @@ def test_all_else_is_as_the_gaze_has_it_and_under_the_own_waist_to_the_last_bit(
 
 def test_arms_stay_within_their_range() -> None:
     rng = np.random.default_rng(1)
-    goals, waists = np.zeros((300, LOCAL)), rng.uniform(*limits(DofGroup.WAIST).T, (300, 3))
+    low, high = limits(DofGroup.WAIST).T
+    goals, waists = np.zeros((300, LOCAL)), rng.uniform(low, high, (300, 3))
     for arm in ARMS:
         low, high = limits(arm).T
         goals[:, columns_of(arm)] = rng.uniform([low[0], 0.0, low[2], low[3]], [high[0], 0.0, *high[2:]], (300, 4))
