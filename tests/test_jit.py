@@ -151,3 +151,21 @@ def test_kernels_call_each_other_with_the_same_literals_or_with_none() -> None:
         if len(found) > 1
     }
     assert not several, several
+
+
+def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:
+    """Names of a file's private kernels that are named in one place there: within a kernel of the same kind."""
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    kinds = {one.name: {mark.id for mark in one.decorator_list if isinstance(mark, ast.Name)} for one in functions}
+    named = [(node.id, one.name) for one in functions for node in ast.walk(one) if isinstance(node, ast.Name)]
+    for name in sorted(name for name in kinds if name.startswith("_") and kinds[name] & (KINDS - {"helper"})):
+        callers = [caller for called, caller in named if called == name]
+        if len(callers) == 1 and kinds[callers[0]] == kinds[name]:
+            yield name
+
+
+def test_what_a_kernel_alone_calls_in_one_place_is_a_helper() -> None:
+    """It would be compiled twice: alone, and within the kernel that calls it."""
+    twice = {str(path): list(_private_kernels_called_once(ast.parse(path.read_text("utf-8"))))
+             for path in PACKAGE.rglob("*.py")}  # fmt: skip
+    assert {path: names for path, names in twice.items() if names} == {}

@@ -3,7 +3,7 @@
 There are three kinds. A `kernel` computes with fast mathematics: for batches of distances. An `exact_kernel` keeps to
 IEEE arithmetic: for searches and state that must repeat bit for bit. A `helper` is inlined into the kernels that call
 it and computes as they do. Kernels of both kinds may call each other and be called from Python. A kernel is compiled
-with all that it calls: what is long, calls much and is called in one place is a helper, or all of it is compiled twice.
+with all that it calls: what one kernel alone calls, in one place, is a helper, or it is compiled twice.
 
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.

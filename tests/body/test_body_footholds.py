@@ -7,7 +7,9 @@ import pytest
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.gait.cycle import flat_place, foot_poses, home_of, stride_of
-from elbowroom.body.gait.footholds import beside, gliding, onward, settled, standing
+from elbowroom.body.gait.foot_state import standing
+from elbowroom.body.gait.footholds import beside, onward, settled
+from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
-from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
+from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, WITH_FEET

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, DofGroup
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, standing
+from elbowroom.body.gait.foot_state import standing
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait.living import body_of
 from elbowroom.body.gait.own_steps import CYCLE, KEYS, LIFT, PITCH, OwnSteps
 from elbowroom.body.gait.own_stride import OwnStride

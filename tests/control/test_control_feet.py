@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.footholds import settled, standing
+from elbowroom.body.gait.foot_state import standing
+from elbowroom.body.gait.footholds import settled
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, SHOWN, WITH_FEET

@@ -1,8 +1,8 @@
 """The state of the root: where the body stands, how it moves, where in the stride it is, and what its feet stand on.
 
-Behind it in the same row there may be the state of the feet (`footholds`): WITH_FEET numbers in all. A row without feet
-has those of the walking cycle (`gait`). Behind the feet there may be how hips, chest and head are carried (`carriage`):
-SHOWN numbers in all. Without those they are as they are planned.
+Behind it in the same row there may be the state of the feet (`foot_state`): WITH_FEET numbers in all. A row without
+feet has those of the walking cycle (`gait`). Behind the feet there may be how hips, chest and head are carried
+(`carriage`): SHOWN numbers in all. Without those they are as they are planned.
 """
 
 from typing import NamedTuple
@@ -45,7 +45,7 @@ class RootState(NamedTuple):
 ROOT_STATE = len(RootState._fields)  # number of components of a root state array
 HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
-FOOT = 9  # numbers that say where a foot is, see `footholds`
+FOOT = 9  # numbers that say where a foot is, see `foot_state`
 WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet
 CARRIAGE = 13  # numbers that say how hips, chest and head are carried, see `carriage`
 SHOWN = WITH_FEET + CARRIAGE  # number of components of a root state array as it is shown on the plane

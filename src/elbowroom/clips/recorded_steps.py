@@ -1,7 +1,7 @@
 """How recorded feet go beside the root: where they stand, how they roll and swing, over the mean stride.
 
-A foot is told as `body/gait/footholds.py` has it: where it would be if it lay flat, how it is pitched about its ball or
-its heel, and how high its sole is lifted.
+A foot is told as `body/gait/foot_state.py` has it: where it would be if it lay flat, how it is pitched about its ball
+or its heel, and how high its sole is lifted.
 """
 
 from typing import NamedTuple

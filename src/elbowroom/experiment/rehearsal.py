@@ -11,8 +11,9 @@ import numpy as np
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
 from elbowroom.body.gait.cycle import feet_standing, stride_length
-from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
+from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model

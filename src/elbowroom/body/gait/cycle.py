@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import kernel
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -116,7 +116,7 @@ def stride_length(speed: float) -> float:
     return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
 
 
-@kernel
+@helper
 def _stance_part(speed: float, stride: float, scale: float) -> float:
     """The part of the cycle that a foot stands: less at speed, and where strides of this length outgrow the legs."""
     duty = _DUTY - _DUTY_LOSS * speed / np.sqrt(scale)
@@ -137,7 +137,7 @@ def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> fl
     return rest * rest * ((1.0 + 2.0 * w) * a + w * slope_a) + w * w * ((3.0 - 2.0 * w) * b - rest * slope_b)
 
 
-@kernel
+@helper
 def _pitch_ahead(u: float, duty: float) -> float:
     """Foot pitch when walking forward, positive toes down: heel strike, flat foot, push-off into the swing."""
     if u < duty:
@@ -148,7 +148,7 @@ def _pitch_ahead(u: float, duty: float) -> float:
     return _hermite(_TOE_OFF, rolling, -_HEEL_STRIKE, 0.0, (u - duty) / (1.0 - duty))
 
 
-@kernel
+@helper
 def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
     strike, lift = 0.37, -0.19
@@ -300,7 +300,7 @@ def _foot_pose(legs: Floats, stride: Stride, side: int, u: float, out: Floats) -
     tilt_foot(legs, side, (x, z, yaw), roll_of(stride, u), ease_of(stride.ahead, w), out)
 
 
-@kernel
+@helper
 def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
     length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
@@ -318,7 +318,7 @@ def _bob(stride: Stride, phase: float) -> float:
     return float(stride.scale * (ahead + aside))
 
 
-@kernel
+@helper
 def _highest(legs: Floats, stride: Stride, foot: Floats) -> float:
     """How far the hips are below T-pose where they are highest, so that feet reach the ground; `foot` is scratch."""
     stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)

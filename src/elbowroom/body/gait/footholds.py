@@ -9,33 +9,36 @@ steps who turns in place.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import (
-    GaitShape,
-    Stride,
-    flat_place,
-    home_of,
-    roll_of,
-    stride_of,
+from elbowroom.body.gait.cycle import GaitShape, Stride, home_of, stride_of
+from elbowroom.body.gait.foot_state import (
+    LIFT,
+    LIFT_RATE,
+    SWING,
+    VELOCITY,
+    YAW,
+    X,
+    Z,
+    carry,
+    is_flat,
+    land,
+    position,
+    rests,
+    tilt,
 )
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_of
 from elbowroom.body.gait.roll import least_lift, straight_part
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel, kernel, plain
+from elbowroom.jit import exact_kernel, helper, kernel, plain
 
 Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
-# Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
-# its swing is over (0: it stands), and the velocity of x, z and yaw over the ground, in the axes of the root.
+
 _LEFT, _RIGHT = plain(0), plain(1)
-_X, _Z, _YAW, _PITCH, _LIFT, _SWING, _VELOCITY = 0, 1, 2, 3, 4, 5, 6
 
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 _HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
-_STILL = 1e-3  # m/s: below, the root rests
-_FLAT = 1e-9  # radians, metres
 _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
 _FAR, _TWISTED = 0.75, 0.9  # of a leg, radians: a standing foot farther off has to follow soon
 _SWINGS = (0.20, 0.36, 0.80)  # seconds of a standard leg's swing: at least, to come to rest, at most
@@ -44,19 +47,12 @@ _OVER = 0.04  # of the cycle, by which a foot may stand longer than in an even w
 _LATE = 0.75  # of the cycle's swing: who has not lifted a foot by then leaves it
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
-_ROLL_RATE, _LIFT_RATE, _HASTE = 16.0, 1.5, 2.0  # rad/s, m/s: no foot tilts or is lifted faster; a recorded one is
+_HASTE = 2.0  # times as fast as else a foot of a recorded walk is lifted
 _FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
 _NEARLY = 0.12  # metres: so near it lands
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
 _THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
-_GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
-_AT_LEAST = 0.2  # of its swing is over, for a foot that does
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
-
-
-@exact_kernel
-def _rests(root: Floats) -> bool:
-    return bool(abs(root[3]) + abs(root[4]) + abs(root[5]) < _STILL)
 
 
 @kernel
@@ -67,47 +63,21 @@ def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
         out[i] = root[i]
     for side in range(2):
         at = ROOT_STATE + FOOT * side
-        out[at + _X], out[at + _Z] = home_of(legs, stride, side)
-
-
-@exact_kernel
-def _carry(before: Floats, root: Floats, out: Floats) -> None:
-    """Both feet where they were in the world, as seen from another root."""
-    turned = before[2] - root[2]
-    c, s, cosine, sine = np.cos(turned), np.sin(turned), np.cos(root[2]), np.sin(root[2])
-    dx, dz = before[0] - root[0], before[1] - root[1]
-    left, ahead = dx * cosine - dz * sine, dx * sine + dz * cosine
-    for i in range(ROOT_STATE):
-        out[i] = root[i]
-    for side in range(2):
-        at = ROOT_STATE + FOOT * side
-        for i in range(FOOT):
-            out[at + i] = before[at + i]
-        x, z, vx, vz = before[at + _X], before[at + _Z], before[at + _VELOCITY], before[at + _VELOCITY + 1]
-        out[at + _X], out[at + _Z] = left + x * c + z * s, ahead - x * s + z * c
-        out[at + _YAW] = before[at + _YAW] + turned
-        out[at + _VELOCITY], out[at + _VELOCITY + 1] = vx * c + vz * s, -vx * s + vz * c
-
-
-@exact_kernel
-def _position(phase: float, side: int) -> float:
-    """Where in its cycle a foot is, 0 to 1."""
-    cycle = phase + 0.5 * side
-    return float(cycle - np.floor(cycle))
+        out[at + X], out[at + Z] = home_of(legs, stride, side)
 
 
 @exact_kernel
 def _away(foot: Floats, place: tuple[float, float, float], scale: float) -> float:
     """How far a foot is from a place (x, z, yaw): above 1 it is worth a step."""
-    apart = np.hypot(foot[_X] - place[0], foot[_Z] - place[1]) / (_CLOSED * scale)
-    return float(max(apart, abs(foot[_YAW] - place[2]) / _TURNED))
+    apart = np.hypot(foot[X] - place[0], foot[Z] - place[1]) / (_CLOSED * scale)
+    return float(max(apart, abs(foot[YAW] - place[2]) / _TURNED))
 
 
 @exact_kernel
 def _overtaken(legs: Floats, side: int, foot: Floats) -> bool:
     """Whether a foot is so far from its hip, or so twisted, that it has to follow."""
-    far = np.hypot(foot[_X] - legs[side, _HIP], foot[_Z] - legs[side, _HIP + 2])
-    return bool(far > _FAR * (legs[side, _THIGH] + legs[side, _SHIN]) or abs(foot[_YAW]) > _TWISTED)
+    far = np.hypot(foot[X] - legs[side, _HIP], foot[Z] - legs[side, _HIP + 2])
+    return bool(far > _FAR * (legs[side, _THIGH] + legs[side, _SHIN]) or abs(foot[YAW]) > _TWISTED)
 
 
 @exact_kernel
@@ -115,7 +85,7 @@ def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats
     """How long ago the root passed by a standing foot, seconds: half its stance later the cycle lifts it."""
     x, z, _ = own_home(own, legs, stride, side)
     wide = (_TURNING * stride.scale) ** 2
-    way = (x - foot[_X]) * stride.lateral + (z - foot[_Z]) * stride.forward - wide * foot[_YAW] * stride.turn
+    way = (x - foot[X]) * stride.lateral + (z - foot[Z]) * stride.forward - wide * foot[YAW] * stride.turn
     return float(way / max(stride.speed * stride.speed + wide * stride.turn * stride.turn, 1e-12))
 
 
@@ -131,12 +101,12 @@ def _urge(
 ) -> float:
     """How much a standing foot is due to be lifted; 0: it is not. The cycle would have it come down at a `goal` now."""
     if _overtaken(legs, side, foot):
-        return 1e3 + float(np.hypot(foot[_X] - legs[side, _HIP], foot[_Z] - legs[side, _HIP + 2]))
-    if _rests(root):
+        return 1e3 + float(np.hypot(foot[X] - legs[side, _HIP], foot[Z] - legs[side, _HIP + 2]))
+    if rests(root):
         x, z = home_of(legs, stride, side)
         away = _away(foot, (x, z, 0.0), stride.scale)
         return away if away > 1.0 else 0.0
-    u, late = _position(root[6], side), _LATE * (1.0 - stride.duty)
+    u, late = position(root[6], side), _LATE * (1.0 - stride.duty)
     due = stride.duty <= u <= stride.duty + late
     over = _passed(own, legs, stride, side, foot) / stride.period - (0.5 * stride.duty + _OVER)
     if not due and over <= 0.0:
@@ -145,18 +115,18 @@ def _urge(
     return away if away > 2.0 else 0.0
 
 
-@exact_kernel
+@helper
 def _time_left(
     own: OwnSteps, legs: Floats, stride: Stride, side: int, root: Floats, foot: Floats, twin: Floats, dt: float
 ) -> float:
     """Seconds until a swinging foot lands, `dt` seconds after it was as it is told; its twin stands or swings."""
-    size, rest = np.sqrt(stride.scale), 1.0 - foot[_SWING]
+    size, rest = np.sqrt(stride.scale), 1.0 - foot[SWING]
     least, most = rest * _SWINGS[0] * size, rest * _SWINGS[2] * size
-    u = _position(root[6], side)
-    if _rests(root):
+    u = position(root[6], side)
+    if rests(root):
         return float(rest * _SWINGS[1] * size - dt)
     left = (1.0 - u) * stride.period if u >= 0.5 * stride.duty else rest * _SWINGS[1] * size - dt
-    if twin[_SWING] <= 0.0:
+    if twin[SWING] <= 0.0:
         left = min(left, 0.5 * stride.duty * stride.period - _passed(own, legs, stride, 1 - side, twin))
         if _overtaken(legs, 1 - side, twin):
             left = 0.0
@@ -198,7 +168,7 @@ def _goal(
     """
     _root_later(root, coming, left, later)
     stride = own_stride_of(own, scale, later[3], later[4], later[5])
-    half = 0.0 if _rests(later) else 0.5 * stride.duty * stride.period
+    half = 0.0 if rests(later) else 0.5 * stride.duty * stride.period
     x, z, heading, most = later[0], later[1], later[2], half * (stride.speed + _MORE * scale)
     _root_later(root, coming, left + half, later)
     far = np.hypot(later[0] - x, later[1] - z)
@@ -210,12 +180,6 @@ def _goal(
     x, z, yaw = own_home(own, legs, stride, side)
     c, s = np.cos(turned), np.sin(turned)
     return left + x * c + z * s, ahead - x * s + z * c, turned + yaw
-
-
-@exact_kernel
-def _is_flat(foot: Floats) -> bool:
-    """Whether a foot lies flat on the ground."""
-    return bool(abs(foot[_PITCH]) < _FLAT and foot[_LIFT] < _FLAT)
 
 
 @exact_kernel
@@ -232,30 +196,30 @@ def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> 
 def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale: float) -> tuple[float, float, float]:
     """A place (x, z, yaw) moved to the own side of the standing twin, and turned away from it, if need be."""
     outward = 1.0 if side == 0 else -1.0
-    x, z = _beside_twin(side, goal[0] - twin[_X], goal[1] - twin[_Z], goal[2], scale)
-    yaw = twin[_YAW] + outward * max(outward * (goal[2] - twin[_YAW]), -_TOES_IN)
-    return x + twin[_X], z + twin[_Z], yaw
+    x, z = _beside_twin(side, goal[0] - twin[X], goal[1] - twin[Z], goal[2], scale)
+    yaw = twin[YAW] + outward * max(outward * (goal[2] - twin[YAW]), -_TOES_IN)
+    return x + twin[X], z + twin[Z], yaw
 
 
-@exact_kernel
+@helper
 def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
     """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
-    rest, start, slope = 1.0 - part, foot[i], foot[_VELOCITY + i] * time
+    rest, start, slope = 1.0 - part, foot[i], foot[VELOCITY + i] * time
     foot[i] = rest * rest * ((1.0 + 2.0 * part) * start + part * slope) + part * part * (3.0 - 2.0 * part) * goal
     change = 6.0 * part * rest * (goal - start) + rest * (rest - 2.0 * part) * slope
-    foot[_VELOCITY + i] = change / time
+    foot[VELOCITY + i] = change / time
 
 
-@exact_kernel
+@helper
 def _time_needed(stride: Stride, foot: Floats, goal: tuple[float, float, float]) -> float:
     """Seconds that a swinging foot takes at least to where it lands; none where it is nearly there."""
-    way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z])
+    way = np.hypot(goal[0] - foot[X], goal[1] - foot[Z])
     if way < _NEARLY * stride.scale:
         return 0.0
     return float(1.5 * way / (_FASTEST * np.sqrt(stride.scale) + 2.2 * stride.speed))
 
 
-@exact_kernel
+@helper
 def _time_over_ground(
     stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], foot: Floats
 ) -> float:
@@ -265,20 +229,13 @@ def _time_over_ground(
     changed since.
     """
     (lands, over), wide = times, _TURNING * stride.scale
-    way = np.hypot(goal[0] - foot[_X], goal[1] - foot[_Z]) + wide * abs(goal[2] - foot[_YAW])
+    way = np.hypot(goal[0] - foot[X], goal[1] - foot[Z]) + wide * abs(goal[2] - foot[YAW])
     if over <= 0.0 and way < _THERE * stride.scale:
         return 0.0
     return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale))), lands))
 
 
-@exact_kernel
-def _land(foot: Floats) -> None:
-    foot[_SWING] = foot[_LIFT] = 0.0
-    for i in range(3):
-        foot[_VELOCITY + i] = 0.0
-
-
-@exact_kernel
+@helper
 def _swing(
     own: OwnSteps,
     stride: Stride,
@@ -292,7 +249,7 @@ def _swing(
 
     In steps aside and round it is over its place before it comes down: it would rub over the ground.
     """
-    (dt, left), done = times, foot[_SWING]
+    (dt, left), done = times, foot[SWING]
     after = done + (1.0 - done) * dt / (left + dt)
     way = 1.0 - _DOWN * (1.0 - straight_part(stride))  # of the swing, in which it goes over the ground
     over, there = min(done / way, 1.0), min(after / way, 1.0)
@@ -304,48 +261,42 @@ def _swing(
         if time > 0.0:
             _towards(foot, i, goal[i], min(dt / time, 1.0), time)
         else:
-            foot[_VELOCITY + i] = 0.0
+            foot[VELOCITY + i] = 0.0
         foot[i] += then[i]
     half = 0.5 * stride.duty * stride.period
     sag = min(max(0.5 * stride.forward * stride.turn * half * half, -0.1 * stride.scale), 0.1 * stride.scale)
-    foot[_X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
-    x, z = _beside_twin(side, foot[_X] - twin[_X], foot[_Z] - twin[_Z], 0.0, stride.scale)
-    foot[_X], foot[_Z], foot[_SWING] = twin[_X] + x, twin[_Z] + z, after
+    foot[X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
+    x, z = _beside_twin(side, foot[X] - twin[X], foot[Z] - twin[Z], 0.0, stride.scale)
+    foot[X], foot[Z], foot[SWING] = twin[X] + x, twin[Z] + z, after
     pitch, lift = own_roll(own, stride, side, stride.duty + (1.0 - stride.duty) * after)
     low = least_lift(stride, after)
-    most = _LIFT_RATE * dt if own.speed <= 0.0 else _HASTE * _LIFT_RATE * dt
-    foot[_LIFT] += min(max(max(lift, low) - foot[_LIFT], -most), most)
+    most = LIFT_RATE * dt if own.speed <= 0.0 else _HASTE * LIFT_RATE * dt
+    foot[LIFT] += min(max(max(lift, low) - foot[LIFT], -most), most)
     if left <= 0.0:
-        _land(foot)
+        land(foot)
     return pitch
 
 
-@exact_kernel
+@helper
 def _lifted_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
     """Seconds, up to `dt`, since a foot was lifted that stood a frame ago."""
-    since = (_position(root[6], side) - stride.duty) * stride.period
-    return float(since if 0.0 < since < dt and not _rests(root) else dt)
+    since = (position(root[6], side) - stride.duty) * stride.period
+    return float(since if 0.0 < since < dt and not rests(root) else dt)
 
 
-@exact_kernel
+@helper
 def _landed_since(stride: Stride, side: int, root: Floats, dt: float) -> float:
     """Seconds, up to `dt`, since the cycle has landed a foot that swung a frame ago."""
-    u = _position(root[6], side)
-    return float(min(u * stride.period, dt) if u < 0.5 * stride.duty and not _rests(root) else 0.0)
+    u = position(root[6], side)
+    return float(min(u * stride.period, dt) if u < 0.5 * stride.duty and not rests(root) else 0.0)
 
 
-@exact_kernel
+@helper
 def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How a standing foot wants to be pitched: by how far the root has passed it."""
     u = 0.5 * stride.duty + _passed(own, legs, stride, side, foot) / stride.period
     pitch, _ = own_roll(own, stride, side, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
     return pitch
-
-
-@exact_kernel
-def _tilt(foot: Floats, pitch: float, dt: float) -> None:
-    most = _ROLL_RATE * dt
-    foot[_PITCH] += min(max(pitch - foot[_PITCH], -most), most)
 
 
 @exact_kernel
@@ -364,12 +315,12 @@ def step_feet(
     They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
     known of that it keeps its velocities. With `dt` 0 nothing moves over the ground, a swinging foot neither.
     """
-    _carry(before, root, out)
+    carry(before, root, out)
     if dt <= 0.0:
         return
     stride = own_stride_of(own, scale, root[3], root[4], root[5])
     one, other = out[ROOT_STATE : ROOT_STATE + FOOT], out[ROOT_STATE + FOOT :]
-    standing = one[_SWING] <= 0.0 and other[_SWING] <= 0.0
+    standing = one[SWING] <= 0.0 and other[SWING] <= 0.0
     lifted, later = -1, np.empty(ROOT_STATE)
     if standing:
         left = _urge(own, legs, stride, _LEFT, root, one, _goal(own, legs, scale, _LEFT, root, coming, 0.0, later))
@@ -378,7 +329,7 @@ def step_feet(
             lifted = 0 if left >= right else 1
     for side in range(2):
         foot, twin = (one, other) if side == 0 else (other, one)
-        if foot[_SWING] > 0.0 or lifted == side:
+        if foot[SWING] > 0.0 or lifted == side:
             since = _lifted_since(stride, side, root, dt) if lifted == side else dt
             left = max(_time_left(own, legs, stride, side, root, foot, twin, since), 0.0)
             lands = left if left > 0.0 else -_landed_since(stride, side, root, dt)
@@ -387,47 +338,11 @@ def step_feet(
             if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
                 goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, left, later), twin, scale)
-                foot[_SWING] = min(foot[_SWING], max(1.0 - rest, 0.2))
+                foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
             pitch = _swing(own, stride, side, goal, (since, left), foot, twin)
         else:
             pitch = _pitch_in_stance(own, legs, stride, side, foot)
-        _tilt(foot, pitch, dt)
-
-
-@exact_kernel
-def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, holds: bool, out: Floats) -> None:
-    """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
-
-    They go as the walking cycle has them, and what they are beside it becomes less; if it `holds`, while they swing,
-    and one that stands stays until the cycle lifts it. Under a root that rests they end up flat on the ground and
-    stand, wherever in the cycle that is.
-    """
-    _carry(before, root, out)
-    holds = holds and not _rests(root)
-    first, stride = stride_of(scale, before[3], before[4], before[5]), stride_of(scale, root[3], root[4], root[5])
-    for side in range(2):
-        foot, was = out[ROOT_STATE + FOOT * side :], before[ROOT_STATE + FOOT * side :]
-        x0, z0, yaw0, _ = flat_place(legs, first, side, _position(before[6], side))
-        u = _position(root[6], side)
-        x, z, yaw, swung = flat_place(legs, stride, side, u)
-        pitch, lift = roll_of(stride, u)
-        if holds and swung <= 0.0 and (was[_SWING] <= 0.0 or was[_LIFT] < _FLAT):
-            _land(foot)
-            _tilt(foot, pitch, dt)
-            continue
-        dx, dz, turned = was[_X] - x0, was[_Z] - z0, was[_YAW] - yaw0
-        left = max(1.0 - dt * _GLIDE * np.sqrt(scale) / max(np.hypot(dx, dz), 1e-9), 0.0)
-        twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
-        foot[_X], foot[_Z], foot[_YAW] = x + left * dx, z + left * dz, yaw + twisted * turned
-        foot[_LIFT] = was[_LIFT] + min(max(lift - was[_LIFT], -_LIFT_RATE * dt), _LIFT_RATE * dt)
-        foot[_PITCH] = was[_PITCH]
-        _tilt(foot, pitch, dt)
-        if max(left, twisted) > 0.0:
-            foot[_SWING] = max(swung, _AT_LEAST)
-        else:
-            foot[_SWING] = 0.0 if _rests(root) and _is_flat(foot) else swung
-        for i in range(3):
-            foot[_VELOCITY + i] = 0.0
+        tilt(foot, pitch, dt)
 
 
 @kernel
@@ -436,7 +351,7 @@ def _settled(legs: Floats, scale: float, row: Floats) -> bool:
     for side in range(2):
         foot = row[ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
         x, z = home_of(legs, stride, side)
-        still = foot[_SWING] <= 0.0 and _is_flat(foot)
+        still = foot[SWING] <= 0.0 and is_flat(foot)
         near = near and still and _away(foot, (x, z, 0.0), scale) <= 1.0
     return near
 
@@ -461,23 +376,6 @@ def onward(
     return out
 
 
-def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float, *, holds: bool = False) -> Floats:
-    """`root` (7 or more,) with feet (WITH_FEET,) that go from those of `before` to those of the walking cycle.
-
-    If it `holds`, only while they swing.
-    """
-    out = np.empty(WITH_FEET)
-    glide_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, holds, out)
-    return out
-
-
 def settled(gait: GaitShape, row: Floats) -> bool:
     """Whether the feet of a row (WITH_FEET,) stand beside each other, so that who rests makes no step."""
     return bool(_settled(gait.legs, gait.scale, row))
-
-
-def standing(rows: ArrayLike) -> Bools:
-    """Which feet, left and right, stand in rows (..., WITH_FEET or more): (..., 2)."""
-    feet = np.asarray(rows, np.float64)[..., ROOT_STATE:WITH_FEET]
-    stands: Bools = feet[..., _SWING::FOOT] <= 0.0
-    return stands

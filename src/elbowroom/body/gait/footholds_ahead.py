@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
-from elbowroom.body.gait.footholds import glide_feet, step_feet
+from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel, plain

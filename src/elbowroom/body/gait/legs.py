@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_hip, hips_turn
 from elbowroom.body.root import WITH_FEET
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import kernel
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def leg_rest(skeleton: Skeleton) -> Floats:
     return np.array(rows)
 
 
-@kernel
+@helper
 def _soft_reach(distance: float, length: float) -> float:
     """`distance`, approaching `length` exponentially: the knee does not snap when the leg straightens."""
     soft = _SOFT * length

@@ -29,7 +29,7 @@ from elbowroom.body.gait.cycle import GaitShape, Stride, stride_of
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def _radians(line: Floats, speed: float) -> float:
     return math.radians(0.5 * (line[0] + line[1] * min(speed, _FASTEST)))
 
 
-@exact_kernel
+@helper
 def _walk(stride: Stride, phase: float, out: Floats) -> float:
     """Write how a walking body is carried; returns the part of its steps that leads ahead or back."""
     scale, forward = stride.scale, stride.forward
@@ -101,7 +101,7 @@ def _walk(stride: Stride, phase: float, out: Floats) -> float:
     return part
 
 
-@exact_kernel
+@helper
 def _on_leg(time: float) -> float:
     """Which leg carries who rests: 1 the left one, -1 the right one; it changes by minimum jerk."""
     number = math.floor(time / _STATION)
@@ -110,7 +110,7 @@ def _on_leg(time: float) -> float:
     return before + (after - before) * t * t * t * (10.0 + t * (6.0 * t - 15.0))
 
 
-@exact_kernel
+@helper
 def _idle(scale: float, much: float, time: float, out: Floats) -> None:
     """Add how a body is carried that rests."""
     leg = much * _on_leg(time)
@@ -123,7 +123,7 @@ def _idle(scale: float, much: float, time: float, out: Floats) -> None:
     out[CHEST_BEND] -= much * _BREATH * math.sin(2.0 * math.pi * _BREATHS * time)
 
 
-@exact_kernel
+@helper
 def _looks_to(root: Floats, coming: Floats) -> float:
     """How far to the left of the heading the root will face soon: as planned, then on with its turning rate."""
     heading, since = root[2], 0.0
@@ -138,7 +138,7 @@ def _looks_to(root: Floats, coming: Floats) -> float:
     return float(min(max(heading - root[2], -_MOST), _MOST))
 
 
-@exact_kernel
+@helper
 def _eased(turned: float, goal: float, dt: float) -> float:
     """How far the head is turned `dt` seconds later."""
     turn = (goal - turned) * (1.0 - math.exp(-dt / _EASE))

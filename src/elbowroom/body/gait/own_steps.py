@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import Stride, home_of, stride_of
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
 from elbowroom.body.gait.roll import ahead_part, stepping_roll
-from elbowroom.jit import kernel, plain
+from elbowroom.jit import helper, kernel, plain
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def _gain(own: OwnSteps, stride: Stride) -> float:
     return float(min(gain, WIDEST))
 
 
-@kernel
+@helper
 def _place(stride: Stride, u: float) -> float:
     """Where in the table of a cycle a foot is at cycle position `u` in [0, 1]."""
     if u < stride.duty:

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import carried_hip
 from elbowroom.body.gait.cycle import ease_of, hips_sink, tilt_foot, walk_into
+from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
 from elbowroom.body.root import FOOT, ROOT_STATE
 from elbowroom.jit import kernel
 
 Floats = NDArray[np.float64]
 
-_X, _Z, _YAW, _PITCH, _LIFT, _SWING = range(6)  # the first numbers of a foot, see `footholds`
 _THIGH, _SHIN = 8, 9  # columns of `GaitShape.legs`
 _STRETCH = 0.9985  # of a leg: no foot is farther from its hip
 
@@ -30,8 +30,8 @@ def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, loweri
         down, back, lean = hips_sink(half_leg, drops[n], lowerings[n])
         for side in range(2):
             foot = rows[n, ROOT_STATE + FOOT * side : ROOT_STATE + FOOT * (side + 1)]
-            place, roll = (foot[_X], foot[_Z], foot[_YAW]), (foot[_PITCH], foot[_LIFT])
-            tilt_foot(legs, side, place, roll, ease_of(1.0, foot[_SWING]), feet[n, side])
+            place, roll = (foot[X], foot[Z], foot[YAW]), (foot[PITCH], foot[LIFT])
+            tilt_foot(legs, side, place, roll, ease_of(1.0, foot[SWING]), feet[n, side])
             length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
             x, y, z = carried_hip(legs, rows[n], lean, side)
             dx, dz = feet[n, side, 0] - x, feet[n, side, 2] - z + back

@@ -8,7 +8,7 @@ where `living` carries them. Aside, backward and in turns on the spot feet roll 
 """
 
 from elbowroom.body.gait.cycle import Stride, roll_of
-from elbowroom.jit import kernel
+from elbowroom.jit import helper, kernel
 
 _STRIKE, _FLAT = 0.261, 0.095  # radians, toes up, at heel strike; part of the stance at which the foot is flat
 _RISE, _ROLL = 0.692, 3.34  # part of the stance from which the heel rises; how late it does so
@@ -31,7 +31,7 @@ def ahead_part(stride: Stride) -> float:
     return straight_part(stride) if stride.forward > 0.0 else 0.0
 
 
-@kernel
+@helper
 def _pitch(u: float, duty: float) -> float:
     """Pitch of the foot in a long stride at cycle position `u`, radians, positive toes down."""
     if u < duty:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
-from elbowroom.jit import kernel, plain
+from elbowroom.jit import helper, kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -360,7 +360,7 @@ def pose_scratch(chain: Chain) -> PoseScratch:
     )
 
 
-@kernel
+@helper
 def _sink(chain: Chain, lowering: float, rotations: Floats, places: Floats) -> None:
     """Put the hips, at which a chain begins, where a lowering has them in the pelvis frame."""
     below, behind, lean = hips_sink(chain.half_leg, 0.0, lowering)

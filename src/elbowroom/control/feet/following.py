@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
-from elbowroom.body.gait.footholds import glide_feet, step_feet
+from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.living import Body, live
 from elbowroom.body.gait.own_steps import OwnSteps
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules

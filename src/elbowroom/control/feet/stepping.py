@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
-from elbowroom.body.gait.footholds import UNKNOWN, beside, gliding, onward, settled, standing
+from elbowroom.body.gait.foot_state import standing
+from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
+from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body

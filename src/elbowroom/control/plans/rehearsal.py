@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, columns_of, followers_of
-from elbowroom.body.gait.footholds import gliding
+from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.control.shown.body_check import BodyCheck

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ def _slope(p: Floats, d: Floats, half: Floats, t: float) -> float:
     return total
 
 
-@exact_kernel
+@helper
 def _axis_to_box(p: Floats, d: Floats, half: Floats) -> float:
     """Distance of the axis p + t d, t in [0, 1], from the box |x| <= half.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.footholds import standing
+from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.controller import Controller

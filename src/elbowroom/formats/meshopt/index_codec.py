@@ -7,7 +7,7 @@ last 16 edges and vertices; what is new is counted on or stored as a delta.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, plain
 
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.uint32]
@@ -63,7 +63,7 @@ def _fresh(state: NDArray[np.int64]) -> int:
     return int(state[4] - 1)
 
 
-@exact_kernel
+@helper
 def _on_edge(
     data: Bytes, end: int, code: int, recent: int, edges: Queue, vertices: Queue, state: Queue, out: Indices
 ) -> None:
@@ -95,7 +95,7 @@ def _corner(data: Bytes, end: int, code: int, kept: int, may_be_free: bool, stat
     return kept
 
 
-@exact_kernel
+@helper
 def _apart(data: Bytes, end: int, code: int, edges: Queue, vertices: Queue, state: Queue, out: Indices) -> None:
     """A triangle without a known edge; the codes of its corners are in a table or in the data."""
     in_table = code < 0xFE

@@ -8,7 +8,7 @@ to the element before, in groups of 16 that take 0, 1, 2, 4 or 8 bits a value.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Bytes = NDArray[np.uint8]
 
@@ -19,7 +19,7 @@ _TAIL_0, _TAIL_1 = 32, 24
 _BAD = -1
 
 
-@exact_kernel
+@helper
 def _group(data: Bytes, at: int, end: int, bits: int, out: Bytes, start: int) -> int:
     """16 values of `bits` bits each into out[start:]; the position behind them, or -1 at the end of the data."""
     if bits == 0:
@@ -49,7 +49,7 @@ def _group(data: Bytes, at: int, end: int, bits: int, out: Bytes, start: int) ->
     return spare
 
 
-@exact_kernel
+@helper
 def _plane(data: Bytes, at: int, end: int, first_bits: int, version: int, count: int, out: Bytes, start: int) -> int:
     """A plane of `count` values (a multiple of 16), each group with its own width out of four."""
     groups = count // _GROUP
@@ -69,7 +69,7 @@ def _plane(data: Bytes, at: int, end: int, first_bits: int, version: int, count:
     return at
 
 
-@exact_kernel
+@helper
 def _undo_deltas(planes: Bytes, stride: int, channel: int, last: Bytes, out: Bytes, first: int, k: int, n: int) -> None:
     """Four planes (of `stride` bytes each) of deltas into bytes k to k+3 of the elements first to first+n-1."""
     kind = channel & 3

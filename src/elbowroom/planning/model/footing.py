@@ -198,7 +198,7 @@ def _stand(ground: Ground, sole: Sole, root: Floats, x: float, z: float, yaw: fl
     return sole_on(ground, sole, (wx, near, wz), root[2] + yaw)
 
 
-@exact_kernel
+@helper
 def _level_under(ground: Ground, sole: Sole, root: Floats, places: Floats) -> float:
     """The height of the ground where it is one level under a root and a foot at `places` (3,) or (6,), and in between.
 
@@ -215,7 +215,7 @@ def _level_under(ground: Ground, sole: Sole, root: Floats, places: Floats) -> fl
     return level_about(ground, middle_x, middle_z, reach, root[HEIGHT])
 
 
-@exact_kernel
+@helper
 def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -> tuple[float, float]:
     """Height and slope of a swinging foot between the `places` (6,) where it stood and will, the part `w` of it over.
 

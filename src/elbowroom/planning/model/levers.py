@@ -18,7 +18,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.pose.posing import Column
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
 from elbowroom.planning.shared import Shared
@@ -167,7 +167,7 @@ def travel(levers: Levers, roots: tuple[Floats, Floats], uppers: tuple[Floats, F
     return ways
 
 
-@exact_kernel
+@helper
 def _set_moves_of_groups(upper: Floats, moves: Floats) -> None:
     """The moves of all local groups, for a change of an upper body (LOCAL,)."""
     for k in range(_COMPONENTS.shape[0]):
@@ -177,7 +177,7 @@ def _set_moves_of_groups(upper: Floats, moves: Floats) -> None:
             moves[at + i - 1] = abs(upper[begin + i])
 
 
-@exact_kernel
+@helper
 def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
     """What feet do, and what of the root lowers the hips, (K,), for a change of a root state with feet.
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DofGroup, columns_of
 from elbowroom.body.root import HEIGHT
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.gaze import keeping_gaze
 from elbowroom.planning.narrow.figure import TWIST, Figure
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces
@@ -77,7 +77,7 @@ def _ways_of(states: Floats, interval: float) -> Floats:
     return out[:used].copy()
 
 
-@exact_kernel
+@helper
 def _asked(places: Floats, figure: Figure, state: Floats) -> tuple[float, float]:
     """How far shoulders are turned, of `TWIST`, and how far arms are drawn in, both 0 to 1, at a root state (7,)."""
     turned, drawn, (x, z) = 0.0, 0.0, _direction(state)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
 
@@ -102,7 +102,7 @@ def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
     return Field(cost, onward)
 
 
-@exact_kernel
+@helper
 def _between(costly: Costly, node: int, m: int) -> float:
     """The dearer of the two places that a move passes between."""
     a, b = _MOVES[m, 0], _MOVES[m, 1]

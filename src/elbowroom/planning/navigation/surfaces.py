@@ -69,7 +69,7 @@ def _fill(
             starts[point + 1] = count
 
 
-@exact_kernel
+@helper
 def _bridged(ground: Ground, x: float, z: float, cell: float, own: Floats, other: Floats) -> int:
     """The heights of ground on both sides of a narrow gap, along x or z, the higher of both sides."""
     for side in range(2):

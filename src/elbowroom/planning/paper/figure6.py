@@ -61,7 +61,7 @@ def search(
     return SearchResult(_STATUS[status], configurations, vertices, checks, nodes, enhanced, spent)
 
 
-@exact_kernel
+@helper
 def _uniform(state: NDArray[np.uint64]) -> float:
     """The next number of [-1, 1): xorshift64 (G. Marsaglia, J. Statistical Software 8, 2003), the upper 53 bits."""
     x = state[0]
@@ -72,7 +72,7 @@ def _uniform(state: NDArray[np.uint64]) -> float:
     return float(x >> np.uint64(11)) * 2.0**-52 - 1.0
 
 
-@exact_kernel
+@helper
 def _sample_neighbor(graph: GraphArrays, target: int, state: NDArray[np.uint64]) -> Floats:
     """A random configuration within r of `target` and within the limits; Search_New_Neighbor in the figure."""
     size = graph.vertices.shape[1]
@@ -93,7 +93,7 @@ def _sample_neighbor(graph: GraphArrays, target: int, state: NDArray[np.uint64])
     return step
 
 
-@exact_kernel
+@helper
 def _push_free(
     graph: GraphArrays, roadmap: RoadmapArrays, goal: Floats, target: int, depth: int, margin: float, stack: Ints
 ) -> int:

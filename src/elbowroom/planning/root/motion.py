@@ -118,7 +118,7 @@ def limited_step(
     _finish_step(states, k, ux + part * dx, uz + part * dz, rate, interval, bounds)
 
 
-@exact_kernel
+@helper
 def turn_towards(state: Floats, heading: float, interval: float, bounds: MotionBounds) -> float:
     """Heading rate at the end of the next step that brings the body round to `heading` without overshoot."""
     error = wrapped(heading - state[2])
@@ -173,7 +173,7 @@ def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, f
     return aim_x, aim_z, left
 
 
-@exact_kernel
+@helper
 def _share_at(slow: Floats, state: Floats, interval: float) -> float:
     """The share of the wanted speed that slow places (K, 3) leave where a root state (7,) will be in a key interval."""
     sine, cosine, share = np.sin(state[2]), np.cos(state[2]), 1.0

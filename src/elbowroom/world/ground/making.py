@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.ground import PLAIN, RELIEF, STEEPEST, STEP, Ground
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -178,7 +178,7 @@ def _even(
             counts[cell + 1] = found
 
 
-@exact_kernel
+@helper
 def _is_even(parts: Floats, k: int, side: float) -> bool:
     """Whether parts of surfaces (n, 3), area, lowest and highest point, fill a square just below the top of part `k`.
 
@@ -194,7 +194,7 @@ def _is_even(parts: Floats, k: int, side: float) -> bool:
     return bool(covered >= _WHOLE * side * side)
 
 
-@exact_kernel
+@helper
 def _part_in(triangle: Floats, corner: tuple[float, float], side: float) -> tuple[float, float, float]:
     """The area of a triangle within a square, seen from above, and the lowest and the highest point of that part."""
     piece, other = np.zeros((8, 3)), np.zeros((8, 3))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel
+from elbowroom.jit import helper, kernel
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 from elbowroom.world.obstacles.clearance import lower_each
 from elbowroom.world.obstacles.layout import ROW, Nearby
@@ -30,7 +30,7 @@ class Standing(NamedTuple):
     heights: Floats  # (B, 2) the lowest and the highest point of each
 
 
-@kernel
+@helper
 def _within(
     standing: Standing, low: Floats, high: Floats, x: float, z: float, floor: float
 ) -> tuple[Nearby, Floats, bool]:
@@ -50,7 +50,7 @@ def _within(
     return Nearby(near.rows[:taken], near.packed), tops[:taken], everything
 
 
-@kernel
+@helper
 def _lower_above(axes: Floats32, radii: Floats32, near: Nearby, tops: Floats, floors: Floats, out: Floats32) -> None:
     """Lower `out` (C,) to the clearances of `axes` (6, C) from what rises above the floor of each (C,)."""
     highest, shared, found = floors.max(), 0, np.empty(len(out), np.float32)

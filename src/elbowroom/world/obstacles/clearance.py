@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import kernel, plain
+from elbowroom.jit import helper, kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
@@ -148,7 +148,7 @@ def lower_clearance(segments: Floats32, radii: Floats32, near: Nearby, out: Floa
             out[start + i] = least[i]
 
 
-@kernel
+@helper
 def _as_squares(least: Floats32, radius: float, squares: Floats32) -> None:
     """The squared distances of axes beyond which nothing lowers clearances (N,), or a little more than these."""
     for i in range(np.uint64(squares.shape[0])):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.places.enclosed import enclosed, solid_triangles
 from elbowroom.world.places.place import Place
@@ -146,7 +146,7 @@ def _range_of(points: Floats, count: int, axis: int, cells: int) -> tuple[int, i
     return max(0, min(cells - 1, int(least))), max(0, min(cells - 1, int(most)))
 
 
-@exact_kernel
+@helper
 def _number(heights: Floats, cell: int, level: bool) -> int:
     """A cell, and the heights over it, as one number."""
     least, most = heights[0], heights[0]

@@ -148,7 +148,7 @@ def _rule_out_through_trunk(scratch: Scratch, limb: Limb, extras: ExtraNodes, co
                 cost[t, width + BACK] = _INFINITE
 
 
-@exact_kernel
+@helper
 def _rule_out_unneeded(cost: Floats32, size: int, extras: ExtraNodes) -> None:
     """Lanes that only fill up the last block, and extra nodes that are not needed, are no nodes."""
     width = cost.shape[1] - EXTRA

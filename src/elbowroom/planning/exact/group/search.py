@@ -93,7 +93,7 @@ def _proven(
     return checks, harsh
 
 
-@exact_kernel
+@helper
 def _stiffened(stiff: Bools, touches: Bools) -> bool:
     """Make the key times (n+1,) stiff at both ends of the intervals (n,) that touch; whether any does."""
     found = False
@@ -103,7 +103,7 @@ def _stiffened(stiff: Bools, touches: Bools) -> bool:
     return found
 
 
-@exact_kernel
+@helper
 def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
     """The same lattice with other tables of closed edges."""
     return Lattice(
@@ -122,7 +122,7 @@ def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
     )
 
 
-@exact_kernel
+@helper
 def _beside(touches: Bools) -> Bools:
     """The intervals (n,) that touch, and those before and after them: what is passed in one can be passed in these."""
     beside = touches.copy()

@@ -7,7 +7,7 @@ the right arm's, or the postures of both arms.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel, plain
+from elbowroom.jit import helper, kernel, plain
 from elbowroom.planning.exact.joint.bounds import Problem
 
 Floats32 = NDArray[np.float32]
@@ -35,7 +35,7 @@ def _lower(out: Floats32, values: Floats32, cost: float) -> None:
         out[i] = min(out[i], values[i] + cost)
 
 
-@kernel
+@helper
 def _over_right(known: Floats32, edges: Floats32) -> Floats32:
     """The least over the right arm: (W, L, R) to (W, L, R')."""
     out = np.empty((known.shape[0], known.shape[1], edges.shape[1]), np.float32)
@@ -49,7 +49,7 @@ def _over_right(known: Floats32, edges: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@helper
 def _over_left(known: Floats32, edges: Floats32) -> Floats32:
     """The least over the left arm: (W, L, R) to (W, L', R)."""
     out = np.empty((known.shape[0], edges.shape[1], known.shape[2]), np.float32)
@@ -62,7 +62,7 @@ def _over_left(known: Floats32, edges: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@helper
 def _over_waist(known: Floats32, edges: Floats32) -> Floats32:
     """The least over the waist: (W, LR) to (W', LR)."""
     out = np.empty((edges.shape[1], known.shape[1]), np.float32)
@@ -91,7 +91,7 @@ def _add_costs(problem: Problem, depth: int, waist: Indices, left: Indices, righ
     return found
 
 
-@kernel
+@helper
 def _before(
     known: Floats32, waist_edges: Floats32, left_edges: Floats32, right_edges: Floats32, target: Indices
 ) -> Indices:
@@ -114,7 +114,7 @@ def _before(
     return out
 
 
-@kernel
+@helper
 def _least(costs: Floats32) -> Indices:
     """The cheapest triple (3,)."""
     best, out = np.float32(np.inf), np.empty(3, np.int64)

@@ -79,7 +79,7 @@ def _intersect(known: Bits, free: Bits) -> bool:
     return bool(any_left != 0)
 
 
-@exact_kernel
+@helper
 def _same(first: Bits, second: Bits) -> bool:
     """Whether two sets (words,) are equal."""
     differing = np.uint64(0)

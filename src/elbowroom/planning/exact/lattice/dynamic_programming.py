@@ -101,7 +101,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     return count
 
 
-@exact_kernel
+@helper
 def _settle_extra(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of reaching extra node `f` of the next depth, without its own, and the node before it."""
     width, weight = lattice.moves.shape[1], np.float32(lattice.weight)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Longs = NDArray[np.int64]
 
@@ -71,7 +71,7 @@ def _entry_of(known: RowIndex, row: Longs) -> int:
     return int(entry)
 
 
-@exact_kernel
+@helper
 def _same(one: Longs, other: Longs) -> bool:
     different = 0
     for i in range(one.shape[0]):

@@ -75,7 +75,7 @@ def touches_body(lanes: Floats32, balls: Floats, axes: Floats32, allowed: Floats
     return out
 
 
-@exact_kernel
+@helper
 def _spheres(lanes: Floats32, balls: Floats) -> Floats:
     """The balls of the axes (C, 4, B): centre and radius without the capsule's own."""
     out = np.empty((balls.shape[1], 4, balls.shape[0]))
@@ -87,7 +87,7 @@ def _spheres(lanes: Floats32, balls: Floats) -> Floats:
     return out
 
 
-@exact_kernel
+@helper
 def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> bool:
     """Whether a segment (6,) comes within `least` of any ball (4, B); which of them, into `near` (B,)."""
     ax, ay, az = float(axis[0]), float(axis[1]), float(axis[2])
@@ -142,7 +142,7 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     return costs
 
 
-@exact_kernel
+@helper
 def _rows_to_check(natural: Bools, needed: Bools, rows: Indices) -> int:
     """Write down the key times `rows` at which more is asked for than the goal in a natural walk; their number."""
     count = 0
@@ -156,7 +156,7 @@ def _rows_to_check(natural: Bools, needed: Bools, rows: Indices) -> int:
     return count
 
 
-@exact_kernel
+@helper
 def _set_places(known: RowIndex, contents: Indices, rows: Indices, places: Indices, fresh: Indices) -> int:
     """Write down the `places` (R,) of what surrounds the group at `rows` (R,), and the `fresh` ones; their number."""
     if known.taken[0] + rows.shape[0] > known.rows.shape[0]:
@@ -190,7 +190,7 @@ def _check(it: OwnBodyNodes, uppers: Floats, states: Floats, rows: Indices, plac
             it.marks[place, v] = marks[v]
 
 
-@exact_kernel
+@helper
 def _from_chest(capsules: Floats32, wanted: Indices, n: int, place: Floats, turn: Floats, out: Floats32) -> None:
     """Some capsules (P,) of posture `n` of (C, 6, N) as seen from a frame, into `out` (P, 6)."""
     x, y, z, w = -turn[0], -turn[1], -turn[2], turn[3]

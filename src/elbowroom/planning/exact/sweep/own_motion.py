@@ -135,7 +135,7 @@ def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, goa
     return gaps, groups
 
 
-@exact_kernel
+@helper
 def _names(shown: Shown, plain_ground: bool) -> Indices:
     """What the key times are known by, one after the other, ((n+1) _WIDTH,)."""
     names = np.zeros(shown.keys.shape[0] * _WIDTH, np.int64)
@@ -149,7 +149,7 @@ def _names(shown: Shown, plain_ground: bool) -> Indices:
     return names
 
 
-@exact_kernel
+@helper
 def _beside(keys: Floats, goals: Floats, states: Floats) -> Indices:
     """The intervals (K,) at whose ends the upper body (n+1, LOCAL) is not as the goals (n+1, LOCAL) have it.
 
@@ -208,7 +208,7 @@ def _set_moves(shown: Shown, k: int, out: Floats) -> None:
     out[:, _COLUMNS.shape[0] * MOVES :] = stride_moves(states[k], states[k + 1], interval, _PARTS)
 
 
-@exact_kernel
+@helper
 def _lengths(levers: Floats, moves: Floats) -> Floats:
     """How far pairs with levers (P, M) can move against each other in parts with moves (B, M): shape (B, P)."""
     out = np.zeros((moves.shape[0], levers.shape[0]))
@@ -219,7 +219,7 @@ def _lengths(levers: Floats, moves: Floats) -> Floats:
     return out
 
 
-@exact_kernel
+@helper
 def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
     """Add to `lengths` (B, P) what feet are raised and tilted by between looks at `roots`, for pairs with a leg."""
     for b in range(lengths.shape[0]):

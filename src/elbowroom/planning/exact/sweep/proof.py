@@ -158,7 +158,7 @@ def _quarters(key: Floats, size: int) -> Ends:
     return key[1 : 1 + size], key[1 + size : 1 + 2 * size], key[1 + 2 * size : 1 + 3 * size], key[1 + 3 * size :]
 
 
-@exact_kernel
+@helper
 def _set_key(number: int, ends: Ends, key: Floats) -> None:
     """Of a limb's way with the velocities and postures `ends` on the carrier's way `number`."""
     first, velocity, last, next_velocity = ends

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -86,7 +86,7 @@ def cheapest(
     return path, least
 
 
-@exact_kernel
+@helper
 def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats) -> None:
     """What it costs (turns,) to begin in another turn than `begin`, where there is room for it."""
     cost[begin] = 0.0
@@ -97,7 +97,7 @@ def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats)
             t += side
 
 
-@exact_kernel
+@helper
 def _settle(
     clear: Floats32,
     standing: Floats,
@@ -128,7 +128,7 @@ def _settle(
     return reached
 
 
-@exact_kernel
+@helper
 def _best_move(clear: Floats32, prices: Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
     """The cheapest path to a cell from the row before it, and by which of nine moves."""
     best, move = np.inf, 0

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.root.motion import MotionBounds, limited_step, wrapped
 
 Floats = NDArray[np.float64]
@@ -59,7 +59,7 @@ def _at(rows: Floats, place: float, column: int) -> float:
     return value
 
 
-@exact_kernel
+@helper
 def _allowed(rows: Floats, step: float, place: float, course: Course) -> float:
     """The speed here from which one can still slow down for every turn of the body that comes."""
     speed = np.inf
@@ -105,7 +105,7 @@ def follow_profile(
         limited_step(states, k, vx, vz, turn, interval, bounds)
 
 
-@exact_kernel
+@helper
 def _along(state: Floats, heading: float) -> tuple[float, float]:
     """The velocity of a root state (7,) along a heading and to its left."""
     angle = state[2] - heading

@@ -163,7 +163,7 @@ def _in_doubt(room: _Cells, i: int, j: int, t: int) -> bool:
     return not room.known[i, j, t] and min(room.clear[0, i, j, t], room.clear[1, i, j, t]) < _NARROW
 
 
-@exact_kernel
+@helper
 def _best_of(own: Floats32, comfort: float, fine: float) -> float:
     """At which of some places (n,), `fine` metres apart, there is most room, or between which."""
     middle = own.shape[0] // 2

@@ -162,7 +162,7 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
     return cost, parents
 
 
-@exact_kernel
+@helper
 def _trace(parents: Indices, goal: int, columns: int, search: Search) -> Floats:
     """The cells from the start to the goal; the first is the exact start."""
     count, node = 1, goal
@@ -178,7 +178,7 @@ def _trace(parents: Indices, goal: int, columns: int, search: Search) -> Floats:
     return out
 
 
-@exact_kernel
+@helper
 def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     """Only the corners that are needed: from each, the farthest cell in sight is the next."""
     here = float(interpolate_grid(grid, search.start_a, search.start_l))
@@ -195,7 +195,7 @@ def _pulled_tight(grid: Floats32, search: Search, cells: Floats) -> Floats:
     return corners[:count].copy()
 
 
-@exact_kernel
+@helper
 def _in_sight(grid: Floats32, search: Search, here: float, a: Floats, b: Floats) -> bool:
     """Whether the straight route between two points keeps the clearance."""
     steps = int(np.ceil(2.0 * max(abs(b[0] - a[0]), abs(b[1] - a[1]))))

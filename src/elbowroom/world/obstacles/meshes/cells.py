@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -40,7 +40,7 @@ def _first_cell(planes: Floats, value: float) -> int:
     return int(min(max(found, 0), planes.shape[0] - 2))
 
 
-@exact_kernel
+@helper
 def _touch(corner: Floats, x: Floats, y: Floats, z: Floats, touched: Bools) -> None:
     """Note the cells that a triangle (3, 3) may touch: by the box round it and by its plane."""
     low, high = np.empty(3), np.empty(3)
@@ -74,7 +74,7 @@ def _side(px: float, py: float, qx: float, qy: float, x: float, y: float) -> boo
     return not (px - qx) * (y - qy) - (py - qy) * (x - qx) >= 0.0
 
 
-@exact_kernel
+@helper
 def _cross(corner: Floats, x: Floats, y: Floats, z: Floats, winds: Longs) -> None:
     """Note where the lines in the columns of cells cross a triangle, and which way."""
     a, b, c = corner[0], corner[1], corner[2]

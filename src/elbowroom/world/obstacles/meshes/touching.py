@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import distance_transform_edt
 
-from elbowroom.jit import exact_kernel, kernel
+from elbowroom.jit import exact_kernel, helper, kernel
 from elbowroom.world.obstacles.meshes.mesh_tree import MeshTree, least_square, mesh_tree, within_reach
 from elbowroom.world.obstacles.shapes import Mesh
 
@@ -171,7 +171,7 @@ def _touches_a_triangle(tree: MeshTree, segments: Floats32, radii: Floats32, out
             out[c, n] = within_reach(tree, axis, radii[c], waiting, lanes)
 
 
-@kernel
+@helper
 def _stride_together(grid: _Grid, flat: Floats32, block: Floats32, cells: Ints, reach: Any) -> None:
     """How far along each of a block's axes it is proven to be out of reach, up to a few strides; beyond 1 to its end.
 
@@ -201,7 +201,7 @@ def _stride_together(grid: _Grid, flat: Floats32, block: Floats32, cells: Ints, 
             block[_AT + i] = _TWO if t >= _ONE and (room > _ZERO or t > _ONE) else min(t + step, _ONE)
 
 
-@kernel
+@helper
 def _stride(grid: _Grid, flat: Floats32, axis: Floats32, reach: Any, begin: Any) -> int:
     """-1 where an axis is proven to be out of reach of the surface, 1 where it is proven to be within, else 0.
 

@@ -1,0 +1,76 @@
+"""Feet that glide where they have no room for steps of their own: into the walking cycle, and on as it has them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.cycle import GaitShape, flat_place, roll_of, stride_of
+from elbowroom.body.gait.foot_state import (
+    FLAT,
+    LIFT,
+    LIFT_RATE,
+    PITCH,
+    SWING,
+    VELOCITY,
+    YAW,
+    X,
+    Z,
+    carry,
+    is_flat,
+    land,
+    position,
+    rests,
+    tilt,
+)
+from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
+from elbowroom.jit import exact_kernel
+
+Floats = NDArray[np.float64]
+
+_GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
+_AT_LEAST = 0.2  # of its swing is over, for a foot that does
+
+
+@exact_kernel
+def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, holds: bool, out: Floats) -> None:
+    """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
+
+    They go as the walking cycle has them, and what they are beside it becomes less; if it `holds`, while they swing,
+    and one that stands stays until the cycle lifts it. Under a root that rests they end up flat on the ground and
+    stand, wherever in the cycle that is.
+    """
+    carry(before, root, out)
+    holds = holds and not rests(root)
+    first, stride = stride_of(scale, before[3], before[4], before[5]), stride_of(scale, root[3], root[4], root[5])
+    for side in range(2):
+        foot, was = out[ROOT_STATE + FOOT * side :], before[ROOT_STATE + FOOT * side :]
+        x0, z0, yaw0, _ = flat_place(legs, first, side, position(before[6], side))
+        u = position(root[6], side)
+        x, z, yaw, swung = flat_place(legs, stride, side, u)
+        pitch, lift = roll_of(stride, u)
+        if holds and swung <= 0.0 and (was[SWING] <= 0.0 or was[LIFT] < FLAT):
+            land(foot)
+            tilt(foot, pitch, dt)
+            continue
+        dx, dz, turned = was[X] - x0, was[Z] - z0, was[YAW] - yaw0
+        left = max(1.0 - dt * _GLIDE * np.sqrt(scale) / max(np.hypot(dx, dz), 1e-9), 0.0)
+        twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
+        foot[X], foot[Z], foot[YAW] = x + left * dx, z + left * dz, yaw + twisted * turned
+        foot[LIFT] = was[LIFT] + min(max(lift - was[LIFT], -LIFT_RATE * dt), LIFT_RATE * dt)
+        foot[PITCH] = was[PITCH]
+        tilt(foot, pitch, dt)
+        if max(left, twisted) > 0.0:
+            foot[SWING] = max(swung, _AT_LEAST)
+        else:
+            foot[SWING] = 0.0 if rests(root) and is_flat(foot) else swung
+        for i in range(3):
+            foot[VELOCITY + i] = 0.0
+
+
+def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float, *, holds: bool = False) -> Floats:
+    """`root` (7 or more,) with feet (WITH_FEET,) that go from those of `before` to those of the walking cycle.
+
+    If it `holds`, only while they swing.
+    """
+    out = np.empty(WITH_FEET)
+    glide_feet(gait.legs, gait.scale, before, root[:ROOT_STATE].copy(), dt, holds, out)
+    return out
