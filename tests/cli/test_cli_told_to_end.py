@@ -71,3 +71,28 @@ main.run()
 def test_who_is_told_to_end_twice_puts_away_what_was_begun() -> None:
     ran = subprocess.run([sys.executable, "-c", TOLD_TWICE], check=False, capture_output=True, text=True)
     assert (ran.returncode, ran.stdout, ran.stderr) == (128 + signal.SIGTERM, "put away\n", "")
+
+
+BROKEN_OFF = """
+import elbowroom.cli.main as main
+
+def command(standalone_mode):
+    try:
+        raise {cause}
+    except BaseException as within:
+        raise SystemError("a compiled function returned a result with an exception set") from within
+
+main.app = command
+main.run()
+"""
+
+
+@pytest.mark.parametrize(
+    ("cause", "code", "traceback"),
+    [("SystemExit(143)", 143, False), ("KeyboardInterrupt", 130, False), ("ValueError", 1, True)],
+)
+def test_who_is_broken_off_within_a_kernel_ends_as_elsewhere(cause: str, code: int, traceback: bool) -> None:
+    call = [sys.executable, "-c", BROKEN_OFF.format(cause=cause)]
+    ran = subprocess.run(call, check=False, capture_output=True, text=True)
+    assert ran.returncode == code
+    assert ("Traceback" in ran.stderr) is traceback

@@ -95,6 +95,8 @@ def run() -> None:
         code = app(standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
+    except SystemError as error:
+        code = _broken_off(error)
     except _CallError as error:
         typer.echo(f"elbowroom: {_one_line(error)}", err=True)
         code = WRONG_CALL
@@ -113,6 +115,21 @@ def _told_to_end(sig: int, _frame: FrameType | None) -> None:
     """
     signal.signal(sig, signal.SIG_IGN)
     raise SystemExit(128 + sig)
+
+
+def _broken_off(error: SystemError) -> int | str | None:
+    """The exit code of who was told to end, or interrupted, within a compiled kernel: that arrives as another error.
+
+    One that has no such cause is raised again.
+    """
+    cause: BaseException | None = error
+    while cause is not None:
+        if isinstance(cause, SystemExit):
+            return cause.code
+        if isinstance(cause, KeyboardInterrupt):
+            return INTERRUPTED
+        cause = cause.__cause__ or cause.__context__
+    raise error
 
 
 @cache
