@@ -15,9 +15,9 @@ from elbowroom.planning.gaze import keeping_gaze
 
 Floats = NDArray[np.float64]
 
-_TURNED = 0.9  # radians that upper arms are turned ahead, as the chest sees them, for each that it leans more; and
-_BENT = 0.3  # that elbows are bent more
-_SPREAD = 0.2  # that arms are spread more
+# For each radian that the chest leans more:
+_TURNED = 0.9  # radians that upper arms are turned ahead, as the chest sees them: all of it would have them vertical
+_BENT, _SPREAD = 0.3, 0.2  # radians that elbows are bent more, and that arms are spread more
 _SAME = 1e-9  # radians
 _WAIST = columns_of(DofGroup.WAIST).start
 _LEFT, _RIGHT = (columns_of(arm).start for arm in ARMS)
@@ -27,7 +27,10 @@ _FARTHEST_BACK, _BENDABLE = float(limits(ARMS[0])[0, 0]), float(limits(ARMS[0])[
 
 @exact_kernel
 def carried(goals: Floats, waists: Floats) -> Floats:
-    """Goals (n+1, LOCAL) of an own waist each, as head and arms would like them under waists (n+1, 3)."""
+    """Goals (n+1, LOCAL), told for waists of their own, as head and arms would like them under `waists` (n+1, 3).
+
+    Radians, but for the waist's lowering. Arms stay within their limits.
+    """
     out = keeping_gaze(goals, waists)
     for t in range(out.shape[0]):
         more = _lean(waists[t]) - _lean(goals[t, _WAIST:])
