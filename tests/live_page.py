@@ -31,7 +31,7 @@ _DROP = """
   }
 }
 """
-# Without a graphics card pictures cost more than all the rest of a test: eight a second will do.
+# Without a graphics card pictures cost more than all the rest of a test: five a second will do.
 _SPARING = """
 (() => {
   const ask = window.requestAnimationFrame.bind(window), drop = window.cancelAnimationFrame.bind(window);
@@ -40,7 +40,7 @@ _SPARING = """
   window.requestAnimationFrame = (draw) => {
     const id = (count += 1);
     const turn = (time) => {
-      if (time !== last && time - last < 125) return asked.set(id, ask(turn));
+      if (time !== last && time - last < 200) return asked.set(id, ask(turn));
       last = time;
       asked.delete(id);
       draw(time);

@@ -6,8 +6,6 @@ one moves. The page is told to move nothing by itself, so the same pictures come
 """
 
 import io
-import os
-import shutil
 import socket
 import subprocess
 import sys
@@ -23,9 +21,10 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 from playwright.sync_api import TimeoutError as PageTimeoutError
 
+from elbowroom.film.page import browser_path
+
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 PATIENCE = 300_000  # milliseconds: the pictures are drawn without a graphics card
 PREFERENCES = '{"hud": false}'  # times of a page that is drawn without a graphics card would mislead
 SMALL = (160, 90)  # pixels, while the avatar walks to where the picture is taken
@@ -76,15 +75,6 @@ MOVING = (
 )
 MOVING_NAME = "walk.webp"
 MOST_BYTES = 2_000_000
-
-
-def browser_path() -> str:
-    """The Chromium to use, as the browser tests do; raises FileNotFoundError."""
-    named = os.environ.get("ELBOWROOM_CHROMIUM")
-    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
-    if not found:
-        raise FileNotFoundError("no Chromium: sh tools/install_browser.sh, or name one in ELBOWROOM_CHROMIUM")
-    return found
 
 
 def free_port() -> int:

@@ -1,18 +1,17 @@
 """A real server, a real headless Chromium, and pages on it."""
 
-import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from elbowroom.errors import InputError
+from elbowroom.film.page import browser_path
 from elbowroom.server.app import HOW_TO_BUILD, client_is_built
 from live_page import LivePage, open_live_page
 from live_server import LiveServer
 
-CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # SwiftShader draws WebGL without a graphics card. The frame limit stays: without it frame pacing is erratic.
 FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-gpu-compositing")
 
@@ -25,23 +24,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.browser)
 
 
-def chromium_path() -> str | None:
-    """The Chromium to use: $ELBOWROOM_CHROMIUM, or one from the distribution."""
-    named = os.environ.get("ELBOWROOM_CHROMIUM")
-    if named:
-        return named
-    return next((path for name in CHROMIUM_NAMES if (path := shutil.which(name))), None)
-
-
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
     """A running browser; skips where there is none."""
-    path = chromium_path()
-    if path is None:
-        pytest.skip(
-            "no Chromium: install it with `apt-get install chromium`, or name one in ELBOWROOM_CHROMIUM",
-            allow_module_level=True,
-        )
+    try:
+        path = browser_path()
+    except InputError as error:
+        pytest.skip(str(error), allow_module_level=True)
     if not client_is_built():
         pytest.skip(HOW_TO_BUILD)
     from playwright.sync_api import sync_playwright

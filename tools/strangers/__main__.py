@@ -16,7 +16,9 @@ sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools")]
 
 import pytest  # noqa: E402
 
-from make_pictures import FLAGS, browser_path  # noqa: E402
+from elbowroom.errors import InputError  # noqa: E402
+from elbowroom.film.page import browser_path  # noqa: E402
+from make_pictures import FLAGS  # noqa: E402
 from strangers import place_programs, programs  # noqa: E402
 from strangers.place import Place, exported_place  # noqa: E402
 from strangers.programs import Finding, Program  # noqa: E402
@@ -66,7 +68,7 @@ def _local(walk: Walk, place: Place) -> Iterator[Finding]:
 def _in_browser(walk: Walk, place: Place) -> Iterator[Finding]:
     try:
         path = browser_path()
-    except FileNotFoundError as error:
+    except InputError as error:
         print(f"three.js, three-vrm, X_ITE: left out: {error}", file=sys.stderr)
         return
     from playwright.sync_api import sync_playwright
