@@ -5,6 +5,8 @@
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
+# Most of what comes along is never imported; bytecode of the rest is made, and kept, when it first is.
+PIP_INSTALL := $(BIN)/python -m pip install --no-compile
 PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; do \
 	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && command -v "$$p" && break; done)
 WEB_SOURCES := $(shell find web -name node_modules -prune -o -type f -print 2>/dev/null)
@@ -27,12 +29,12 @@ $(VENV)/made:
 	@test -n "$(PYTHON)" || { echo "Elbowroom needs Python 3.11 or newer: sudo apt install python3 python3-venv"; exit 1; }
 	@echo "==> Making $(VENV) with $(PYTHON)"
 	@"$(PYTHON)" -m venv $(VENV) || { rm -rf $(VENV); echo "Python has no venv module: sudo apt install python3-venv"; exit 1; }
-	@$(BIN)/python -m pip install --quiet --upgrade pip
+	@$(PIP_INSTALL) --quiet --upgrade pip
 	@touch $@
 
 $(VENV)/library: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
 	@echo "==> Installing Elbowroom and building its page"
-	@$(BIN)/python -m pip install --editable .
+	@$(PIP_INSTALL) --editable .
 	@$(BIN)/python -m compileall -q src
 	@touch $@
 
@@ -43,7 +45,7 @@ $(VENV)/installed: $(VENV)/library
 
 $(VENV)/developer: $(VENV)/library
 	@echo "==> Installing the tools for tests"
-	@$(BIN)/python -m pip install --quiet --group dev
+	@$(PIP_INSTALL) --quiet --group dev
 	@touch $@
 
 # What keeps processors busy, or waits for a registry, goes side by side; tests that use all of both come after it.

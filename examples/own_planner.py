@@ -43,7 +43,7 @@ class Gestures:
 def main() -> None:
     """Register it, and set it beside the planner that comes with the package."""
     er.register_planner("gestures", Gestures)
-    for scene in map(er.Scene.load, ("c", "d", "beam")):
+    for scene in map(er.Scene.load, ("c", "beam")):
         for planner in ("gestures", "exact"):
             controller = er.Controller(er.Humanoid.default(), scene, planner=planner)
             stuck = False

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import elbowroom
+from sources import nodes_of
 
 PACKAGE = Path(elbowroom.__file__).parent
 ROOMS = [
@@ -31,7 +32,7 @@ FOR_ALL = {"errors", "jit", "kernel_cache", "kept_kernels", "kept_arrays"}
 
 
 def imported_modules(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes_of(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -89,7 +90,7 @@ def test_only_the_page_server_knows_the_network() -> None:
 def test_nothing_below_the_experiment_reads_a_clock_to_decide() -> None:
     for room in ROOMS[: ROOMS.index("experiment")]:
         for path in (PACKAGE / room).rglob("*.py"):
-            for node in ast.walk(ast.parse(path.read_text())):
+            for node in nodes_of(path):
                 if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "time":
                     assert node.attr == "perf_counter_ns", f"{path}: time.{node.attr}"
                 if isinstance(node, ast.Attribute) and node.attr in {"now", "utcnow"}:
@@ -111,8 +112,7 @@ def test_only_the_door_knows_how_obstacles_are_written_down() -> None:
     for path in PACKAGE.rglob("*.py"):
         if path.is_relative_to(door):
             continue
-        tree = ast.parse(path.read_text())
-        for node in ast.walk(tree):
+        for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and node.module == "elbowroom.world.obstacles.layout":
                 assert {alias.name for alias in node.names} <= {"Nearby", "Spans"}, path
             if isinstance(node, ast.Attribute) and node.attr in {"rows", "hulls"}:

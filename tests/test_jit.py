@@ -16,6 +16,7 @@ import pytest
 
 import elbowroom
 from elbowroom.jit import exact_kernel, helper, kernel, kernels_made, plain
+from sources import nodes_of, tree_of
 
 PACKAGE = Path(elbowroom.__file__).parent
 KINDS = {"kernel", "exact_kernel", "helper"}
@@ -62,7 +63,7 @@ def test_every_kernel_is_one_of_three_kinds() -> None:
     for path in PACKAGE.rglob("*.py"):
         text = path.read_text("utf-8")
         assert not re.search(r"@numba|import njit", text), f"{path} compiles by itself"
-        for node in ast.walk(ast.parse(text)):
+        for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and node.module == "elbowroom.jit":
                 assert {alias.name for alias in node.names} <= KINDS | {"plain", "kernels_made"}, path
 
@@ -132,14 +133,13 @@ def _literal(argument: ast.expr, module: object) -> object:
 def test_kernels_call_each_other_with_the_same_literals_or_with_none() -> None:
     """To Numba a literal is a type of its own: a kernel that is called with another one is compiled once more."""
     seen: dict[object, dict[int, set[object]]] = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        tree = ast.parse(path.read_text("utf-8"))
-        if path.name == "__main__.py":
-            continue
-        module = import_module(".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts)))
-        for call, compiled in _calls(tree):
+    modules = {path: import_module(".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts)))
+               for path in sorted(PACKAGE.rglob("*.py")) if path.name != "__main__.py"}  # fmt: skip
+    kernels = {id(made) for made in kernels_made()}
+    for path, module in modules.items():
+        for call, compiled in _calls(tree_of(path)):
             called = getattr(module, call.func.id, None) if isinstance(call.func, ast.Name) else None
-            if any(called is made for made in kernels_made()):
+            if id(called) in kernels:
                 for place, argument in enumerate(call.args):
                     literal = _literal(argument, module) if compiled else None
                     seen.setdefault(called, {}).setdefault(place, set()).add(literal)
@@ -166,6 +166,6 @@ def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:
 
 def test_what_a_kernel_alone_calls_in_one_place_is_a_helper() -> None:
     """It would be compiled twice: alone, and within the kernel that calls it."""
-    twice = {str(path): list(_private_kernels_called_once(ast.parse(path.read_text("utf-8"))))
+    twice = {str(path): list(_private_kernels_called_once(tree_of(path)))
              for path in PACKAGE.rglob("*.py")}  # fmt: skip
     assert {path: names for path, names in twice.items() if names} == {}

@@ -91,8 +91,7 @@ def test_a_name_that_two_joints_have_gives_way_to_the_def_name() -> None:
     assert (how["leftUpperLeg"], how["leftLowerLeg"], how["leftFoot"]) == (BY_DEF, BY_DEF, BY_NAME)
 
 
-@pytest.mark.parametrize("encoding", ["xml", "classic", "vrml"])
-@pytest.mark.parametrize("listed", ["after", "before"])
+@pytest.mark.parametrize(("encoding", "listed"), [("xml", "after"), ("classic", "before"), ("vrml", "after")])
 def test_joints_that_are_listed_once_more_are_one_joint(encoding: str, listed: str) -> None:
     """As many files do: the skeleton lists all its joints by USE, or defines some there that hang elsewhere."""
     recipes = [HanimRecipe(encoding, skinned=True, points=4, listed=where) for where in ("", listed)]

@@ -77,6 +77,7 @@ def test_the_same_call_again_runs_nothing_and_more_seeds_run_the_rest(
     assert "checks/plan" in more.stdout
 
 
+@pytest.mark.long
 def test_a_killed_run_goes_on_where_it_was(scene: Path, tmp_path: Path) -> None:
     call = [sys.executable, "-m", "elbowroom", *command(scene, tmp_path, "--seeds", 40, "--queues", "3")]
     with subprocess.Popen(call, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as killed:

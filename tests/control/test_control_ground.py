@@ -46,7 +46,14 @@ PLACES: dict[str, list[dict[str, Any]]] = {
     "a stair of 17 by 28 cm": stair(0.17, 0.28, 4),
 }
 LONG = "a sill of 1 cm", "a sill of 5 cm", "a sill of 10 cm", "a long ramp of 18.6 degrees"  # the others are like these
-NAMES = [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in PLACES]
+SLOWLY_JUDGED = "a ramp of 15 degrees"
+
+
+def names(*long: str) -> list[Any]:
+    """All places; these in the long tests only."""
+    return [pytest.param(name, marks=pytest.mark.long) if name in long else name for name in PLACES]
+
+
 LONGEST = {
     "a ramp of 15 degrees": 12.0,
     "a long ramp of 18.6 degrees": 14.0,
@@ -71,7 +78,7 @@ def roots_of(name: str) -> np.ndarray:
     return np.stack([frame.root for frame in walked(name)])
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", names(*LONG))
 def test_it_is_crossed_straight_and_in_time(name: str) -> None:
     scene, roots = scene_of(name), roots_of(name)
     assert scene.finished(type(scene.start)(*roots[-1].tolist()))
@@ -79,7 +86,7 @@ def test_it_is_crossed_straight_and_in_time(name: str) -> None:
     assert np.abs(roots[:, 0]).max() < (0.3 if "stair" in name else 0.02)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", names(*LONG, SLOWLY_JUDGED))
 def test_another_library_finds_nothing_touched_but_the_ground_under_soles(name: str) -> None:
     motion = ShownMotion.at_rate(np.stack([frame.q for frame in walked(name)]), roots_of(name))
     verdict = judge(motion, AVATAR, scene_of(name))
@@ -87,7 +94,7 @@ def test_another_library_finds_nothing_touched_but_the_ground_under_soles(name: 
     assert verdict.itself.touching == 0
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", names(*LONG))
 def test_the_root_follows_the_ground_and_no_foot_is_under_it(name: str) -> None:
     ground, roots = scene_of(name).ground, roots_of(name)
     below, height = [], 0.0

@@ -84,6 +84,7 @@ def meeting(seconds: float, left: tuple[float, float] = (0.0, 0.0), late: float 
     return float(mine.root[1]), 6.0 - float(yours.root[1]), slow
 
 
+@pytest.mark.long
 def test_two_who_walk_towards_each_other_in_a_corridor_pass_without_slowing_down() -> None:
     mine, yours, slow = meeting(6.0, (0.0, 0.1))
     assert mine > 4.0

@@ -56,6 +56,7 @@ def test_nobody_who_walks_or_stands_is_touched_by_what_is_pushed_at_him(planner:
     assert moved > 3.0
 
 
+@pytest.mark.long
 def test_a_pushed_box_stops_before_who_has_no_room_to_leave() -> None:
     beside = [{"type": "box", "center": [0.0, 1.0, z], "size": [4.0, 2.0, 0.2]} for z in (-0.6, 0.6)]
     scene = Scene.of("between", [*THINGS[:1], *beside], finish=(0.0, 6.0))
@@ -76,6 +77,7 @@ def test_who_stands_makes_way_for_what_comes() -> None:
     assert np.hypot(walker.root.x, walker.root.z) > 0.1
 
 
+@pytest.mark.long
 def test_what_was_pushed_is_in_the_way_where_it_was_left_and_back_after_a_reset() -> None:
     walker = controller()
     walker.push(0, (0.0, 2.5))

@@ -50,7 +50,8 @@ def test_after_a_turn_in_place_the_avatar_comes_to_a_stand(turn: float, humanoid
         assert np.array_equal(frames[-1].q, frames[-2].q)
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), pytest.param((-0.3, -0.4), marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("place", [(0.0, 0.0), (-0.3, -0.4)])
 def test_who_stands_hard_by_a_thing_that_was_pushed_stops_planning(place: tuple[float, float]) -> None:
     """The thing has come as near as things may, so there is no room for steps: legs glide to their stand."""
     crate = {"type": "box", "center": [2.0, 0.8, 2.5], "size": [0.5, 1.6, 0.5], "yaw": 0.4}

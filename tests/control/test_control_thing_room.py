@@ -117,7 +117,9 @@ def test_what_lies_on_a_thing_or_in_one_can_be_pushed_off_it() -> None:
     assert pushed_to(loose_in([table, peg]), 1, (2.0, 2.0)).place == pytest.approx((2.0, 2.0), abs=0.02)
 
 
-@pytest.mark.parametrize("repeat", ["pingpong", "loop", "once"])
+@pytest.mark.parametrize(
+    "repeat", ["loop", *(pytest.param(one, marks=pytest.mark.long) for one in ("pingpong", "once"))]
+)
 @pytest.mark.parametrize("thing", THINGS, ids=["box", "cylinder", "sphere"])
 def test_what_moves_by_itself_never_enters_what_was_pushed(thing: dict[str, Any], repeat: str) -> None:
     rng = np.random.default_rng(len(repeat) + len(thing))

@@ -75,13 +75,17 @@ def table(folder: Path) -> Any:
     return pq.read_table(sorted(folder.glob("*.parquet")))
 
 
-def test_interrupted_backwards_and_grown_it_is_the_same_to_the_byte(made: Path, tmp_path: Path) -> None:
+def test_interrupted_and_backwards_it_is_the_same_to_the_byte(made: Path, tmp_path: Path) -> None:
     broken = tmp_path / "broken"
     with pytest.raises(KeyboardInterrupt):
         make_dataset(SPEC, broken, Here(3, backwards=True))
     assert len(list(broken.glob("*.parquet"))) == 1
     make_dataset(SPEC, broken, Here())
     assert contents(broken) == contents(made)
+
+
+@pytest.mark.long
+def test_grown_it_is_the_same_to_the_byte(made: Path, tmp_path: Path) -> None:
     grown = tmp_path / "grown"
     make_dataset(replace(SPEC, walks=3), grown, Here())
     make_dataset(SPEC, grown, Here())

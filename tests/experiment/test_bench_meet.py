@@ -62,6 +62,7 @@ def test_a_meeting_of_its_own_process_is_the_same() -> None:
     assert met._replace(frame_ms=0.0, late=0) == again._replace(frame_ms=0.0, late=0)
 
 
+@pytest.mark.long
 def test_two_whose_plans_come_late_meet_as_well() -> None:
     start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
     assert MeetingTask(Kind.STANDS, start, live=True).run().well

@@ -168,8 +168,12 @@ def test_a_walk_moves_as_its_states_say() -> None:
 
 @pytest.mark.parametrize(
     ("body", "unit"),
-    [(ring_body(), 1.0), (ring_body(head=0.24), 1.0), (ring_body(), 0.36), (box_body(0.4), 0.6)],
-    ids=["low-poly", "with a big head", "as small as a doll", "a small one of boxes"],
+    [
+        pytest.param(ring_body(), 1.0, id="low-poly", marks=pytest.mark.long),
+        pytest.param(ring_body(head=0.24), 1.0, id="with a big head"),
+        pytest.param(ring_body(), 0.36, id="as small as a doll", marks=pytest.mark.long),
+        pytest.param(box_body(0.4), 0.6, id="a small one of boxes"),
+    ],
 )
 def test_bodies_of_other_builds_get_courses(body: Body, unit: float) -> None:
     humanoid = load_humanoid_bytes(build(Recipe(vrm="1", body=body, unit=unit)), "odd.vrm")

@@ -71,6 +71,7 @@ def test_the_judge_moves_what_moves() -> None:
     assert 3.4 < max(last for _, last in touching) < 3.6
 
 
+@pytest.mark.long
 def test_who_stands_steps_out_of_the_way_of_what_comes() -> None:
     scene = rolling(0.0, 4.0, 0.0, -4.0, 10.0)
     frames = walked(scene, Command(), 8.0)

@@ -211,7 +211,7 @@ def test_two_avatars_shown_as_free_of_each_other_are_so_between_the_frames(walks
 def test_what_is_shown_beside_a_wall_is_free_between_the_frames(drawn: Callable[[np.random.Generator], Frames]) -> None:
     rng, shares, found = np.random.default_rng(3), np.linspace(0.0, 1.0, DENSE // 10), [0, 0]
     check = BodyCheck(HUMANOID, Scene.load("a"))
-    for _ in range(80):
+    for _ in range(40):
         frames = drawn(rng)
         place = rng.uniform([-1.0, 0.5], [1.0, 6.0])
         for root in frames.roots:

@@ -80,7 +80,7 @@ def test_its_tables_say_what_the_posed_body_says(humanoid: Humanoid) -> None:
     dressing = dressed(humanoid, scene_of(POSTS), path)
     step, pairs = step_of(dressing), self_pairs(model)
     seen = {True: 0, False: 0}
-    for _ in range(120):
+    for _ in range(60):
         depth = int(rng.integers(4, 9))
         usable = [np.flatnonzero(np.isfinite(group.costs_alone[depth])) for group in step.nodes]
         nodes = tuple(int(rng.choice(row)) for row in usable)

@@ -78,7 +78,7 @@ def coal_distance(ends: Floats, radius: float, other_ends: Floats, other_radius:
 def test_tables_agree_with_the_whole_body_in_the_world_judged_by_coal() -> None:
     """Arm under waist and arm beside arm, each from its own table, against coal's distances of the posed body."""
     humanoid, rng = proportional_humanoid(1.72), np.random.default_rng(1)
-    model, count = body_model(humanoid), 25
+    model, count = body_model(humanoid), 12
     pairs = self_pairs(model)
     uppers, roots = random_uppers(rng, count), random_roots(rng, count)
     q = np.zeros((count, DOF))

@@ -49,7 +49,7 @@ from elbowroom.server.stores.library import Library
 
 def busy(library, url, open_page):
     threading.Thread(target=time.sleep, args=(1000,)).start()
-    ThreadPoolExecutor(1).submit(lambda: [sum(range(10**7)) for _ in range(10**6)])
+    ThreadPoolExecutor(1).submit(lambda: [(sum(range(10**5)), time.sleep(0.01)) for _ in range(10**6)])
     print(library.avatars.folder, flush=True)
 
 play.compile_first = lambda: None

@@ -106,8 +106,8 @@ def test_hard_shapes(name: str) -> None:
 def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None:
     """Obstacles moved along the line between the nearest points, until a wanted gap, or overlap, is left."""
     rng = np.random.default_rng(11)
-    obstacles, radius, checked = obstacles_of([RANDOM[kind](rng) for _ in range(40)], rng), 0.07, 0
-    for i, segment in enumerate(axes(rng, 40).T):
+    obstacles, radius, checked = obstacles_of([RANDOM[kind](rng) for _ in range(16)], rng), 0.07, 0
+    for i, segment in enumerate(axes(rng, 16).T):
         on_axis, on_obstacle = closest_points(segment, obstacles.standing)
         away = on_obstacle[i] - on_axis[i]
         distance = float(np.linalg.norm(away))
@@ -124,7 +124,7 @@ def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None
             assert (ours < 0.0) == (sign < 0.0)
             assert abs(ours - theirs) < 1e-5
             checked += 1
-    assert checked > 20
+    assert checked > 8
 
 
 @pytest.mark.parametrize("kind", KINDS)

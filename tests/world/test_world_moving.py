@@ -50,7 +50,7 @@ def test_what_moves_stands_at_its_pose() -> None:
 def test_a_sweep_holds_every_corner_at_every_time_and_little_else(repeat: Repeat) -> None:
     rng = np.random.default_rng(4)
     moving = Moving((track(repeat, (0.0, 2.0, -1.0)),))
-    for _ in range(20):
+    for _ in range(8):
         first = rng.uniform(0.0, 14.0)
         last = first + rng.uniform(0.05, 0.6)
         row = moving.swept([first, last]).rows[0, 0]

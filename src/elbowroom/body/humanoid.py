@@ -1,6 +1,7 @@
 """Who moves: a humanoid avatar, read from a file or the stock one."""
 
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from elbowroom.body.capsules import Capsules
@@ -60,7 +61,12 @@ class Humanoid:
 
     @classmethod
     def default(cls) -> "Humanoid":
-        """The stock avatar, which comes with the package."""
-        from elbowroom.body.stock import stock_avatar_path
+        """The stock avatar, which comes with the package: read once, and one and the same for all who ask."""
+        return _stock_avatar()
 
-        return cls.load(stock_avatar_path())
+
+@cache
+def _stock_avatar() -> Humanoid:
+    from elbowroom.body.stock import stock_avatar_path
+
+    return Humanoid.load(stock_avatar_path())
