@@ -79,6 +79,8 @@ class Case:
         self.natural, self.start = rng.uniform(size=ROWS) < 0.4, drawn(rng, group, 1, 0.7)[0]
         self.walk = np.where(self.natural[:, None], self.uppers, self.uppers + 0.1 * self.before)
         self.mine = mine = drawn(rng, group, ROWS, 0.7)
+        self.as_walked = np.random.default_rng([seed, 1]).uniform(size=ROWS) < 0.6
+        self.usual = np.where(self.as_walked[:, None], mine, mine + 0.1)
         self.previous = np.where(rng.uniform(size=(ROWS, 1)) < 0.5, mine, drawn(rng, group, ROWS, 0.7))
         self.settled = seed % 3 > 0
         known, step = self.postures, self.postures.step
@@ -91,7 +93,8 @@ class Case:
         return BODY.own_body_nodes(self.group, self.postures, BODY.resting(self.group, self.postures))
 
     def costs(self, nodes: OwnBodyNodes | None = None) -> Floats:
-        task = OwnBodyTask(self.mine, self.previous, self.start, self.settled, self.walk, self.uppers, self.states)
+        liked = self.mine, self.previous, self.start, self.settled
+        task = OwnBodyTask(*liked, self.usual, self.walk, self.uppers, self.states)
         return own_body_costs(nodes or self.nodes(), task).astype(np.float64)
 
     def twin(self) -> tuple[Bools, Bools]:
@@ -102,13 +105,14 @@ class Case:
         out[:, :width] = BODY.resting(self.group, self.postures)
         filled = np.minimum(np.arange(width), len(known) - 1)
         for t in range(ROWS):
-            if self.natural[t] and not self.needed[t, 1:].any():
+            usual = self.natural[t] and self.as_walked[t]
+            if usual and not self.needed[t, 1:].any():
                 continue
             gaps = gaps_of(self.side, np.concatenate([known, self.own[t]]), self.uppers[t], self.states[t])
             nodes = np.concatenate([gaps[: len(known)][filled], gaps[len(known) :]]) - SPARE
             looked = np.ones(width + EXTRA, np.bool_)
             if self.natural[t]:
-                looked[: width + 1] = False
+                looked[: width + usual] = False
             out[t] |= looked & (nodes < 0.0)
             sure[t] = ~looked | (np.abs(nodes) > UNSURE)
         return out, sure

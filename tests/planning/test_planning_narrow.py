@@ -11,7 +11,9 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.pace import slow_places
@@ -109,6 +111,17 @@ def test_upper_bodies_that_do_as_they_like_leave_some_centimetres(ratio: float, 
     clear = np.hypot(aside, beyond) - MODEL.body.radii[:, None, None]
     upper = np.concatenate([HUMANOID.capsules.of(group) for group in DofGroup if group is not DofGroup.ROOT])
     assert clear[upper].min() > 0.035
+
+
+def test_nothing_is_liked_in_which_the_body_runs_into_itself() -> None:
+    """Arms that are drawn in, and shoulders that turn, leave a centimetre at every moment of a stride, as nodes do."""
+    pairs, least = self_pairs(MODEL), []
+    for ratio in np.arange(0.95, 1.6, 0.05):
+        for begins in (0.0, 0.2, 0.4):
+            path = walk()
+            path.states[:, 6] = begins + 0.9 * T * np.arange(len(path.states))
+            least.append(self_clearances(MODEL, pairs, path.states, wanted(gap(ratio * WIDTH), path)).min())
+    assert min(least) > SPARE
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.7])

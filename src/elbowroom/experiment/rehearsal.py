@@ -109,7 +109,7 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
     previous, bent = np.zeros((count, arm.size)), np.full((count, LOCAL), 0.1)
     goals, around = np.zeros_like(bent), with_waist(bent[:, columns_of(DofGroup.WAIST)])
     rule_out_near(np.zeros(2, np.float32), previous[:1], previous[1:2], previous[0], 0.0)
-    task = OwnBodyTask(previous, previous, previous[0], True, goals, around, path.states)
+    task = OwnBodyTask(previous, previous, previous[0], True, previous, goals, around, path.states)
     own_body_costs(body.own_body_nodes(arm, postures, body.resting(arm, postures)), task)
     OwnMotion(own_parts(model, body.pairs, body_levers(humanoid))).contacts(path, bent, np.zeros_like(bent), goals, 0)
 

@@ -3,7 +3,7 @@
 Arms hang closer, and who has less room than that turns the shoulders, from some 1.3 shoulder widths on and the more the
 narrower it is (W. H. Warren & S. Whang, J. Exp. Psychol. Hum. Percept. Perform. 13, 1987), so that some centimetres are
 left on either side. The hips stay as they go: turned strides are broader than straight ones. Hands stay near the hips,
-one before and one behind.
+one before and one behind: beside the thighs there would be no room for them.
 """
 
 import numpy as np
@@ -24,11 +24,13 @@ _BEFORE, _AFTER = 0.9, 0.5  # metres before it from which on one begins, and beh
 _MOVES = 0.1  # m/s: who is slower goes where he faces
 _USE = 0.02  # metres by which shoulders or arms get slimmer, at least: with less they do it only in part
 _CALM = 0.9  # of the arms' hanging and swing that a narrow place takes away
-_ALONG = 0.5  # radians that an arm swings back, and the other ahead, for each that shoulders are turned
+# Radians that arms which are drawn in keep: one back and the other ahead, aside, turned in, bent.
+_ALONG, _ASIDE, _IN, _BENT = 0.35, 0.04, 0.02, 0.09
+_CLOSE = 6  # the power of that share by which arms come close: hands have left the thighs by then
+_PASSING = 0.25  # radians that arms are spread, for each that shoulders turn, until they are drawn in
 _SAME = 1e-6  # radians
 _WAIST, _HEAD = columns_of(DofGroup.WAIST), columns_of(DofGroup.HEAD)
 _TWIST, (_LEFT, _RIGHT) = _WAIST.start + 1, (columns_of(arm).start for arm in ARMS)
-_ARM = ARMS[0].size
 
 
 def goals_where_narrow(narrow: NarrowPlaces, path: RootPath, goals: Floats) -> Floats:
@@ -102,12 +104,15 @@ def _wanted(goals: Floats, states: Floats, places: Floats, figure: Figure) -> Fl
         x, z = _direction(states[t])
         sine, cosine = np.sin(states[t, 2]), np.cos(states[t, 2])
         hips = np.arctan2(sine * z - cosine * x, abs(sine * x + cosine * z))  # turned from the line of the way
-        twist = max(TWIST * turned - abs(hips), 0.0) * (1.0 if hips > -_SAME else -1.0)
+        side = 1.0 if hips > -_SAME else -1.0
+        twist = side * max(TWIST * turned - abs(hips), 0.0)
         drawn *= 1.0 - min(abs(hips) / TWIST, 1.0)  # who goes sideways has the arms before and behind
         out[t, _TWIST] += twist
-        for c in range(_ARM):
-            out[t, _LEFT + c] *= 1.0 - _CALM * drawn
-            out[t, _RIGHT + c] *= 1.0 - _CALM * drawn
-        out[t, _LEFT] -= _ALONG * twist
-        out[t, _RIGHT] += _ALONG * twist
+        along, close = _ALONG * drawn * (1.6 - 0.6 * drawn), drawn**_CLOSE
+        for arm, ahead in ((_LEFT, -side), (_RIGHT, side)):
+            out[t, arm] = (1.0 - _CALM * drawn) * out[t, arm] + ahead * along
+            out[t, arm + 1] = (1.0 - _CALM * close) * out[t, arm + 1] + _ASIDE * close
+            out[t, arm + 1] += _PASSING * abs(twist) * (1.0 - drawn)
+            out[t, arm + 2] = (1.0 - _CALM * drawn) * out[t, arm + 2] + _IN * drawn
+            out[t, arm + 3] = (1.0 - _CALM * drawn) * out[t, arm + 3] + _BENT * drawn
     return out

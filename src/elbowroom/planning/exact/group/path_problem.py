@@ -25,7 +25,8 @@ class PathProblem(NamedTuple):
     """What the upper body is asked for along one root path."""
 
     path: RootPath
-    goals: Floats  # (n+1, LOCAL)
+    walk: Floats  # (n+1, LOCAL) the natural walk: in that no part of the body is too deep in another
+    goals: Floats  # (n+1, LOCAL) what is liked here
     last: PreviousPlan | None  # the last plan
     previous: Floats  # (n+1, LOCAL) what it had, its end where it did not reach; the goals if there was none
     begins: StartState
@@ -37,6 +38,7 @@ class PathProblem(NamedTuple):
     @staticmethod
     def of(
         path: RootPath,
+        walk: Floats,
         goals: Floats,
         last: PreviousPlan | None,
         begins: StartState,
@@ -49,10 +51,10 @@ class PathProblem(NamedTuple):
         One who goes on from the last plan has other postures to end with.
         """
         if last is None:
-            return PathProblem(path, goals, None, goals, begins, roots, near, anew, anew)
+            return PathProblem(path, walk, goals, None, goals, begins, roots, near, anew, anew)
         reached = last.known if begins.ahead else len(goals)
         previous = np.concatenate([last.keys[:reached], goals[reached:]])
-        return PathProblem(path, goals, last, previous, begins, roots, near, anew, anew.beside(last.required))
+        return PathProblem(path, walk, goals, last, previous, begins, roots, near, anew, anew.beside(last.required))
 
     def under(self, waists: Floats) -> "PathProblem":
         """The same with what head and arms would like under a path of the waist (n+1, 3)."""

@@ -128,12 +128,13 @@ class ChildSearch:
     def _own_body_costs(self, group: DofGroup, paths: list[GroupPath], task: GroupTask) -> Floats32:
         """Infinite where a node touches the body as the groups before have it, or is near to one that did."""
         problem, made = self._problem, self._caches.group(group)
-        around, walk = self._around(paths), np.zeros_like(problem.goals)
+        around, walk = self._around(paths), np.zeros_like(problem.walk)
         for other, _ in zip(SEARCH_ORDER, paths, strict=False):
-            walk[:, columns_of(other)] = problem.goals[:, columns_of(other)]
+            walk[:, columns_of(other)] = problem.walk[:, columns_of(other)]
+        usual, states = np.ascontiguousarray(problem.walk[:, columns_of(group)]), problem.path.states
         costs = own_body_costs(
             self._caches.own_nodes[group],
-            OwnBodyTask(task.goals, task.previous, task.start, task.settled, walk, around, problem.path.states),
+            OwnBodyTask(task.goals, task.previous, task.start, task.settled, usual, walk, around, states),
         )
         for contact in self._contacts:
             t = contact.depth
@@ -159,5 +160,5 @@ class ChildSearch:
     def _self_contact(self, found: GroupPaths) -> tuple[int, int] | None:
         """The group, by its number, and the first interval in which its motion runs into the body, or None."""
         problem, keys, rates = self._problem, found.keys, found.velocities
-        groups = self._caches.own_motion.contacts(problem.path, keys, rates, problem.goals, problem.begins.ahead)
+        groups = self._caches.own_motion.contacts(problem.path, keys, rates, problem.walk, problem.begins.ahead)
         return next(((group, k) for k, group in enumerate(groups.tolist()) if group >= 0), None)

@@ -122,10 +122,9 @@ class UpperBodyPlanner:
         caches = self.memory.begin(path.horizon)
         roots = begin_root_sweeps(caches.groups[DofGroup.WAIST], path.states, path.interval, near.stamps)
         margins = self._required(path, begins.ahead)
-        goals = self.model.goals(path)
-        if any_in(near.spans):
-            goals = goals_where_narrow(self._narrow, path, goals)
-        problem = PathProblem.of(path, goals, previous, begins, roots, near, margins)
+        walk = self.model.goals(path)
+        goals = goals_where_narrow(self._narrow, path, walk) if any_in(near.spans) else walk
+        problem = PathProblem.of(path, walk, goals, previous, begins, roots, near, margins)
         return UpperBodySearch(caches, weights, self.model, legs, problem, go_on)
 
     def _required(self, path: RootPath, ahead: int) -> RequiredMargins:

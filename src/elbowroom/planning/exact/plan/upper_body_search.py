@@ -313,7 +313,7 @@ class UpperBodySearch:
             uppers, rates = self.goals.copy(), np.zeros_like(self.goals)
             uppers[:, at], rates[:, at] = keys, velocities
             begin = self.problem.begins.ahead
-            return self.caches.own_trunk.contacts(self.path, uppers, rates, self.goals, begin) >= 0
+            return self.caches.own_trunk.contacts(self.path, uppers, rates, self.problem.walk, begin) >= 0
 
         crouch = Crouch(self.legs, self.path, lowerings, folds)
         for attempt in range(ROUNDS):

@@ -45,7 +45,8 @@ class OwnBodyTask(NamedTuple):
     previous: Floats  # (n+1, d) what the last plan had
     start: Floats  # (d,)
     settled: bool  # whether it goes on from a path that is proven
-    walk: Floats  # (n+1, LOCAL) the goals of all groups, zero where a group is not posed yet
+    usual: Floats  # (n+1, d) what the group does in the natural walk
+    walk: Floats  # (n+1, LOCAL) what all groups do in it, zero where a group is not posed yet
     uppers: Floats  # (n+1, LOCAL) the groups that are posed already, zero elsewhere
     states: Floats  # (n+1, 7) of the root
 
@@ -107,7 +108,7 @@ def _any_near(axis: Floats32, spheres: Floats, least: float, near: Bools) -> boo
 def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     """What a group's nodes (n+1, W + EXTRA) cost for the body's sake: nothing, or infinity.
 
-    Where the groups before it are as their goals have them the group's goal is free.
+    Where the groups before it do as in the natural walk, the group's goal is free if that is what it does in it.
     """
     it, uppers, states = own_body_nodes, task.uppers, task.states
     width, known = it.resting.shape[0], it.postures
@@ -115,12 +116,14 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
         known.configurations, known.columns, known.step, task.goals, task.previous, task.start, task.settled
     )
     depths = extras.shape[0]
-    natural, contents = np.empty(depths, np.bool_), np.empty((depths, it.known.rows.shape[1]), np.int64)
+    natural, usual = np.empty(depths, np.bool_), np.empty(depths, np.bool_)
+    contents = np.empty((depths, it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
         natural[t] = is_natural(uppers[t], task.walk[t], states[t])
+        usual[t] = natural[t] and is_natural(task.goals[t], task.usual[t], states[t])
     set_contents(states, uppers, contents)
     rows, fresh = np.empty(depths, np.int64), np.empty(depths, np.int64)
-    rows = rows[: _rows_to_check(natural, needed, rows)]
+    rows = rows[: _rows_to_check(usual, needed, rows)]
     places = np.empty(rows.shape[0], np.int64)
     fresh = fresh[: _set_places(it.known, contents, rows, places, fresh)]
     if fresh.shape[0]:
@@ -133,7 +136,7 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     for i in range(rows.shape[0]):
         t, place = rows[i], places[i]
         for e in range(extras.shape[1]):
-            if gaps[i, e] < SPARE and not (e == 0 and natural[t]):
+            if gaps[i, e] < SPARE and not (e == 0 and usual[t]):
                 costs[t, width + e] = np.inf
         if not natural[t]:
             for v in range(width):
@@ -143,11 +146,11 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
 
 
 @helper
-def _rows_to_check(natural: Bools, needed: Bools, rows: Indices) -> int:
+def _rows_to_check(usual: Bools, needed: Bools, rows: Indices) -> int:
     """Write down the key times `rows` at which more is asked for than the goal in a natural walk; their number."""
     count = 0
-    for t in range(natural.shape[0]):
-        asked = not natural[t]
+    for t in range(usual.shape[0]):
+        asked = not usual[t]
         for e in range(1, needed.shape[1]):
             asked = asked or needed[t, e]
         if asked:

@@ -90,30 +90,30 @@ class OwnMotion:
         known = new_row_index(room, 2 * _WIDTH)
         self._seen = Seen(known, np.empty(room), np.empty(room, np.int64))
 
-    def contacts(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats, ahead: int) -> Indices:
+    def contacts(self, path: RootPath, keys: Floats, rates: Floats, walk: Floats, ahead: int) -> Indices:
         """The group, by its number in `SEARCH_ORDER`, that is not clear of the body in each interval (n,), or -1.
 
         `keys` (n+1, LOCAL) and `rates` (n+1, LOCAL) are the upper body and its velocity at the key times, the first of
-        which is `ahead` key intervals from now. Where both ends of an interval are as the `goals` (n+1, LOCAL) have
-        them, it does not touch. Farther ahead more is asked for.
+        which is `ahead` key intervals from now. Where both ends of an interval do as in the natural `walk`
+        (n+1, LOCAL), it does not touch. Farther ahead more is asked for.
         """
-        gaps, groups = self.proven(path, keys, rates, goals)
+        gaps, groups = self.proven(path, keys, rates, walk)
         wanted = np.where(ahead + np.arange(len(gaps)) < _SOON, ENOUGH, _AFAR)
         found: Indices = np.where(gaps < wanted, groups, -1)
         return found
 
-    def proven(self, path: RootPath, keys: Floats, rates: Floats, goals: Floats) -> tuple[Floats, Indices]:
-        """The proven gaps (n,), metres, and whose (n,) they are: infinite and -1 where it is as the goals have it."""
+    def proven(self, path: RootPath, keys: Floats, rates: Floats, walk: Floats) -> tuple[Floats, Indices]:
+        """The proven gaps (n,), metres, and whose (n,) they are: infinite and -1 where it does as in the walk."""
         shown = Shown(path.states, keys, rates, path.interval)
-        gaps, groups = _proven(self._parts, self._underfoot, self._seen, shown, goals)
+        gaps, groups = _proven(self._parts, self._underfoot, self._seen, shown, walk)
         return gaps, groups
 
 
 @exact_kernel
-def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, goals: Floats) -> tuple[Floats, Indices]:
+def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, walk: Floats) -> tuple[Floats, Indices]:
     """See `OwnMotion.proven`."""
     gaps, groups = np.full(shown.keys.shape[0] - 1, np.inf), np.full(shown.keys.shape[0] - 1, -1)
-    chosen = _beside(shown.keys, goals, shown.states)
+    chosen = _beside(shown.keys, walk, shown.states)
     if not chosen.shape[0]:
         return gaps, groups
     names = _names(shown, underfoot.ground.plain)
@@ -150,14 +150,14 @@ def _names(shown: Shown, plain_ground: bool) -> Indices:
 
 
 @helper
-def _beside(keys: Floats, goals: Floats, states: Floats) -> Indices:
-    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) is not as the goals (n+1, LOCAL) have it.
+def _beside(keys: Floats, walk: Floats, states: Floats) -> Indices:
+    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) does not do as in the `walk` (n+1, LOCAL).
 
     Or where a foot of root states (n+1, 7 or more) is not on level ground.
     """
-    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], goals[0], states[0])
+    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], walk[0], states[0])
     for k in range(chosen.shape[0]):
-        before, natural = natural, is_natural(keys[k + 1], goals[k + 1], states[k + 1])
+        before, natural = natural, is_natural(keys[k + 1], walk[k + 1], states[k + 1])
         if not (before and natural):
             chosen[count] = k
             count += 1
