@@ -132,8 +132,10 @@ def test_what_only_the_upper_body_would_touch_diverts_nobody() -> None:
     board = ([0.5, 0.8, 3.0], [0.5, 0.1, 0.4], 0.2)
     hanging = ([0.0, 1.6, 4.0], [0.4, 0.8, 0.4], 0.5)
     states, plans = walk(scene_of(beam, board, hanging), FORWARD, 30)
-    np.testing.assert_array_equal(states, walk(scene_of(), FORWARD, 30)[0])
+    assert not states[:, [0, 2, 4, 5]].any()
     assert kinds(plans) == {RootPlanKind.STRAIGHT}
+    states, _ = walk(scene_of(board), FORWARD, 30)  # and slows down nobody who need not duck
+    np.testing.assert_array_equal(states, walk(scene_of(), FORWARD, 30)[0])
 
 
 @pytest.mark.parametrize("name", ["a", "b", "c", "d"])

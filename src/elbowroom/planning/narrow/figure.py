@@ -1,4 +1,4 @@
-"""How broad somebody is who walks straight on, and how much slimmer with turned shoulders."""
+"""How broad somebody is who walks straight on, how much slimmer with turned shoulders, and how tall."""
 
 from typing import NamedTuple
 
@@ -21,13 +21,14 @@ _TWISTS = DofGroup.WAIST.at.start + 1  # its place in `q`
 
 
 class Figure(NamedTuple):
-    """Half the breadth of an upper body, metres."""
+    """Half the breadth of an upper body, and its height, metres."""
 
     swinging: float  # with arms that swing
     broad: float  # with arms that hang straight, and
     slim: float  # with shoulders turned by `TWIST` besides
     low: int  # levels of the free map between elbows and shoulders: the first
     high: int  # and the one after the last
+    tall: float  # the crown above the ground
 
 
 def figure_of(humanoid: Humanoid, model: BodyModel) -> Figure:
@@ -44,4 +45,5 @@ def figure_of(humanoid: Humanoid, model: BodyModel) -> Figure:
     low = min(int(np.searchsorted(LEVELS, arms.min())), len(LEVELS) - 1)
     high = max(int(np.searchsorted(LEVELS, arms.max())), low + 1)
     swinging, broad, slim = float(aside[:_PHASES].max()), float(aside[-2]), float(aside[-1])
-    return Figure(max(swinging, broad), broad, slim, low, high)
+    tall = float((ends[:, :, 1, -2].max(axis=1) + model.body.radii).max())
+    return Figure(max(swinging, broad), broad, slim, low, high, tall)

@@ -74,13 +74,20 @@ def beside(window: Window, figure: Figure, place: tuple[float, float], aside: tu
 @exact_kernel
 def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
     """The free distance at a place, bilinear, at the levels of a figure; the window's edge holds outside."""
-    free, least = window.distances, np.inf
-    p = min(max((x - window.x) / CELL, 0.0), free.shape[1] - 1.0)
-    q = min(max((z - window.z) / CELL, 0.0), free.shape[2] - 1.0)
-    i, k = min(int(p), free.shape[1] - 2), min(int(q), free.shape[2] - 2)
-    u, v = p - i, q - k
+    least = np.inf
     for n in range(figure.low, figure.high):
-        low = free[n, i, k] * (1.0 - v) + free[n, i, k + 1] * v
-        high = free[n, i + 1, k] * (1.0 - v) + free[n, i + 1, k + 1] * v
-        least = min(least, low * (1.0 - u) + high * u)
+        least = min(least, free_on(window, n, x, z))
     return float(least)
+
+
+@exact_kernel
+def free_on(window: Window, level: int, x: float, z: float) -> float:
+    """The free distance at a place on one level of the map, bilinear; the window's edge holds outside."""
+    free = window.distances[level]
+    p = min(max((x - window.x) / CELL, 0.0), free.shape[0] - 1.0)
+    q = min(max((z - window.z) / CELL, 0.0), free.shape[1] - 1.0)
+    i, k = min(int(p), free.shape[0] - 2), min(int(q), free.shape[1] - 2)
+    u, v = p - i, q - k
+    low = free[i, k] * (1.0 - v) + free[i, k + 1] * v
+    high = free[i + 1, k] * (1.0 - v) + free[i + 1, k + 1] * v
+    return float(low * (1.0 - u) + high * u)

@@ -17,7 +17,7 @@ from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.gap import gap_ahead
-from elbowroom.planning.narrow.pace import slow_places
+from elbowroom.planning.narrow.pace import hanging, slow_places, slow_under
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.cost import SLOW, Figure, crowded, prices_of, seconds_lost
 from elbowroom.planning.root.evasion.evasion import EvasionFinder
@@ -30,7 +30,7 @@ from elbowroom.planning.root.line.ahead import NONE_TIGHT, Above, RouteFinder
 from elbowroom.planning.root.line.line import TravelLine, straight_route, wanted_speed, wanted_velocities
 from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.planning.root.line.way_ahead import Corners, line_of, way_ahead
-from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
+from elbowroom.planning.root.motion import NONE_SLOW, SLOWED_FROM, MotionBounds
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Answer, Asked, RootQuery
@@ -64,6 +64,7 @@ class RootPaths:
         self.evasions = tuple(EvasionFinder(humanoid, scene, grid) for grid in (settings.evasion, settings.wide))
         self._figure = _figure(body.model)
         self._narrow = NarrowPlaces(figure_of(humanoid, body.model), scene.free_map)
+        self._obstacles, self._hanging = scene.obstacles, hanging(self._narrow.figure, scene.ground)
         self._scenes = scene.obstacles.moving
         self.others = Moving()
         self._slow_legs: tuple[Corners, dict[int, Floats]] = (), {}
@@ -126,8 +127,9 @@ class RootPaths:
         """Along a line of travel, round gaps in it where there is room for that, or `through` them."""
         began, speed = perf_counter_ns(), wanted_speed(asked.command, self.settings.motion)
         sight = self._sight(asked, speed)
-        slow = self._slow(asked, line, sight)
-        tight = NONE_TIGHT if through or not line.turns else slow
+        narrow = self._narrow_ahead(asked, line, sight)
+        slow = np.concatenate([narrow, self._low_ahead(asked, line, sight)])
+        tight = NONE_TIGHT if through or not line.turns else narrow
         if not self._moving.tracks and self._routes.above is None and not len(tight):
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
@@ -155,15 +157,16 @@ class RootPaths:
         return _plan(asked, answer, query.checks - before, began, lost)
 
     def _slow_on(self, way: Corners, leg: int, height: float) -> Floats:
-        """Where it is narrow on a leg of a way, and how slow one is there, (K, 3); looked up once for each way."""
+        """Where it is narrow or low on a leg of a way, and how slow one is there, (K, 3); looked up once for a way."""
         if self._slow_legs[0] != way:
             self._slow_legs = way, {}
         known = self._slow_legs[1]
         if leg not in known:
-            known[leg] = slow_places(self._narrow, line_of(way, leg), 0.0, math.dist(way[leg], way[leg + 1]), height)
+            leads = line_of(way, leg), 0.0, math.dist(way[leg], way[leg + 1]), height
+            known[leg] = np.concatenate([find(self._narrow, *leads) for find in (slow_places, slow_under)])
         return known[leg]
 
-    def _slow(self, asked: Asked, line: TravelLine, sight: float) -> Floats:
+    def _narrow_ahead(self, asked: Asked, line: TravelLine, sight: float) -> Floats:
         """Where it is narrow on a line of travel, and how slow one is there, (K, 3)."""
         start, reach = asked.start, self._reach(asked.horizon * asked.interval)
         near = self._check.body.near(start.x, start.z, reach, start.height)
@@ -171,6 +174,15 @@ class RootPaths:
         if near.empty or route_is_open(route, start.height, self._narrow.half, near.ground):
             return NONE_SLOW
         return slow_places(self._narrow, line, line.coordinates(start.x, start.z)[0], sight, start.height)
+
+    def _low_ahead(self, asked: Asked, line: TravelLine, sight: float) -> Floats:
+        """Where one has to duck on a line of travel, and how slow one is there, (K, 3)."""
+        start = asked.start
+        route = straight_route(float(start.x), float(start.z), line, sight + SLOWED_FROM)
+        low, high = route.min(axis=0) - SLOWED_FROM, route.max(axis=0) + SLOWED_FROM
+        if not len(self._obstacles.numbers_near(low, high, self._hanging)):
+            return NONE_SLOW
+        return slow_under(self._narrow, line, line.coordinates(start.x, start.z)[0], sight, start.height)
 
     def axis_ahead(self, asked: Asked, line: TravelLine) -> TravelLine | None:
         """The axis of a gap near a line of travel; who faces aside goes on to do so."""

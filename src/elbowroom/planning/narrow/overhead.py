@@ -1,0 +1,52 @@
+"""Where a way is low: something hangs over all of it that a head can be put beside, and one has to duck."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.narrow.figure import Figure
+from elbowroom.planning.narrow.places import NarrowPlaces, free_on
+from elbowroom.world.obstacles.free_map import LEVELS, Window
+
+Floats = NDArray[np.float64]
+
+SPARE = 0.05  # metres above the crown that people like to have
+LEAST = 0.6  # of one's height: what hangs lower is no way
+_BESIDE = 0.15  # metres to either side where a head can be put
+_UP = 0.06  # metres above its level from which free distances are measured
+_MET = 0.10  # metres: what is nearer than this to the middle of a way on some level is in it
+
+
+def low_places(narrow: NarrowPlaces, ways: Floats, height: float) -> Floats:
+    """The low ones (K, 3) of ways (N, 4), as in `NarrowPlaces.on`: places x, z and how high they are, metres."""
+    return _low_ones(narrow.window(ways, height), narrow.figure, ways)
+
+
+@exact_kernel
+def _low_ones(window: Window, figure: Figure, ways: Floats) -> Floats:
+    out, count = np.empty((ways.shape[0], 3)), 0
+    for n in range(ways.shape[0]):
+        x, z, across_x, across_z = ways[n, 0], ways[n, 1], ways[n, 3], -ways[n, 2]
+        room = 0.0
+        for side in range(-1, 2):
+            aside = side * _BESIDE
+            room = max(room, _headroom(window, x + aside * across_x, z + aside * across_z))
+        if LEAST * figure.tall < room < figure.tall + SPARE:
+            out[count, 0], out[count, 1], out[count, 2] = x, z, room
+            count += 1
+    return out[:count].copy()
+
+
+@exact_kernel
+def _headroom(window: Window, x: float, z: float) -> float:
+    """How high the lowest thing over a place hangs, metres; 0 where one stands there.
+
+    It is as far above the level below as that is free, at most up to the level on which it is.
+    """
+    below = 0.0
+    for n in range(window.distances.shape[0]):
+        free = free_on(window, n, x, z)
+        if free < _MET:
+            return 0.0 if n == 0 else float(min(LEVELS[n - 1] + _UP + below, LEVELS[n] + _UP + _MET))
+        below = free
+    return np.inf
