@@ -15,6 +15,9 @@ from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import judge
+from elbowroom.experiment.motion.scripts import Script, open_ground, strokes
+from elbowroom.experiment.motion.turning import head_lead
+from elbowroom.experiment.motion.walked import walk
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
@@ -100,3 +103,13 @@ def test_the_head_leads_a_turn_by_some_tenths_of_a_second(side: float) -> None:
     lead = (np.argmax(heading > half) - np.argmax(yaw > half)) / RATE
     assert 0.2 <= lead <= 0.5
     assert abs(yaw[-1] - heading[-1]) < 0.05
+
+
+@pytest.mark.parametrize("degrees", [90.0, -90.0, 120.0])
+def test_who_is_told_to_turn_looks_there_before_going_there(degrees: float) -> None:
+    """By 0.2 to 1 s: legs do not go aside before the body has turned."""
+    ahead, turned = (Command(forward=1.0, direction=direction) for direction in (0.0, np.deg2rad(degrees)))
+    walked = walk(HUMANOID, Script("turn", open_ground(), strokes((1.5, ahead), (9.0, turned)), 3.5))
+    lead = head_lead(walked, HUMANOID.skeleton)
+    assert lead is not None
+    assert 0.2 <= lead <= 1.0

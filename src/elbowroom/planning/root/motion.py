@@ -24,7 +24,8 @@ _PHASE_STEPS = 6  # midpoints per key interval when the cadence is integrated
 _FIRST = plain(0)
 _STILL = 1e-9  # lengths and speeds that are divided by are at least this
 _REST = 1e-6  # m/s and rad/s: what is slower stands
-_SIDLE = 0.6  # radians: the greatest angle between the path and the body's front when walking forward
+_SIDLE = 0.55  # radians: the greatest angle between the path and the body's front when walking forward
+_ASIDE = 0.5 * math.pi  # radians: and where the path leads so far aside one goes on as one faces
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
 _GRADE_OVER = 0.12  # metres to either side between which the grade is taken
@@ -187,6 +188,14 @@ def _share_at(slow: Floats, state: Floats, interval: float) -> float:
     return share
 
 
+@helper
+def _sidled(error: float) -> float:
+    """How far from the front one goes whose way leads `error` radians aside of it: who has to turn far turns first."""
+    size = abs(error)
+    aside = size if size < _SIDLE else _SIDLE * max(_ASIDE - size, 0.0) / (_ASIDE - _SIDLE)
+    return aside if error > 0.0 else -aside
+
+
 @exact_kernel
 def follow(states: Floats, route: Floats, travel: Travel, interval: float, bounds: MotionBounds) -> None:
     """Fill the states by walking along `route` (m, 2), corner points x, z on the ground."""
@@ -206,7 +215,7 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
             front = heading + 0.5 * interval * (states[k, 5] + turn)
             error = wrapped(course - front)
             speed *= min(max(1.25 * np.cos(error), 0.0), 1.0)
-            course = front + min(max(error, -_SIDLE), _SIDLE)
+            course = front + _sidled(error)
         limited_step(states, k, speed * np.sin(course), speed * np.cos(course), turn, interval, bounds)
 
 
