@@ -174,6 +174,19 @@ def test_smoothness_does_not_depend_on_size_and_needs_movement() -> None:
     assert smoothness(np.ones((300, 3)), RATE) is None
 
 
+@pytest.mark.parametrize("stride", [0.97, 1.0, 1.1])
+def test_smoothness_does_not_hang_on_where_in_a_stride_one_looks(stride: float) -> None:
+    """Two strides may fill a window: if windows began at the same places of a stride, so would the figure."""
+    times, found = np.arange(330.0) / RATE, []
+    for begins in np.linspace(0.0, 1.0, 6, endpoint=False):
+        turn = 2.0 * np.pi * (times / stride + begins)
+        places = np.stack([0.02 * np.sin(turn + 1.0), 0.03 * np.cos(2.0 * turn), 0.2 * np.sin(turn)], axis=1)
+        swing = smoothness(places, RATE)
+        assert swing is not None
+        found.append((swing.sparc, swing.jerk))
+    assert np.ptp(found, axis=0).max() < 0.1
+
+
 def test_a_head_that_turns_first_leads() -> None:
     t = np.arange(0.0, 4.0, 1.0 / RATE)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 WINDOW = 2.0  # seconds: both measures depend on how long a movement is watched
-_STEP = 0.5  # seconds from one window to the next
+_STEP = 0.05  # seconds from one window to the next: they begin anywhere in a stride
 _HIGHEST, _LEAST = 10.0, 0.05  # Hz; part of the spectrum's top below which it ends
 _PADDING = 4  # powers of two by which the spectrum is refined
 _LOW_PASS = 8.0  # Hz, as recorded markers are smoothed
