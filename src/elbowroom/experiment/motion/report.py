@@ -160,7 +160,7 @@ def _of_gait(gait: Gait) -> Sequence[Band]:
                 at_most(f"{at}: {joint} beyond the published range", beyond, 0.0, "deg")
                 for joint, beyond in gait.curves.outside.items()
             ),
-            Band(f"{at}: wrist, SPARC", gait.wrist.sparc if gait.wrist else None, -3.1, -2.4, ""),
+            Band(f"{at}: wrist, SPARC", gait.wrist.sparc if gait.wrist else None, -3.0, -2.4, ""),
             Band(f"{at}: wrist, log dimensionless jerk", gait.wrist.jerk if gait.wrist else None, -13.0, -11.5, ""),
             Band(f"{at}: pelvis, log dimensionless jerk", gait.pelvis.jerk if gait.pelvis else None, -12.0, -8.0, ""),
         ]
