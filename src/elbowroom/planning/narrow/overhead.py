@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.narrow.figure import Figure
 from elbowroom.planning.narrow.places import NarrowPlaces, free_on
 from elbowroom.world.obstacles.free_map import LEVELS, Window
@@ -37,7 +37,7 @@ def _low_ones(window: Window, figure: Figure, ways: Floats) -> Floats:
     return out[:count].copy()
 
 
-@exact_kernel
+@helper
 def _headroom(window: Window, x: float, z: float) -> float:
     """How high the lowest thing over a place hangs, metres; 0 where one stands there.
 
