@@ -23,7 +23,7 @@ def test_what_stands_is_dark_and_lies_where_one_who_looks_along_z_sees_it() -> N
     leg = Leg((2.0, 1.0), "arrived", "", (2.0, 0.0, 1.0), 1.0, 1.0, 0, 0.0, 0.1)
     result = TourResult("made", 0, 1, 1, 0, 0.0, 1.0, NONE, NONE, NONE, NONE, NONE, (leg,))
     area = Rectangle(0.0, 0.0, 3.9, 4.9)
-    known = RoomMap(area, one_plane((50, 40), 0.1), room.reshape(-1), room.reshape(-1))
+    known = RoomMap(area, one_plane((50, 40), 0.1), room.reshape(-1), room.reshape(-1), np.zeros(2000, np.float32))
     picture = tour_picture(known, 0.2, np.array([[2.0, 0.0, 0, 0, 0, 0, 0]] * 2), result)
     high, wide = picture.shape[:2]
     dark = np.argwhere((np.abs(picture.astype(int) - DARK) < 3).all(axis=2)).mean(axis=0)

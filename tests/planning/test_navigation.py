@@ -67,7 +67,13 @@ def naive_costs(room: NDArray[np.float32], above: NDArray[np.float32], goal: tup
 
 def costly_of(room: NDArray[np.float32], above: NDArray[np.float32]) -> Costly:
     rows, columns = room.shape
-    return Costly(one_plane((rows, columns), CELL), room.reshape(-1), above.reshape(-1), PRICES)
+    return Costly(
+        one_plane((rows, columns), CELL),
+        room.reshape(-1),
+        above.reshape(-1),
+        np.zeros(rows * columns, np.float32),
+        PRICES,
+    )
 
 
 def field_of(room: NDArray[np.float32], above: NDArray[np.float32], goal: tuple[int, int]) -> Field:

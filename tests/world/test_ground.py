@@ -9,7 +9,18 @@ import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.ground.ground import STEP, Ground, Sole, height_along, height_at, level_about, sole_on
+from elbowroom.world.ground.ground import (
+    STEP,
+    Ground,
+    Sole,
+    eased_height,
+    firm_at,
+    height_along,
+    height_at,
+    level_about,
+    sole_on,
+    under_body,
+)
 from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.scene import Scene
 
@@ -125,14 +136,20 @@ def test_a_sole_lies_on_a_slope(yaw: float) -> None:
 
 
 def below_ground(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: float) -> float:
-    """How far the sole is in the ground at most, looked at everywhere."""
+    """How far the sole is in the ground at most, which is followed step by step from the ankle to toes and heel."""
     height, pitch = sole_on(ground, sole, place, yaw)
-    deepest = -math.inf
-    for ahead in np.linspace(-sole.back, sole.ahead, 13).tolist():
-        for aside in np.linspace(-sole.aside, sole.aside, 3).tolist():
-            x = place[0] + ahead * math.sin(yaw) + aside * math.cos(yaw)
-            z = place[2] + ahead * math.cos(yaw) - aside * math.sin(yaw)
-            deepest = max(deepest, height_at(ground, x, z, place[1]) - (height - ahead * math.tan(pitch)))
+    rows, deepest = np.linspace(-sole.back, sole.ahead, 13), -math.inf
+    ankle = int(np.argmin(np.abs(rows)))
+    for way in (rows[ankle:], rows[:ankle][::-1]):
+        near = place[1]
+        for ahead in way.tolist():
+            found = -math.inf
+            for aside in np.linspace(-sole.aside, sole.aside, 3).tolist():
+                x = place[0] + ahead * math.sin(yaw) + aside * math.cos(yaw)
+                z = place[2] + ahead * math.cos(yaw) - aside * math.sin(yaw)
+                found = max(found, firm_at(ground, x, z, near))
+            near = found if math.isfinite(found) else near
+            deepest = max(deepest, found - (height - ahead * math.tan(pitch)))
     return deepest
 
 
@@ -169,3 +186,30 @@ def test_where_ground_is_told_to_be_level_it_is() -> None:
             heights = [height_at(ground, float(a), float(b), level) for a, b in around]
             assert heights == pytest.approx([level] * len(heights), abs=1e-3)
     assert told > 100, "level ground is hardly ever noticed"
+
+
+@pytest.mark.parametrize("grade", [0.55, 0.85, 1.0])
+def test_on_steep_treads_a_body_is_carried_higher_but_on_no_ramp(grade: float) -> None:
+    """By a tenth of a metre where treads rise by one in one; on an even stair and on a ramp it is as high as these."""
+    rise = 0.17
+    deep = rise / grade
+    treads = [box((0.0, 0.5 * rise * i, deep * i), (2.0, rise * i, deep)) for i in range(1, 11)]
+    stair, slope = scene_with(*treads).ground, scene_with(ramp(0.5)).ground
+    more, near = [], rise * 4
+    for z in np.linspace(4.0 * deep, 6.0 * deep, 21).tolist():
+        near = eased_height(stair, (0.0, near, z), 0.0, z)
+        more.append(near - grade * z)
+    assert np.mean(more) == pytest.approx(max(0.3 * (grade - 0.65), 0.0), abs=0.02)
+    assert np.ptp(more) < 0.4 * rise, "it goes up more evenly than the treads"
+    assert eased_height(slope, (0.0, 0.5, 2.0), 0.0, 2.0) == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_ground_under_a_body_is_found_wherever_it_is_carried() -> None:
+    """On and about kerbs and treads, and from what a body is carried over them: that of its place."""
+    treads = [box((0.0, 0.09 * i, 1.0 + 0.18 * i), (2.0, 0.18 * i, 0.18)) for i in range(1, 9)]
+    for ground in (scene_with(*treads).ground, scene_with(box((0.0, 0.1, 3.0), (2.0, 0.2, 2.0))).ground):
+        near, height = 0.0, 0.0
+        for z in np.linspace(0.5, 2.4, 150).tolist():
+            near = height_along(ground, (0.0, near, z - 0.01), 0.0, z)
+            height = eased_height(ground, (0.0, height, z - 0.01), 0.0, z)
+            assert under_body(ground, 0.0, height, z) == pytest.approx(near)

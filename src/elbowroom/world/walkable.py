@@ -65,16 +65,16 @@ def walkable_window(
     shape: tuple[int, int],
     cell: float,
     farthest: float = FARTHEST,
-    heights: Floats | None = None,
+    heights: tuple[Floats, Floats] | None = None,
 ) -> WalkableMap:
-    """Clearance over a grid that starts at `origin` and runs along `heading`, of the stance at `heights` (ahead, left).
+    """Clearance over a grid that starts at `origin` and runs along `heading`, of the stance.
 
-    At height 0 where none are given. Clearance above `farthest` metres is given as `farthest`: the less, the sooner it
-    is done.
+    It stands at `heights`, those (ahead, left) of its lower end and of its upper one, or at height 0. Clearance above
+    `farthest` metres is given as `farthest`: the less, the sooner it is done.
     """
     out = np.full(shape, farthest, np.float32)
     place = np.array([*origin, np.sin(heading), np.cos(heading), cell, farthest])
-    stands = np.zeros(shape, np.float32) if heights is None else heights.astype(np.float32)
+    stands = np.zeros((2, *shape), np.float32) if heights is None else np.stack(heights).astype(np.float32)
     _fill_window(near, np.array(stance, np.float32), place, stands, out)
     return WalkableMap(origin, heading, cell, out)
 
@@ -108,9 +108,9 @@ def _fill_window(near: Nearby, stance: Floats32, place: Floats, heights: Floats3
                 k, along, aside = i * columns + j, (first_a + i) * cell, (first_l + j) * cell
                 x = place[0] + along * sine + aside * cosine
                 z = place[1] + along * cosine - aside * sine
-                height = heights[first_a + i, first_l + j]
-                segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, height + stance[1], z
-                segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, height + stance[2], z
+                low, high = heights[0, first_a + i, first_l + j], heights[1, first_a + i, first_l + j]
+                segments[0, 0, k], segments[0, 1, k], segments[0, 2, k] = x, low + stance[1], z
+                segments[0, 3, k], segments[0, 4, k], segments[0, 5, k] = x, high + stance[2], z
                 least[k] = out[first_a + i, first_l + j]
         lower_clearance(segments, stance[:1], row_of(near, b), least)
         for i in range(rows):

@@ -19,7 +19,7 @@ from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on
+from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 
 Floats = NDArray[np.float64]
@@ -188,11 +188,16 @@ def _climbed(w: float, rise: float) -> float:
 
 
 @exact_kernel
-def _stand(ground: Ground, sole: Sole, root: Floats, x: float, z: float, yaw: float) -> tuple[float, float]:
-    """Height and slope of the ground under a foot at a place in the root's frame; minus infinity without any."""
+def _stand(
+    ground: Ground, sole: Sole, root: Floats, under: float, x: float, z: float, yaw: float
+) -> tuple[float, float]:
+    """Height and slope of the ground under a foot at a place in the root's frame; minus infinity without any.
+
+    One comes there from the ground `under` the root.
+    """
     sine, cosine = math.sin(root[2]), math.cos(root[2])
     wx, wz = root[0] + x * cosine + z * sine, root[1] - x * sine + z * cosine
-    near = height_along(ground, (root[0], root[HEIGHT], root[1]), wx, wz)
+    near = height_along(ground, (root[0], under, root[1]), wx, wz)
     if near == _NONE:
         return near, 0.0
     return sole_on(ground, sole, (wx, near, wz), root[2] + yaw)
@@ -221,8 +226,9 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
 
     It goes from one place to the other as the cycle has it, at rest over the ground at both ends.
     """
-    begin, first = _stand(ground, sole, root, places[0], places[1], places[2])
-    end, last = _stand(ground, sole, root, places[3], places[4], places[5])
+    under = under_body(ground, root[0], root[HEIGHT], root[1])
+    begin, first = _stand(ground, sole, root, under, places[0], places[1], places[2])
+    end, last = _stand(ground, sole, root, under, places[3], places[4], places[5])
     if min(begin, end) == _NONE:
         return _NONE, 0.0
     part, higher = _climbed(w, end - begin), 0.0
@@ -231,7 +237,7 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
         u = k / _LOOKS
         gone = _eased(u)
         x, z = places[0] + gone * (places[3] - places[0]), places[1] + gone * (places[4] - places[1])
-        over, _ = _stand(ground, longer, root, x, z, places[2] + gone * (places[5] - places[2]))
+        over, _ = _stand(ground, longer, root, under, x, z, places[2] + gone * (places[5] - places[2]))
         lacks = over - begin - _climbed(u, end - begin) * (end - begin)
         if lacks > _LEVEL:
             higher = max(higher, (lacks + _OVER) / max(_raised(u), _LEAST))
@@ -253,7 +259,8 @@ def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Flo
             elif w > 0.0:
                 height, slope = _swung(ground, sole, root, places, w)
             else:
-                height, slope = _stand(ground, sole, root, places[0], places[1], places[2])
+                under = under_body(ground, root[0], root[HEIGHT], root[1])
+                height, slope = _stand(ground, sole, root, under, places[0], places[1], places[2])
             found[n] = found[n] and height > _NONE
             root[at], root[at + 1] = height - root[HEIGHT] if height > _NONE else 0.0, slope
     return found

@@ -1,7 +1,7 @@
 """How far it is to a place from everywhere near the way: Dijkstra's search (Numer. Math. 1, 1959) from that place.
 
-Costs are metres, dearer where there is little room, and where one has to duck. Who is led off the way by what
-stands or moves is still told where to go on.
+Costs are metres, dearer where there is little room, where it is steep, and where one has to duck. Who is led off the
+way by what stands or moves is still told where to go on.
 """
 
 from typing import NamedTuple
@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
+from elbowroom.world.ground.ground import EVEN_STAIR
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Points = NDArray[np.int32]
 
 _EMPTY = plain(0)  # size of a heap
+_ON_STAIR = 0.3  # metres that are looked ahead on what is steeper than an even stair
 _BETTER = 1e-9  # metres by which a cost must be less to count
 _STRAIGHT = 8  # of the moves that lead to a neighbour; the others pass between two
 _MOVES = np.array(
@@ -36,6 +38,8 @@ class Prices(NamedTuple):
     tight: float = 4.0  # extra for each metre that is walked where there is only `slim`
     headroom: float = 0.15  # metres to what hangs low: with less one ducks
     ducked: float = 2.0  # extra for each metre that is walked so
+    stair: float = EVEN_STAIR  # metres up or down in a metre that cost nothing extra: an even stair's
+    steep: float = 12.0  # extra for each metre that is walked where it is steeper by one: on the outside of a spiral
 
 
 class Field(NamedTuple):
@@ -51,6 +55,7 @@ class Costly(NamedTuple):
     surfaces: Surfaces
     room: Floats32  # (N,) metres
     above: Floats32  # (N,) metres
+    steep: Floats32  # (N,) metres up or down in a metre
     prices: Prices
 
 
@@ -62,7 +67,8 @@ def price_at(costly: Costly, n: int) -> float:
         return np.inf
     narrow = min(max((prices.roomy - here) / (prices.roomy - prices.slim), 0.0), 1.0)
     ducked = prices.ducked if costly.above[n] < prices.headroom else 0.0
-    return float(1.0 + prices.tight * narrow * narrow + ducked)
+    steeper = max(costly.steep[n] - prices.stair, 0.0)
+    return float(1.0 + prices.tight * narrow * narrow + prices.steep * steeper * steeper + ducked)
 
 
 @exact_kernel
@@ -119,19 +125,23 @@ def aim_from(field: Field, costly: Costly, node: int, i: float, j: float, far: f
     """The place to walk straight to from `node`, next to row `i` and column `j`: the farthest on the way within sight.
 
     In sight is what lies within `far` metres along the way, and to which the straight line costs no more than the
-    way does. -1 where no way is known.
+    way does. On a steep stair the next place always is, and one looks no farther than a pace, so that corners follow
+    the treads. -1 where no way is known.
     """
     cost, onward, surfaces = field.cost, field.onward, costly.surfaces
     if not np.isfinite(cost[node]):
         return -1
-    height, first, aim, walked = surfaces.heights[node], cost[node], node, 0.0
+    height, first, begin, aim, walked = surfaces.heights[node], cost[node], node, node, 0.0
     while onward[node] >= 0 and walked < far:
         after = onward[node]
         here, there, columns = surfaces.points[node], surfaces.points[after], surfaces.columns
         walked += surfaces.cell * np.hypot(there // columns - here // columns, there % columns - here % columns)
         node = after
-        if straight_cost(costly, (i, j), height, node) <= first - cost[node] + surfaces.cell:
+        steep, dear = costly.steep[node] > costly.prices.stair, first - cost[node] + surfaces.cell
+        if (steep and aim == begin) or straight_cost(costly, (i, j), height, node) <= dear:
             aim = node
+        if steep and walked >= _ON_STAIR:
+            break
     return int(aim)
 
 

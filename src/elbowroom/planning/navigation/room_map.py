@@ -10,6 +10,8 @@ from elbowroom.jit import kernel
 from elbowroom.kept_arrays import Arrays, kept
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.planning.navigation.surfaces import Surfaces, one_plane, over_ground, to_edges
+from elbowroom.world.ground.ground import Ground, tops_about
+from elbowroom.world.ground.steepness import grades_about
 from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
 from elbowroom.world.obstacles.layout import Nearby
@@ -65,6 +67,7 @@ class RoomMap:
     surfaces: Surfaces
     room: Floats32  # (N,) metres to the nearest edge of the floor and to what stands, up to where one ducks
     above: Floats32  # (N,) metres to what stands above that, up to the top of the head
+    steep: Floats32  # (N,) metres that the ground rises in a metre
 
     @property
     def cell(self) -> float:
@@ -126,14 +129,14 @@ def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     found = kept(__file__, whole, lambda: _written(_made(scene, girth, area)))
     columns, cell, step = found["grid"].tolist()
     surfaces = Surfaces(int(columns), cell, step, found["starts"], found["points"], found["heights"])
-    return RoomMap(area, surfaces, found["room"], found["above"])
+    return RoomMap(area, surfaces, found["room"], found["above"], found["steep"])
 
 
 def _written(room: RoomMap) -> Arrays:
     on = room.surfaces
     grid = np.array([on.columns, on.cell, on.step])
     arrays = {"grid": grid, "starts": on.starts, "points": on.points, "heights": on.heights}
-    return arrays | {"room": room.room, "above": room.above}
+    return arrays | {"room": room.room, "above": room.above, "steep": room.steep}
 
 
 def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
@@ -141,24 +144,42 @@ def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     cell = max(CELL, float(np.sqrt(wide * deep / _MOST_POINTS)))
     shape, corner = (int(deep / cell) + 1, int(wide / cell) + 1), (area.low_x, area.low_z)
     plain = scene.ground.plain
-    surfaces = one_plane(shape, cell) if plain else over_ground(scene.ground, corner, shape, cell)
+    surfaces = one_plane(shape, cell) if plain else over_ground(scene.ground, corner, shape, cell, girth.stooped)
     low = _LOW if plain else scene.ground.step + girth.slim - _LESS
+    rises, steep = _climbs(scene.ground, surfaces, corner, girth.slim)
     near = scene.obstacles.near(np.array(area[:2]) - FARTHEST, np.array(area[2:]) + FARTHEST)
     spans = (low, girth.stooped - girth.slim), (girth.stooped, girth.tall)
     below, above = (np.full(len(surfaces.points), FARTHEST, np.float32) for _ in spans)
-    for (least, most), out in zip(spans, (below, above), strict=True):
-        _lower(near, surfaces, corner, (least, max(least, most)), out)
+    for (least, most), out, more in zip(spans, (below, above), (rises, np.zeros_like(rises)), strict=True):
+        _lower(near, surfaces, corner, (least, max(least, most)), more, out)
     edges = _to_edge(scene, area, shape, cell) if plain else to_edges(surfaces, FARTHEST)
-    return RoomMap(area, surfaces, below if edges is None else np.minimum(below, edges + _OVER), above)
+    room = below if edges is None else np.minimum(below, edges + _OVER)
+    return RoomMap(area, surfaces, room, above, steep)
+
+
+def _climbs(ground: Ground, surfaces: Surfaces, corner: tuple[float, float], radius: float) -> tuple[Floats, Floats32]:
+    """How far the treads about each place (N,) rise above a step from it, and how steep it is there (N,).
+
+    What is stood on is not in the way.
+    """
+    if ground.plain:
+        return np.zeros(len(surfaces.points)), np.zeros(len(surfaces.points), np.float32)
+    rows, columns = np.divmod(surfaces.points, surfaces.columns)
+    places = np.stack([corner[0] + surfaces.cell * columns, corner[1] + surfaces.cell * rows], axis=1)
+    tops = tops_about(ground, surfaces.heights, places, radius)
+    rises: Floats = np.maximum(tops - surfaces.heights - ground.step, 0.0)
+    return rises, grades_about(ground, surfaces.heights, places, radius).astype(np.float32)
 
 
 @kernel
 def _lower(
-    near: Nearby, surfaces: Surfaces, corner: tuple[float, float], span: tuple[float, float], out: Floats32
-) -> None:
+    near: Nearby, surfaces: Surfaces, corner: tuple[float, float], span: tuple[float, float], rises: Floats,
+    out: Floats32,
+) -> None:  # fmt: skip
     """Lower `out` (N,) to the distance of upright lines over the places, between two heights above each, from things.
 
-    The places around one thing are one batch of the clearance kernel.
+    Lines begin so much higher as `rises` (N,) say, but no higher than they end. The places around one thing are one
+    batch of the clearance kernel.
     """
     columns, cell = surfaces.columns, surfaces.cell
     rows, thin = (surfaces.starts.shape[0] - 1) // columns, np.zeros(1, np.float32)
@@ -178,10 +199,11 @@ def _lower(
         for i in range(first_i, last_i):
             for n in range(surfaces.starts[i * columns + first_j], surfaces.starts[i * columns + last_j]):
                 height = surfaces.heights[n]
-                if height + span[0] > top + FARTHEST or height + span[1] < bottom - FARTHEST:
+                low = height + min(span[0] + rises[n], span[1])
+                if low > top + FARTHEST or height + span[1] < bottom - FARTHEST:
                     continue
                 segments[0, 0, count] = segments[0, 3, count] = corner[0] + cell * (surfaces.points[n] % columns)
-                segments[0, 1, count], segments[0, 4, count] = height + span[0], height + span[1]
+                segments[0, 1, count], segments[0, 4, count] = low, height + span[1]
                 segments[0, 2, count] = segments[0, 5, count] = corner[1] + cell * i
                 owners[count] = n
                 count += 1

@@ -37,53 +37,44 @@ def one_plane(shape: tuple[int, int], cell: float) -> Surfaces:
     return Surfaces(shape[1], cell, np.inf, np.arange(count + 1), np.arange(count), np.zeros(count))
 
 
-def over_ground(ground: Ground, corner: tuple[float, float], shape: tuple[int, int], cell: float) -> Surfaces:
+def over_ground(
+    ground: Ground, corner: tuple[float, float], shape: tuple[int, int], cell: float, headroom: float
+) -> Surfaces:
     """Where the ground is over points of `shape`, rows along z and columns along x, from a corner x and z on.
 
-    Gaps of one point are closed. What lies less than a step under other ground cannot be stood on.
+    What lies less than a step, or less than the `headroom`, under other ground cannot be stood on.
     """
     starts = np.zeros(shape[0] * shape[1] + 1, np.int64)
     none = np.empty(0)
-    _fill(ground, corner, shape[1], cell, starts, none, writes=False)
+    grid = (corner[0], corner[1], cell)
+    _fill(ground, grid, shape[1], headroom, starts, none, writes=False)
     np.cumsum(starts, out=starts)
     heights = np.empty(int(starts[-1]))
-    _fill(ground, corner, shape[1], cell, starts, heights, writes=True)
+    _fill(ground, grid, shape[1], headroom, starts, heights, writes=True)
     points = np.repeat(np.arange(shape[0] * shape[1]), np.diff(starts))
     return Surfaces(shape[1], cell, ground.step, starts, points, heights)
 
 
 @exact_kernel
 def _fill(
-    ground: Ground, corner: tuple[float, float], columns: int, cell: float, starts: Longs, out: Floats, writes: bool
-) -> None:
-    """Count the surfaces over each point (in `starts`, one further on), or write them to where these begin."""
-    own, other = np.empty(_MOST), np.empty(_MOST)
+    ground: Ground, grid: tuple[float, float, float], columns: int, headroom: float, starts: Longs, out: Floats,
+    writes: bool,
+) -> None:  # fmt: skip
+    """Count the surfaces over each point (in `starts`, one further on), or write them to where these begin.
+
+    The `grid` begins at x and z, its points lie so far apart.
+    """
+    own, (low_x, low_z, cell) = np.empty(_MOST), grid
     for point in range(starts.shape[0] - 1):
-        x, z = corner[0] + cell * (point % columns), corner[1] + cell * (point // columns)
-        count = heights_at(ground, x, z, own)
-        if count == 0:
-            count = _bridged(ground, x, z, cell, own, other)
+        many, count = heights_at(ground, low_x + cell * (point % columns), low_z + cell * (point // columns), own), 0
+        for i in range(many):
+            if i + 1 == many or own[i + 1] - own[i] >= headroom:
+                own[count] = own[i]
+                count += 1
         if writes:
             out[starts[point] : starts[point] + count] = own[:count]
         else:
             starts[point + 1] = count
-
-
-@helper
-def _bridged(ground: Ground, x: float, z: float, cell: float, own: Floats, other: Floats) -> int:
-    """The heights of ground on both sides of a narrow gap, along x or z, the higher of both sides."""
-    for side in range(2):
-        dx, dz = (cell, 0.0) if side == 0 else (0.0, cell)
-        count, many, found = heights_at(ground, x - dx, z - dz, own), heights_at(ground, x + dx, z + dz, other), 0
-        for i in range(count):
-            for j in range(many):
-                if abs(own[i] - other[j]) <= ground.step:
-                    own[found] = max(own[i], other[j])
-                    found += 1
-                    break
-        if found > 0:
-            return found
-    return 0
 
 
 @helper

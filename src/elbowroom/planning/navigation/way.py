@@ -101,7 +101,7 @@ class Way:
 
     @property
     def _costly(self) -> Costly:
-        return Costly(self.room.surfaces, self.room.room, self.room.above, self.prices)
+        return Costly(self.room.surfaces, self.room.room, self.room.above, self.room.steep, self.prices)
 
     def _on_the_way(self, place: Place) -> int | None:
         """The place nearest to another from which the way is known, if one is near."""
@@ -127,7 +127,7 @@ def way_over(room: RoomMap, prices: Prices, start: Place, goal: Place, closed: S
     begin = nearest_of(room, free, start, _BESIDE)
     if begin is None:
         raise NoWayError(f"there is no way out of {said(start)}: there is less than {2.0 * prices.slim:.2f} m of room")
-    costly = Costly(room.surfaces, room.room, room.above, prices)
+    costly = Costly(room.surfaces, room.room, room.above, room.steep, prices)
     field = field_to(costly, last, begin, _BEYOND)
     if not np.isfinite(field.cost[begin]):
         raise NoWayError(f"no way leads from {said(start)} to {said(goal)}")
@@ -140,7 +140,7 @@ def reachable_over(room: RoomMap, prices: Prices, start: Place) -> NDArray[np.bo
     begin = nearest_of(room, free, start, _BESIDE)
     if begin is None:
         return np.zeros_like(free)
-    costly = Costly(room.surfaces, room.room, room.above, prices)
+    costly = Costly(room.surfaces, room.room, room.above, room.steep, prices)
     return np.isfinite(field_to(costly, begin, _NOBODY, _BEYOND).cost)
 
 

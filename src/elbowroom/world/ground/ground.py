@@ -4,6 +4,9 @@ Ground is the level plane at height 0 and every surface that is level enough to 
 above one another, treads, ramps, sills, kerbs. So a place has many heights, and each question says near which height it
 is meant: nothing is ground that lies more than a step from there. Surfaces are triangles, held exactly: the grid only
 finds them. Where nothing but the plane can be reached by steps, the ground is plain and costs a look at a flag.
+
+Gaps no wider than a foot is long are spanned (`gaps.py`): a body goes over them as over ground, but no foot stands
+there.
 """
 
 import math
@@ -21,7 +24,8 @@ Bools = NDArray[np.bool_]
 STEP = 0.25  # metres: higher is climbed, not walked
 STEEPEST = math.radians(30.0)  # of a surface that one walks on
 PLACE = 0.1  # metres between places that a way over the ground is looked at
-LOWEST, HIGHEST = 9, 10  # columns of triangles
+LOWEST, HIGHEST, SPANS = 9, 10, 11  # columns of triangles
+FIRM, SPANNED = 0.5, 1.5  # of what `SPANS` tells: ground alone, or gaps that are spanned too
 _NEXT = np.uint64(1)
 _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
@@ -30,6 +34,11 @@ _ABOUT = 0.1  # metres by which a body's height may differ from the ground about
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
+_SQUARES = 0.5 * _AROUND * _EASED**2 * (_RINGS + 1) * (2 * _RINGS + 1) / (6 * _RINGS)  # of how far these are along x
+EVEN_STAIR = 0.65  # metres that a stair of the usual kind rises in a metre, at most
+_LIFTED, _MOST_LIFTED = 0.3, 0.12  # metres that a body is carried higher where it is steeper by one in one; at most
+_TREADS = 0.04  # metres that ground is uneven by where it is all treads
+_CARRIED = 0.06  # metres that a body is above the ground at its place, in the middle of what it may be
 _UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
 
 
@@ -43,7 +52,7 @@ class Ground(NamedTuple):
     shape: tuple[int, int]  # cells along x and z
     starts: Longs  # (cells + 1,) where the triangles over each cell, numbered ix * shape[1] + iz, begin
     members: Longs  # (M,) their numbers, the same several times
-    triangles: Floats  # (T, 11), those that reach higher first, as `planes_of` has them
+    triangles: Floats  # (T, 12), those that reach higher first, as `planes_of` has them
     level: Bools  # (cells,) where the plane at height 0 is ground
     beyond: bool  # whether it is, outside of the grid
     even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
@@ -59,7 +68,7 @@ class Sole(NamedTuple):
 
 
 PLAIN = Ground(
-    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 11)),
+    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 12)),
     np.zeros(0, np.bool_), True, np.zeros(1, np.int64), np.zeros(0),
 )  # fmt: skip
 
@@ -76,7 +85,7 @@ def _is_over(t: Floats, px: float, pz: float) -> bool:
 def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
     """Write all heights at which there is ground at a place, from the lowest up, as many as `out` holds; how many.
 
-    Of those less than a step apart the highest.
+    Of those less than a step apart the highest. Spanned gaps are ground.
     """
     ix, iz = math.floor((x - ground.corner[0]) / ground.cell), math.floor((z - ground.corner[1]) / ground.cell)
     inside = not ground.plain and 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]
@@ -98,8 +107,8 @@ def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
     return kept
 
 
-@exact_kernel
-def height_at(ground: Ground, x: float, z: float, near: float) -> float:
+@helper
+def _highest(ground: Ground, x: float, z: float, near: float, kinds: float) -> float:
     """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any.
 
     It has one way out: with more Numba counts who holds the arrays of `ground`, which takes longer than all else.
@@ -113,12 +122,27 @@ def height_at(ground: Ground, x: float, z: float, near: float) -> float:
     while m < last and ground.triangles[ground.members[m], HIGHEST] > max(best, low - _INSIDE):
         t = np.uint64(ground.members[m])
         m += _NEXT
-        if ground.triangles[t, LOWEST] <= high:
+        if ground.triangles[t, LOWEST] <= high and ground.triangles[t, SPANS] < kinds:
             px, pz = x - ground.triangles[t, 0], z - ground.triangles[t, 1]
             height = ground.triangles[t, 2] + ground.triangles[t, 7] * px + ground.triangles[t, 8] * pz
             if best < height and low <= height <= high and _is_over(ground.triangles[t], px, pz):
                 best = height
     return best
+
+
+@exact_kernel
+def height_at(ground: Ground, x: float, z: float, near: float) -> float:
+    """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any.
+
+    Gaps that are spanned are ground.
+    """
+    return _highest(ground, x, z, near, SPANNED)
+
+
+@exact_kernel
+def firm_at(ground: Ground, x: float, z: float, near: float) -> float:
+    """The same of ground that feet can stand on: gaps that are spanned are none."""
+    return _highest(ground, x, z, near, FIRM)
 
 
 @exact_kernel
@@ -150,6 +174,13 @@ def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -
 
 
 @exact_kernel
+def under_body(ground: Ground, x: float, height: float, z: float) -> float:
+    """The ground under a body that is carried at a height (`eased_height`); that height where there is none."""
+    found = height_at(ground, x, z, height - _CARRIED)
+    return found if found > _NONE else height
+
+
+@exact_kernel
 def height_along(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
     """The ground at a place as one comes to it from `start` (x, height, z), step by step; minus infinity without any.
 
@@ -171,19 +202,24 @@ def height_along(ground: Ground, start: tuple[float, float, float], x: float, z:
 def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: float) -> tuple[float, float]:
     """How a foot stands whose ankle is over a place (x, height, z), turned by `yaw`: it lies on the highest ground.
 
+    From the ankle that is followed step by step to toes and heel, so a sole may lie over several treads, and over gaps.
     Returns the height of the sole under the ankle, minus infinity where there is no ground, and its pitch in radians,
     positive with the toes down: on a slope it lies on it, on what is uneven it is level.
     """
     if ground.plain:
         return 0.0, 0.0
     sine, cosine, highest = math.sin(yaw), math.cos(yaw), np.empty(_ALONG)
-    length = sole.back + sole.ahead
-    for i in range(_ALONG):
+    length, ankle = sole.back + sole.ahead, int(sole.back / (sole.back + sole.ahead) * (_ALONG - 1) + 0.5)
+    near = place[1]
+    for k in range(_ALONG):
+        i = ankle + k if ankle + k < _ALONG else _ALONG - 1 - k  # from the ankle to the toes, then to the heel
+        near = place[1] if i == ankle - 1 else near
         ahead, highest[i] = length * i / (_ALONG - 1) - sole.back, _NONE
         for j in range(_ACROSS):
             aside = sole.aside * (2.0 * j / (_ACROSS - 1) - 1.0)
             x, z = place[0] + ahead * sine + aside * cosine, place[2] + ahead * cosine - aside * sine
-            highest[i] = max(highest[i], height_at(ground, x, z, place[1]))
+            highest[i] = max(highest[i], firm_at(ground, x, z, near))
+        near = highest[i] if highest[i] > _NONE else near
     grade = 0.0
     if min(highest[0], highest[-1]) > _NONE:
         grade = (highest[-1] - highest[0]) / length
@@ -203,7 +239,9 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
 def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
     """How high a body is that walks there from `start` (x, height, z): the mean of the ground about the place.
 
-    Minus infinity where there is none. What is not reached step by step from the middle counts as what is before it.
+    On treads steeper than an even stair's it is higher: soles lie on the highest that they are over, and legs that
+    stand are to be as straight as on the plane, or shins come into the next treads. Minus infinity where there is no
+    ground. What is not reached step by step from the middle counts as what is before it.
     """
     if ground.plain:
         return 0.0
@@ -211,26 +249,62 @@ def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z:
     level = level_about(ground, x, z, reach, start[1])
     if level > _NONE:
         return level
-    middle = height_along(ground, start, x, z)
-    total = middle
+    middle = height_along(ground, (start[0], under_body(ground, start[0], start[1], start[2]), start[2]), x, z)
+    total, squares, along_x, along_z = 0.0, 0.0, 0.0, 0.0
     for i in range(_AROUND):
         angle, near = 2.0 * math.pi * (i + 0.5) / _AROUND, middle
         for j in range(_RINGS):
             away = _EASED * (j + 1.0) / _RINGS
+            dx, dz = away * math.sin(angle), away * math.cos(angle)
+            found = height_at(ground, x + dx, z + dz, near)
+            if found > _NONE:
+                near = found
+            above = near - middle
+            total, squares = total + above, squares + above * above
+            along_x, along_z = along_x + dx * above, along_z + dz * above
+    if middle == _NONE:
+        return middle
+    count = 1.0 + _AROUND * _RINGS
+    mean, steep = total / count, math.hypot(along_x, along_z) / _SQUARES
+    uneven = math.sqrt(max(squares / count - mean * mean - steep * steep * _SQUARES / count, 0.0))
+    lifted = min(_LIFTED * max(steep - EVEN_STAIR, 0.0), _MOST_LIFTED)
+    return middle + mean + lifted * min(uneven / _TREADS, 1.0)
+
+
+@exact_kernel
+def top_about(ground: Ground, x: float, height: float, z: float, radius: float) -> float:
+    """The highest ground as far as `radius` metres about a place, as one comes to it from there step by step."""
+    top = height
+    if ground.plain or level_about(ground, x, z, radius, height) > _NONE:
+        return top
+    for i in range(_AROUND):
+        angle, near = 2.0 * math.pi * (i + 0.5) / _AROUND, height
+        for j in range(_RINGS):
+            away = radius * (j + 1.0) / _RINGS
             found = height_at(ground, x + away * math.sin(angle), z + away * math.cos(angle), near)
             if found > _NONE:
                 near = found
-            total += near
-    return total / (1.0 + _AROUND * _RINGS)
+            top = max(top, near)
+    return top
+
+
+@exact_kernel
+def tops_about(ground: Ground, heights: Floats, places: Floats, radius: float) -> Floats:
+    """The highest ground (N,) about places (N, 2) at `heights` (N,), as `top_about` has it."""
+    out = np.empty(places.shape[0])
+    for n in range(places.shape[0]):
+        out[n] = top_about(ground, places[n, 0], heights[n], places[n, 1], radius)
+    return out
 
 
 @exact_kernel
 def heights_along(ground: Ground, height: float, places: Floats) -> Floats:
-    """The ground at places (N, 2), x and z, as one comes to each from the one before, the first at about a `height`.
+    """The ground at places (N, 2), x and z, as one comes to each from the one before.
 
-    Minus infinity where there is none; from there one comes at the height before.
+    At the first a body is at a `height`. Minus infinity where there is none; from there one comes at the height before.
     """
-    out, near, x, z = np.empty(places.shape[0]), height, places[0, 0], places[0, 1]
+    out, x, z = np.empty(places.shape[0]), places[0, 0], places[0, 1]
+    near = 0.0 if ground.plain else under_body(ground, x, height, z)
     for n in range(places.shape[0]):
         out[n] = height_along(ground, (x, near, z), places[n, 0], places[n, 1])
         if out[n] > _NONE:
@@ -243,15 +317,16 @@ def heights_along(ground: Ground, height: float, places: Floats) -> Floats:
 def heights_beside(ground: Ground, height: float, first: int, places: Floats) -> Floats:
     """The ground (rows, columns) at places (rows, columns, 2), as one comes to each from the one before.
 
-    One begins in the middle of the row `first`, at about a `height`, goes along the middle to the other rows, and from
-    there aside. Minus infinity where there is none; from there one comes at the height before.
+    One begins in the middle of the row `first`, where a body is at a `height`, goes along the middle to the other
+    rows, and from there aside. Minus infinity where there is none; from there one comes at the height before.
     """
     rows, columns = places.shape[0], places.shape[1]
     out, middle = np.zeros((rows, columns)), columns // 2
     if ground.plain:
         return out
+    begin = under_body(ground, places[first, middle, 0], height, places[first, middle, 1])
     for along in (1, -1):
-        near, i = height, first
+        near, i = begin, first
         while 0 <= i < rows:
             out[i, middle] = height_at(ground, places[i, middle, 0], places[i, middle, 1], near)
             near = out[i, middle] if out[i, middle] > _NONE else near

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
-from elbowroom.world.ground.ground import PLAIN, RELIEF, STEEPEST, STEP, Ground
+from elbowroom.world.ground.gaps import spans_over
+from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.triangles import triangles_of
@@ -80,9 +81,18 @@ def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
 
 
 def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
-    triangles = triangles[np.argsort(-triangles[:, :, 1].max(axis=1), kind="stable")]
+    ground = _over(triangles, np.empty((0, 3, 3)), floor)
+    gaps = spans_over(ground)
+    return _over(triangles, gaps, floor) if len(gaps) else ground
+
+
+def _over(firm: Floats, gaps: Floats, floor: FloorArea | None) -> Ground:
+    """The ground of triangles (T, 3, 3) and of others that span gaps."""
+    triangles = np.concatenate([firm, gaps])
+    order = np.argsort(-triangles[:, :, 1].max(axis=1), kind="stable")
+    triangles, spanning = triangles[order], order >= len(firm)
     flat = triangles[:, :, [0, 2]]
-    least, most = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
+    least, most = firm[:, :, [0, 2]].min(axis=(0, 1)), firm[:, :, [0, 2]].max(axis=(0, 1))
     if floor is not None:
         corner = np.array(floor.origin)
         least, most = np.minimum(least, corner), np.maximum(most, corner + floor.cell * np.array(floor.there.shape))
@@ -98,6 +108,7 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
     begins = (float(least[0]), float(least[1]))
     level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
     planes = planes_of(triangles)
+    planes[:, SPANS] = spanning
     even = np.zeros(wide * deep + 1, np.int64)
     args = planes, starts, members, level, (begins[0], begins[1], cell), deep
     _even(*args, even, np.empty(0))
@@ -110,7 +121,8 @@ def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
 def planes_of(triangles: Floats) -> Floats:
     """Triangles (T, 3, 3) as `Ground` has them, turned so that seen from above each corner has the next to its left.
 
-    Columns (T, 11): x, z, height of a corner; x, z of the next two; grade along x and z; lowest and highest height.
+    Columns (T, 12): x, z, height of a corner; x, z of the next two; grade along x and z; lowest and highest height;
+    whether it spans a gap: none does.
     """
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     u, v = b - a, c - a
@@ -121,7 +133,7 @@ def planes_of(triangles: Floats) -> Floats:
     along_x = (u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / area
     along_z = (v[:, 0] * u[:, 1] - u[:, 0] * v[:, 1]) / area
     columns = [a[:, 0], a[:, 2], a[:, 1], *(a + u)[:, [0, 2]].T, *(a + v)[:, [0, 2]].T, along_x, along_z]
-    columns += [triangles[:, :, 1].min(axis=1), triangles[:, :, 1].max(axis=1)]
+    columns += [triangles[:, :, 1].min(axis=1), triangles[:, :, 1].max(axis=1), np.zeros(len(triangles))]
     return np.ascontiguousarray(np.stack(columns, axis=1))
 
 
@@ -167,8 +179,9 @@ def _even(
         if level[cell]:
             parts[0], count = (side * side, 0.0, 0.0), 1
         for m in range(starts[cell], starts[cell + 1]):
-            parts[count] = _part_in(planes[members[m]], corner, side)
-            count += parts[count, 0] > 0.0
+            if planes[members[m], SPANS] < FIRM:
+                parts[count] = _part_in(planes[members[m]], corner, side)
+                count += parts[count, 0] > 0.0
         for k in range(count):
             if _is_even(parts[:count], k, side):
                 if writes:

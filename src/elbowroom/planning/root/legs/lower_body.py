@@ -13,7 +13,7 @@ from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.root.legs.hull import Ground, ground_below, joined_ground, some_ground, stride_hull
 from elbowroom.world.ground import ground as walked
-from elbowroom.world.ground.ground import STEP, heights_along, heights_beside
+from elbowroom.world.ground.ground import STEP, heights_along, heights_beside, tops_about
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
@@ -31,6 +31,7 @@ _HALF_DIAGONAL = 0.71  # of a square metre
 _KNEES = 0.1  # metres that legs reach farther where they climb
 _CLIMB = 1.5  # metres up and down that are looked at on a way
 _FAR_BELOW = 0.1  # metres above the ground: what is lower is far from a stance that is held a step above it
+_BESIDE = 0.1  # metres beside a stance within which treads are stood on too: more than any room that is asked for
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
@@ -133,7 +134,8 @@ class LowerBody:
     def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:
         """Clearance (N,) of the stance capsule at `places` (N, 2) on a way over the ground that begins at a height.
 
-        Where the ground is not plain, it is held above all that is a step high; negative where there is no ground.
+        Where the ground is not plain, it is held above all that is a step high, and above the treads about it; negative
+        where there is no ground.
         """
         segments = stance_segments(self.stance, places[:, 0], places[:, 1])
         radii = np.array([self.stance.radius])
@@ -142,10 +144,17 @@ class LowerBody:
         heights = heights_along(self.footing.ground, height, places)
         there = np.isfinite(heights)
         above = np.where(there, heights, height)
-        raised = self.raised_stance
-        segments[0, 1], segments[0, 4] = above + raised.low, above + raised.high
+        raised, tops = self.raised_stance, self._tops(above, places)
+        segments[0, 1], segments[0, 4] = tops + self.stance.radius, above + raised.high
+        segments[0, 4] = np.maximum(segments[0, 4], segments[0, 1])
         near = among.above(float(above.min()) + _FAR_BELOW, float(above.max()) + self._tall)
         return np.where(there, clearance(segments.astype(np.float32), radii, near.obstacles), np.float32(-1.0))
+
+    def _tops(self, heights: Floats, places: Floats) -> Floats:
+        """What a stance at places (N, 2) and `heights` (N,) is held above (N,): a step, and the treads about it."""
+        about = tops_about(self.footing.ground, heights, places, self.stance.radius + _BESIDE)
+        tops: Floats = np.maximum(heights + self.footing.ground.step, about)
+        return tops
 
     @property
     def raised_stance(self) -> Stance:
@@ -165,7 +174,10 @@ class LowerBody:
         there = np.isfinite(heights)
         above = np.where(there, heights, grid.height)
         near = among.above(float(above.min()) + _FAR_BELOW, float(above.max()) + self._tall).obstacles
-        found = walkable_window(near, self.raised_stance, origin, heading, shape, cell, farthest, above)
+        raised = self.raised_stance
+        lower = self._tops(above.reshape(-1), places.reshape(-1, 2)).reshape(shape) - self.footing.ground.step
+        ends = lower, np.maximum(above, lower + (raised.low - raised.high))
+        found = walkable_window(near, raised, origin, heading, shape, cell, farthest, ends)
         return replace(found, clearance=np.where(there, found.clearance, np.float32(-1.0)))
 
 

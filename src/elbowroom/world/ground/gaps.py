@@ -1,0 +1,111 @@
+"""Gaps in the ground that one steps over: no wider than a foot is long, with ground on both sides about as high.
+
+Between boards, before the floor at the end of a stair, over a joint or a slot. Seen on the ground's grid: where the
+middle of a square has no ground at some height, but squares on two sides of it have, the gap is spanned there; so it is
+where a crack goes through a square between its neighbours. Cracks narrower than a quarter of a square are overlooked.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.world.ground.ground import Ground, height_at, heights_at
+
+Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
+
+WIDEST = 0.32  # metres
+_MOST = 8  # heights over a square that are told apart
+_LOOKS = 4  # places across a square that are looked at for cracks
+_AXES = np.array([[1, 0], [0, 1], [1, 1], [1, -1]])
+
+
+def spans_over(ground: Ground) -> Floats:
+    """Level triangles (T, 3, 3) over the gaps of some ground, each pair of them as wide as two of its squares.
+
+    So they reach the ground beside them, which may begin anywhere in a square.
+    """
+    counts, heights = _heights(ground)
+    found = _spanned(ground, counts, heights, np.empty((0, 3)))
+    middles = np.empty((found, 3))
+    _spanned(ground, counts, heights, middles)
+    side = ground.cell
+    corners = np.array([[-side, 0.0, -side], [side, 0.0, -side], [side, 0.0, side], [-side, 0.0, side]])
+    squares = middles[:, None] + corners
+    return np.concatenate([squares[:, [0, 1, 2]], squares[:, [0, 2, 3]]])
+
+
+@exact_kernel
+def _heights(ground: Ground) -> tuple[Longs, Floats]:
+    """How many heights there are in the middle of each square (cells,), and which (cells, most)."""
+    cells, out = ground.shape[0] * ground.shape[1], np.empty(_MOST)
+    counts, heights = np.zeros(cells, np.int64), np.zeros((cells, _MOST))
+    for cell in range(cells):
+        x = ground.corner[0] + ground.cell * (cell // ground.shape[1] + 0.5)
+        z = ground.corner[1] + ground.cell * (cell % ground.shape[1] + 0.5)
+        counts[cell] = heights_at(ground, x, z, out)
+        heights[cell] = out
+    return counts, heights
+
+
+@exact_kernel
+def _spanned(ground: Ground, counts: Longs, heights: Floats, out: Floats) -> int:
+    """Write the middles (x, height, z) of the squares over which gaps are spanned, as many as `out` holds; how many."""
+    wide, deep = ground.shape
+    widest, found, over = int(WIDEST / ground.cell + 1e-9) + 1, 0, np.empty(_MOST)
+    for cell in range(wide * deep):
+        spanned = 0
+        for axis in range(_AXES.shape[0]):
+            across, along = _AXES[axis]
+            reach = int(widest / np.hypot(across, along))
+            for a in range(1, reach):
+                for b in range(1, reach - a + 1):
+                    one = _beside(cell, -a * across, -a * along, wide, deep)
+                    other = _beside(cell, b * across, b * along, wide, deep)
+                    if one < 0 or other < 0:
+                        continue
+                    for i in range(counts[one]):
+                        for j in range(counts[other]):
+                            low, high = heights[one, i], heights[other, j]
+                            height = low + (high - low) * a / (a + b)
+                            known = _is_near(heights[cell], counts[cell], height, ground.step)
+                            known = known and (a + b > 2 or _is_whole(ground, cell, height))
+                            known = known or _is_near(over, spanned, height, ground.step)
+                            if abs(high - low) <= ground.step and not known and spanned < _MOST:
+                                over[spanned] = height
+                                spanned += 1
+                                if found < out.shape[0]:
+                                    out[found, 0] = ground.corner[0] + ground.cell * (cell // deep + 0.5)
+                                    out[found, 1] = height
+                                    out[found, 2] = ground.corner[1] + ground.cell * (cell % deep + 0.5)
+                                found += 1
+    return found
+
+
+@exact_kernel
+def _beside(cell: int, rows: int, columns: int, wide: int, deep: int) -> int:
+    """The number of a square so many rows and columns on; -1 beyond the grid."""
+    i, j = cell // deep + rows, cell % deep + columns
+    return i * deep + j if 0 <= i < wide and 0 <= j < deep else -1
+
+
+@exact_kernel
+def _is_whole(ground: Ground, cell: int, height: float) -> bool:
+    """Whether there is ground about a height wherever one looks in a square."""
+    x, z = ground.corner[0] + ground.cell * (cell // ground.shape[1]), ground.corner[1]
+    z += ground.cell * (cell % ground.shape[1])
+    missing = 0
+    for i in range(_LOOKS):
+        for j in range(_LOOKS):
+            aside, along = ground.cell * (i + 0.5) / _LOOKS, ground.cell * (j + 0.5) / _LOOKS
+            missing += height_at(ground, x + aside, z + along, height) == -np.inf
+    return missing == 0
+
+
+@exact_kernel
+def _is_near(heights: Floats, count: int, height: float, step: float) -> bool:
+    """Whether one of the first `count` heights is no more than a step from another."""
+    found = False
+    for i in range(count):
+        found = found or abs(heights[i] - height) <= step
+    return found
