@@ -8,7 +8,7 @@ where a crack goes through a square between its neighbours. Cracks narrower than
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.ground.ground import Ground, height_at, heights_at
 
 Floats = NDArray[np.float64]
@@ -89,7 +89,7 @@ def _beside(cell: int, rows: int, columns: int, wide: int, deep: int) -> int:
     return i * deep + j if 0 <= i < wide and 0 <= j < deep else -1
 
 
-@exact_kernel
+@helper
 def _is_whole(ground: Ground, cell: int, height: float) -> bool:
     """Whether there is ground about a height wherever one looks in a square."""
     x, z = ground.corner[0] + ground.cell * (cell // ground.shape[1]), ground.corner[1]
