@@ -8,6 +8,8 @@ from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.clips.motion_set import STOCK
+from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Around, Moment
 from elbowroom.control.feet.raised import RaisedFeet, raised
 from elbowroom.control.key_frame_queue import Playback
@@ -36,7 +38,8 @@ def test_feet_go_slowly_to_what_they_stand_on_or_at_once_or_stay() -> None:
 
 def test_ways_on_which_skin_could_touch_come_last() -> None:
     humanoid, upper = Humanoid.default(), np.zeros(LOCAL)
-    feet = RaisedFeet(Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground))
+    footing = Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground)
+    feet = RaisedFeet(footing, arms_beside_legs(humanoid, STOCK))
     shown = Playback(before(0.2), upper, upper)
 
     def first(close_below: float) -> float:
@@ -45,9 +48,25 @@ def test_ways_on_which_skin_could_touch_come_last() -> None:
 
         moment = Moment(shown, DT, UNKNOWN, 0.1, look, lambda roots, upper: 0.1)
         ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))
-        assert len(ways) == 4, "each of them may be shown, if no better one is free"
+        heights = {round(float(root[RISES + 2]), 6) for root, _, _ in ways}
+        assert len(heights) == 4, "each of them may be shown, if no better one is free"
         return float(ways[0].root[RISES + 2])
 
     assert np.isclose(first(0.0), 0.2 - 2.25 * DT)
     assert np.isclose(first(0.199), 0.2), "it stays where it has room"
     assert np.isclose(first(1.0), 0.2 - 2.25 * DT), "nowhere is room: as ever"
+
+
+def test_arms_make_way_for_raised_legs_and_if_that_touches_they_are_as_planned() -> None:
+    humanoid, upper = Humanoid.default(), np.zeros(LOCAL)
+    footing = Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground)
+    arms = arms_beside_legs(humanoid, STOCK)
+    moment = Moment(
+        Playback(before(0.3), upper, upper), DT, UNKNOWN, 0.1, lambda *_: Around(0.1, lasts=True), lambda *_: 0.1
+    )
+    ways = list(RaisedFeet(footing, arms).settling(moment, Playback(before(0.0), upper, upper)))
+    spread = [way for way in ways if way.upper is not upper]
+    assert spread, "no leg comes near a hand"
+    assert spread[0] is ways[0]
+    assert np.allclose(spread[0].upper, arms.apart(spread[0].root, upper))
+    assert any(np.allclose(way.root, spread[0].root) for way in ways if way.upper is upper)

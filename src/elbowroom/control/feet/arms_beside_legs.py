@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DOF, LOCAL, columns_of, limits
-from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.kinematics import BodyModel, body_model, posture_capsules
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.following import ArmsAndLegs, arm_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_pairs
+from elbowroom.planning.shared import Shared
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -69,6 +71,14 @@ class ArmsBesideLegs:
         here, q = root[None].copy(), np.zeros((1, DOF))
         here[0, :3], q[0, DOF - LOCAL :] = 0.0, upper
         return arm_gaps(posture_capsules(self._model, q, here), self.pairs)
+
+
+_ARMS: Shared[ArmsBesideLegs] = Shared()
+
+
+def arms_beside_legs(humanoid: Humanoid, motions: MotionSet) -> ArmsBesideLegs:
+    """The arms and legs of an avatar that walks with some motions: the same for all who ask."""
+    return _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(body_model(humanoid), motions))
 
 
 def _widened(gaps: Floats) -> Floats:

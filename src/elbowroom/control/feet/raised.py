@@ -2,7 +2,7 @@
 
 What a swinging foot is raised to follows from where it will land (`footing.py`). That changes as the root speeds up or
 turns, and where it comes to lie on another tread the height jumps. So from frame to frame a foot follows it as fast as
-a leg is lifted, if that touches nothing.
+a leg is lifted, and arms make way for legs that are not where they were planned, if that touches nothing.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
 from elbowroom.control.feet.feet import Moment
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.model.footing import Footing
@@ -26,8 +27,8 @@ _SKIN = 0.01  # metres: nearly all of a foot's surface is within so much of its 
 class RaisedFeet:
     """Feet of the walk's cycle, raised to the ground."""
 
-    def __init__(self, footing: Footing) -> None:
-        self._footing = footing
+    def __init__(self, footing: Footing, arms: ArmsBesideLegs) -> None:
+        self._footing, self._arms = footing, arms
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with what the feet stand on."""
@@ -49,16 +50,21 @@ class RaisedFeet:
     def settling(self, moment: Moment, held: Playback) -> Iterator[Playback]:
         """How a pose could be shown next, held or not: best first.
 
-        Skin may be a little outside the capsules, so legs that have less room than that come last.
+        Skin may be a little outside the capsules, so legs that have less room than that come last; then arms as they
+        were planned.
         """
-        close = []
+        close, as_planned = list[Playback](), list[Playback]()
         for root in raised(moment.shown.root, self.standing(held.root), moment.dt):
-            pose = held._replace(root=root)
-            if moment.look(root, pose.upper).room < _SKIN:
+            upper = self._arms.apart(root, held.upper)
+            if upper is not held.upper:
+                as_planned.append(held._replace(root=root))
+            pose = held._replace(root=root, upper=upper)
+            if moment.look(root, upper).room < _SKIN:
                 close.append(pose)
             else:
                 yield pose
         yield from close
+        yield from as_planned
 
     def resting(self, moment: Moment) -> Playback:
         """What is shown: who rests here does not live yet."""

@@ -19,11 +19,10 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
+from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Moment
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
 from elbowroom.control.key_frame_queue import Playback
-from elbowroom.planning.shared import Shared
 
 Floats = NDArray[np.float64]
 
@@ -35,8 +34,6 @@ _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a f
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
 
-_ARMS: Shared[ArmsBesideLegs] = Shared()
-
 
 class Stepping:
     """How one avatar stands and steps; frozen, the state of its feet is in the root states that are shown."""
@@ -46,7 +43,7 @@ class Stepping:
         model = body_model(humanoid)
         self._gait, self._own = model.gait, motions.own_steps
         self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
-        self._arms = _ARMS.get((humanoid, motions), lambda: ArmsBesideLegs(model, motions))
+        self._arms = arms_beside_legs(humanoid, motions)
         self._follower = Follower(model.whole, self._own, self._body, self._arms.pairs)
 
     def standing(self, root: Floats) -> Floats:

@@ -4,6 +4,7 @@ from functools import cached_property
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Feet
 from elbowroom.control.feet.raised import RaisedFeet
 from elbowroom.control.feet.stepping import Stepping
@@ -23,7 +24,11 @@ class PlanningScene:
         self._humanoid, self.scene = humanoid, scene
         self.check = BodyCheck(humanoid, scene)
         footing = self.check.footing
-        self.feet: Feet = Stepping(humanoid, motions) if footing.plain else RaisedFeet(footing)
+        self.feet: Feet
+        if footing.plain:
+            self.feet = Stepping(humanoid, motions)
+        else:
+            self.feet = RaisedFeet(footing, arms_beside_legs(humanoid, motions))
         self.planners = Planners(settings.planner, humanoid, scene, motions)
         self.wayfinder = Wayfinder(settings, self.check, motions, self.planners)
 
