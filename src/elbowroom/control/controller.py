@@ -169,7 +169,7 @@ class Controller:
         self._stands_by = True  # whether the user wants nothing
         self._travel: float | None = None  # radians, the heading that the last plan means to travel
         self._flow = self._next = Phase.PLAN
-        self._blocked = self._resting = self._halting = False
+        self._blocked = self._resting = self._halting = self._vain = False
         self.late_plans = 0  # that could not be shown any more when they came
         self._showing = self._standing_at_start()
 
@@ -281,6 +281,8 @@ class Controller:
         if flow is not Phase.PLAY:
             self._plan(command, at_once=flow is Phase.RESET or changed(self._command, command))
         self._play(dt)
+        if self._is_stuck(command):
+            self._showing.wait(dt)
         return flow
 
     def _move_things(self, dt: float) -> None:
@@ -291,7 +293,7 @@ class Controller:
 
     def _choose_flow(self, command: Command) -> Phase:
         """Figure 4 (b): which flow this turn takes."""
-        if self._errands.busy or (self._resting and command.idle):
+        if self._errands.busy or (self._resting and command.idle) or self._showing.goes_back:
             return Phase.PLAY
         if steering.overturned(self._command, command):
             return Phase.RESET
@@ -302,8 +304,8 @@ class Controller:
         return Phase.PLAY
 
     def _waits(self, command: Command) -> bool:
-        """Whether a plan for the same wish found no way on less than an interval ago."""
-        if not self._blocked or self._plan_report is None or changed(self._command, command):
+        """Whether a plan for the same wish, less than an interval ago, found no way on, or none that could be shown."""
+        if not (self._blocked or self._vain) or self._plan_report is None or changed(self._command, command):
             return False
         return self._queue.time - self._plan_report.time < self.settings.interval
 
@@ -376,7 +378,8 @@ class Controller:
 
     def _play(self, dt: float) -> None:
         """Flow B: interpolate, check, show; what touches is not shown, and leads to flow C, as does an empty queue."""
-        ended = self._queue.empty and not self._errands.continues
+        ended = (self._queue.empty and not self._errands.continues) or self._showing.goes_back
+        held = self._showing.holding.active and not ended
         rate = self._rate(dt)
         self._queue.advance(dt, rate)
         now = self._queue.time
@@ -387,8 +390,10 @@ class Controller:
             self._clear()
             self._next = Phase.RESET
             self._showing.hold(now, dt)
+            self._blocked |= self._showing.goes_back
+            self._vain |= held and not self._check.footing.plain  # there plans are dear
             return
-        self._blocked = False
+        self._blocked = self._vain = False
         if rate < _STANDING_RATE and self._halting:
             self._clear()
         if self._queue.empty:
@@ -422,13 +427,17 @@ class Controller:
             root=self._shown.root,
             phase=self._flow,
             clearance=self._showing.clearance,
-            stuck=not command.idle and (self._blocked or self._walled_in()),
+            stuck=self._is_stuck(command),
             touching=self._showing.clearance < 0.0,
             fill=min(len(key_frames.times), self.settings.queue_size),
             key_frames=key_frames,
             plan=self._plan_report,
             command=command,
         )
+
+    def _is_stuck(self, command: Command) -> bool:
+        """Whether the user pushes, and planning has found no way on."""
+        return not command.idle and (self._blocked or self._walled_in())
 
     def _walled_in(self) -> bool:
         """Whether the root stands because there is no way on for it."""

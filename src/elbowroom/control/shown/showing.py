@@ -14,6 +14,7 @@ from elbowroom.control.plans.planning_scene import PlanningScene
 from elbowroom.control.shown.body_check import Frames
 from elbowroom.control.shown.ducking import ducked
 from elbowroom.control.shown.holding import Holding
+from elbowroom.control.shown.retracing import Past, Retracing
 from elbowroom.planning.stillness import UNMOVED, is_still
 
 Floats = NDArray[np.float64]
@@ -32,7 +33,7 @@ class Showing:
         Without `assist` poses are shown as they were planned, touching what they touch.
         """
         self.assist = assist
-        self.holding = Holding()
+        self.holding, self._retracing = Holding(), Retracing()
         self._around, self._now = around, 0.0
         upper, stood = standing_posture(root), around.check.standing(root)
         standing = Playback(around.feet.standing(root), upper, np.zeros_like(upper))
@@ -49,9 +50,15 @@ class Showing:
         """Metres about what is shown, negative where it touches."""
         return self._clearance
 
+    @property
+    def goes_back(self) -> bool:
+        """Whether the avatar is to go back the way it came: its legs come to no stand where it is."""
+        return self.assist and self._retracing.goes_back
+
     def go_among(self, around: PlanningScene) -> None:
         """Something else stands about it from now on."""
         self._around = around
+        self._retracing.forget()
 
     def leave_touch(self) -> bool:
         """Show the last pose that was free, if what is shown touches; whether that was so."""
@@ -76,8 +83,31 @@ class Showing:
         return False
 
     def hold(self, now: float, dt: float) -> None:
-        """Stay in the last good pose; the legs come to a stand where they can."""
+        """Stay in the last good pose; the legs come to a stand where they can, or else go back the way they came."""
         self._now = now
+        if self.goes_back:
+            self._go_back(dt)
+        else:
+            self._settle(dt)
+
+    def _go_back(self, dt: float) -> None:
+        """Show what was shown before, when it is time for that, if it is still free."""
+        self.holding.active = True
+        before = self._retracing.before(dt)
+        if before is None:
+            self._posed_at = self._now
+            return
+        posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
+        accompanied = self._around.check.accompanied
+        clearance = self._clearance_of(posed.root, posed.upper) if accompanied else before.clearance
+        if accompanied and not self._is_free(posed, clearance):
+            self._retracing.give_up()
+            return
+        self._retracing.went()
+        self._show(posed, clearance, back=True)
+
+    def _settle(self, dt: float) -> None:
+        """Stay, as the legs come to a stand where they can."""
         for still in self._settling(dt):
             clearance = self._clearance_of(still.root, still.upper)
             if not self.assist or self._is_free(still, clearance):
@@ -87,6 +117,10 @@ class Showing:
             restless = self._around.check.restless
             clearance = self._clearance_of(still.root, still.upper) if restless else self._clearance
         self._show(still, clearance)
+
+    def wait(self, dt: float) -> None:
+        """There is no way on from where it stands, and the user pushes."""
+        self._retracing.wait(self._pose, dt)
 
     def rest(self, now: float, dt: float) -> None:
         """Who rests lives on where that touches nothing: breathes, and shifts its weight."""
@@ -152,7 +186,11 @@ class Showing:
             Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
         )
 
-    def _show(self, pose: Playback, clearance: float) -> None:
+    def _show(self, pose: Playback, clearance: float, *, back: bool = False) -> None:
+        if clearance < 0.0 or self._clearance < 0.0 or not self.assist:
+            self._retracing.forget()
+        elif not back:
+            self._retracing.show(Past(self._pose, self._clearance, self._now - self._posed_at), pose)
         self._before = self._pose
         self._pose, self._clearance, self._posed_at = pose, clearance, self._now
         if clearance >= 0.0:

@@ -1,0 +1,91 @@
+"""Who stays in mid-stride and comes to no stand goes back the way he came, pose by pose."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.dof import LOCAL
+from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.control.key_frame_queue import Playback
+from elbowroom.control.shown.retracing import Past, Retracing
+
+DT = 1 / 60
+UPPER = np.zeros(LOCAL)
+
+
+def pose(along: float, speed: float = 0.5) -> Playback:
+    root: NDArray[np.float64] = np.zeros(ROOT_STATE)
+    root[1], root[3] = along, speed
+    return Playback(root, UPPER, UPPER)
+
+
+def walked(count: int, speed: float = 0.5) -> tuple[Retracing, list[Playback]]:
+    """So many frames of an even walk."""
+    retracing, poses = Retracing(), [pose(speed * DT * k, speed) for k in range(count)]
+    for before, shown in pairwise(poses):
+        retracing.show(Past(before, 0.1, DT), shown)
+    return retracing, poses
+
+
+def stayed(retracing: Retracing, last: Playback, seconds: float) -> None:
+    for _ in range(round(seconds / DT)):
+        retracing.show(Past(last, 0.1, DT), last)
+
+
+def gone_back(retracing: Retracing, dt: float = DT) -> list[Playback]:
+    found = []
+    while retracing.goes_back:
+        if (before := retracing.before(dt)) is not None:
+            retracing.went()
+            found.append(before.pose)
+    return found
+
+
+def test_who_walks_or_has_come_to_a_stand_stays_or_goes_on() -> None:
+    retracing, poses = walked(200)
+    assert not retracing.goes_back
+    stayed(retracing, poses[-1], 0.4)
+    assert not retracing.goes_back, "legs are still given time to come to a stand"
+    still = pose(float(poses[-1].root[1]), 0.0)
+    stayed(retracing, still, 5.0)
+    assert not retracing.goes_back
+
+
+@pytest.mark.parametrize("dt", [DT, 0.5 * DT])
+def test_who_stays_in_a_stride_goes_back_as_fast_as_he_came_and_each_time_farther(dt: float) -> None:
+    retracing, poses = walked(200)
+    stayed(retracing, poses[-1], 0.6)
+    first = gone_back(retracing, dt)
+    assert all(each is before for each, before in zip(first, poses[-2::-1], strict=False))
+    assert len(first) * DT == pytest.approx(0.4, abs=2 * DT)
+    stayed(retracing, first[-1], 0.6)
+    assert len(gone_back(retracing, dt)) == pytest.approx(2 * len(first), abs=2)
+
+
+def test_only_so_much_is_remembered_and_what_touched_is_no_way_back() -> None:
+    retracing, poses = walked(600)
+    for _ in range(9):
+        stayed(retracing, poses[-1], 0.6)
+        gone_back(retracing)
+    stayed(retracing, poses[-1], 0.6)
+    assert not retracing.goes_back, "nothing is left"
+    retracing, poses = walked(200)
+    retracing.forget()
+    stayed(retracing, poses[-1], 0.6)
+    assert not retracing.goes_back
+
+
+@pytest.mark.parametrize("rise", [0.1, 0.4])
+def test_who_finds_no_way_from_steep_treads_for_long_goes_back_and_before_a_wall_one_stands(rise: float) -> None:
+    retracing, poses = walked(200)
+    still = pose(float(poses[-1].root[1]), 0.0)
+    still.root[RISES] = rise
+    retracing.show(Past(poses[-1], 0.1, DT), still)
+    for second in range(4):
+        assert not retracing.goes_back or second == 3
+        for _ in range(60):
+            retracing.show(Past(still, 0.1, DT), still)
+            retracing.wait(still, DT)
+    assert retracing.goes_back is (rise > 0.25)
