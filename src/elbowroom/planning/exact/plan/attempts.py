@@ -14,6 +14,8 @@ _NEAR = 1e-6  # metres, radians: who has moved by less stands where he stood
 # Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
 # path for the upper body, the tables of all groups together, a place of the root.
 _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
+# A path and a place where the ground is uneven: there it is looked up what each foot stands on.
+_PATH_UNEVEN, _PLACE_UNEVEN = 700_000, 600
 # Work of a plan after which nothing is begun but a safe end: of who stands, of who walks, and in a hurry.
 _MOST_STANDING, _MOST, _MOST_IN_A_HURRY = 3e6, 2e6, 8e5
 _LITTLE = 5e5  # work of a plan in which it is asked why there is no path
@@ -38,14 +40,16 @@ class Attempts:
 
     def __init__(self) -> None:
         self._work, self._most = 0.0, _MOST  # of this plan, in capsules checked
+        self._path, self._place = _PATH, _PLACE  # what these cost on this ground
         self._seen: tuple[float, float] | None = None  # the place that ended the commanded path in the plan before
         self._stood: tuple[float, ...] | None = None  # where somebody stands
         self._failed: dict[bytes, _Failed] = {}  # the vain ones from there
         self._postponed = False  # whether it was left for later to ask why there is no path
 
-    def begin(self, query: MotionQuery, *, hurry: bool, stands: bool) -> None:
-        """Begin a plan; `stands` says that nothing moves, the avatar neither."""
+    def begin(self, query: MotionQuery, *, hurry: bool, stands: bool, uneven: bool = False) -> None:
+        """Begin a plan; `stands` says that nothing moves, the avatar neither, `uneven` that the ground is no plane."""
         self._work, self._postponed = 0.0, False
+        self._path, self._place = (_PATH_UNEVEN, _PLACE_UNEVEN) if uneven else (_PATH, _PLACE)
         self._most = _MOST_STANDING if stands else _MOST_IN_A_HURRY if hurry else _MOST
         here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
         if here is None or stood is None or max(abs(a - b) for a, b in zip(here, stood, strict=True)) > _NEAR:
@@ -59,11 +63,11 @@ class Attempts:
 
     def enter_root(self, checks: int) -> None:
         """A root path was made, for which so many places and postures were looked at."""
-        self._work += _PLACE * checks
+        self._work += self._place * checks
 
     def enter(self, path: RootPath, effort: Effort, upper: UpperPlan) -> None:
         """A path was sought for the upper body."""
-        self._work += _work(upper.plan)
+        self._work += self._path + _work(upper.plan)
         if self._stood is not None and upper.reached < path.horizon and len(self._failed) < _REMEMBERED:
             self._failed[path.states.tobytes()] = _Failed(effort, upper)
 
@@ -93,8 +97,8 @@ class Attempts:
 
 
 def _work(upper: LocalPlan) -> float:
-    """What a search for the upper body cost, in capsules checked."""
-    work = float(_PATH + sum(row.checks + _NODE * row.nodes for row in upper.evidence))
+    """What a search for the upper body cost beside its path, in capsules checked."""
+    work = float(sum(row.checks + _NODE * row.nodes for row in upper.evidence))
     if upper.joint is not None:
         work += _TABLES + upper.joint.checks + _TRIPLE * upper.joint.states
     return work

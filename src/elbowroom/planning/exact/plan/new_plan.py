@@ -56,7 +56,8 @@ class NewPlan:
         `left` is what is left of a walk that has no new end.
         """
         tried: list[_Tried] = []
-        self._attempts.begin(self.query, hurry=self.hurry, stands=self._stands)
+        uneven = not self.root_planner.bounds.ground.plain
+        self._attempts.begin(self.query, hurry=self.hurry, stands=self._stands, uneven=uneven)
         found = self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
