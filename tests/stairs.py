@@ -41,8 +41,8 @@ BEFORE = (-1.5, -0.5)  # the stair, x and z
 ON_FLOOR = tuple(sum(corner[k] for corner in _floor()) / 4 for k in (0, 1))
 
 
-def spiral_stair() -> Scene:
-    """The stair alone, with no rail."""
+def spiral_stair(ceiling: float | None = None) -> Scene:
+    """The stair alone, with no rail; with a slab over its first five treads, if the height of its underside is told."""
     obstacles: list[dict[str, Any]] = [
         {"type": "cylinder", "name": "pole", "center": [0.0, 2.0, 0.0], "radius": POLE, "height": 4.0}
     ]
@@ -51,4 +51,7 @@ def spiral_stair() -> Scene:
         corners = [_at(POLE, begin), _at(WIDE, begin), _at(WIDE, 0.5 * (begin + end)), _at(WIDE, end), _at(POLE, end)]
         obstacles.append(_plate(corners, tread_top(i + 1), f"tread {i + 1}"))
     obstacles.append(_plate(_floor(), tread_top(TREADS), "floor"))
+    if ceiling is not None:
+        slab = {"type": "box", "name": "slab", "center": [0.6, ceiling + 0.1, -0.6], "size": [1.2, 0.2, 1.2]}
+        obstacles.append(slab)
     return Scene.of("spiral stair", obstacles, start=BEFORE, finish=(ON_FLOOR[0], ON_FLOOR[1]))

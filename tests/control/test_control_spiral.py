@@ -1,5 +1,6 @@
 """A spiral stair of open treads that taper, with a gap before the floor: walked up and down, judged by coal."""
 
+import math
 from dataclasses import replace
 from functools import cache
 
@@ -52,3 +53,21 @@ def test_another_library_finds_nothing_touched_but_the_treads_under_soles(up: bo
     verdict = judge(motion, AVATAR, scene_of(up))
     assert verdict.clean, (verdict.capsules.contacts[:3], verdict.mesh and verdict.mesh.contacts[:3])
     assert verdict.itself.touching == 0
+
+
+def test_nobody_stays_in_mid_stride_where_a_spiral_leads_under_a_slab() -> None:
+    """Who wants to go on there comes to a stand or goes back, and touches nothing."""
+    controller, (x, z) = Controller(AVATAR, spiral_stair(2.3)), BEFORE
+    around = [math.radians(260.0 + 20.0 * k) for k in range(8)]
+    way = ((x, z), *((0.6 * math.cos(angle), 0.6 * math.sin(angle)) for angle in around))
+    command = Command(forward=1.0, direction=math.atan2(way[1][0] - x, way[1][1] - z), way=way)
+    before, stays, longest = controller.root, 0.0, 0.0
+    for _ in range(60 * 15):
+        frame = controller.step(command, 1 / 60)
+        assert not frame.touching
+        root = RootState.of(frame.root)
+        moves = math.hypot(root.x - before.x, root.z - before.z) > 1e-4 or max(map(abs, root[3:6])) < 1e-3
+        before, stays = root, 0.0 if moves else stays + 1 / 60
+        longest = max(longest, stays)
+    assert longest < 2.0
+    assert controller.root.height > 0.1, "it did not come to the stair"

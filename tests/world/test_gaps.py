@@ -7,6 +7,7 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.planning.navigation.navigator import Navigator
+from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.world.ground.gaps import WIDEST
 from elbowroom.world.ground.ground import Ground, Sole, height_along, sole_on
 from elbowroom.world.scene import Scene
@@ -74,8 +75,14 @@ def test_a_sole_lies_on_the_highest_of_the_treads_that_it_is_over() -> None:
         assert height == pytest.approx(top)
 
 
-def test_a_way_leads_up_a_spiral_of_open_treads_and_over_the_gap_before_the_floor() -> None:
-    scene = spiral_stair()
+@pytest.mark.parametrize("ceiling", [None, 3.4])
+def test_a_way_leads_up_a_spiral_of_open_treads_and_over_the_gap_before_the_floor(ceiling: float | None) -> None:
+    scene = spiral_stair(ceiling)
     way = Navigator(Humanoid.default(), scene).find(BEFORE, (ON_FLOOR[0], tread_top(TREADS), ON_FLOOR[1]))
     heights = way.corners(BEFORE, 9.0)[:, 1]
     assert heights[-1] == pytest.approx(tread_top(TREADS))
+
+
+def test_no_way_leads_up_a_spiral_on_which_one_would_have_to_duck() -> None:
+    with pytest.raises(NoWayError):
+        Navigator(Humanoid.default(), spiral_stair(2.5)).find(BEFORE, (ON_FLOOR[0], tread_top(TREADS), ON_FLOOR[1]))
