@@ -83,6 +83,7 @@ def test_it_is_crossed_straight_and_in_time(name: str) -> None:
     scene, roots = scene_of(name), roots_of(name)
     assert scene.finished(type(scene.start)(*roots[-1].tolist()))
     assert not any(frame.touching for frame in walked(name))
+    assert np.diff(roots[roots[:, 1] < 1.0, 1]).min() > -1e-3, "nobody steps back from what is far ahead"
     assert np.abs(roots[:, 0]).max() < (0.3 if "stair" in name else 0.02)
 
 

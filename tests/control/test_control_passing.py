@@ -17,14 +17,14 @@ Floats = NDArray[np.float64]
 BODY = np.array([[-0.2, 0.0, 0.0, 0.2, 1.7, 0.0, 0.05]])  # one capsule as broad as shoulders
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("width", "left"),
     [
         (0.95, (0.121, 0.02)),
-        *(
-            pytest.param(*start, marks=pytest.mark.long)
-            for start in ((0.95, (0.0, 0.0)), (1.2, (0.0, 0.0)), (1.4, (0.02, 0.0)))
-        ),
+        (0.95, (0.0, 0.0)),
+        (1.2, (0.0, 0.0)),
+        (1.4, (0.02, 0.0)),
     ],
 )
 def test_two_who_meet_head_on_share_the_way(width: float, left: tuple[float, float]) -> None:

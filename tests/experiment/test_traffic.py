@@ -79,6 +79,7 @@ def test_who_stands_steps_out_of_the_way_of_what_comes() -> None:
     assert np.hypot(*frames[-1].root[:2]) > 0.2
 
 
+@pytest.mark.long
 def test_who_walks_lets_the_crossing_box_pass() -> None:
     scene = rolling(-2.2, 1.8, 2.6, 1.8, 3.6)
     frames = walked(scene, FORWARD, 6.0)

@@ -124,7 +124,7 @@ def test_a_child_outside_the_product_costs_what_it_must_under_each_waist(humanoi
     (head,) = ALONE
     group, near, comfort = step.nodes[head], step.settings.near, step.settings.comfort
     kinds = {"free": 0, "dearer": 0, "none": 0}
-    for _ in range(40):
+    for _ in range(20):
         depth = int(rng.integers(4, 9))
         waist = int(rng.choice(np.flatnonzero(np.isfinite(step.nodes[0].costs_alone[depth]))))
         if not np.isfinite(step.nodes[0].base[depth, waist]):

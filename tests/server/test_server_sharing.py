@@ -45,6 +45,7 @@ def test_an_avatar_is_found_by_the_other_server(two: tuple[str, str]) -> None:
     assert httpx.get(f"{second}/avatars/{'0' * 16}.glb").status_code == 404
 
 
+@pytest.mark.long
 def test_so_are_a_motion_and_a_scene(two: tuple[str, str]) -> None:
     first, second = two
     told = httpx.post(f"{first}/api/avatars?name=dance.bvh", content=DANCE, timeout=LONG).json()

@@ -90,7 +90,7 @@ def test_the_least_is_the_least_of_the_pairs_and_one_posture_is_the_same_check(c
 
 def test_agrees_with_coal_on_random_capsules() -> None:
     rng = np.random.default_rng(7)
-    boxes, segments, radii = random_boxes(rng, 12), random_segments(rng, 4, 60), rng.uniform(0.03, 0.2, 4)
+    boxes, segments, radii = random_boxes(rng, 12), random_segments(rng, 4, 25), rng.uniform(0.03, 0.2, 4)
     ours = pairwise_clearance(segments, radii, boxes.standing)
     checked = 0
     for c, b, i in np.ndindex(ours.shape):
@@ -103,7 +103,7 @@ def test_agrees_with_coal_on_random_capsules() -> None:
             assert (ours[c, b, i] < 0.0) == (theirs < 0.0)
         if theirs > 0.0:
             assert ours[c, b, i] == pytest.approx(theirs, abs=1e-5)
-    assert checked > 1500
+    assert checked > 600
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-4, 2e-5, 1.1e-5])
