@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE, RootState
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.judge.motion import ShownMotion
@@ -81,7 +81,7 @@ def roots_of(name: str) -> np.ndarray:
 @pytest.mark.parametrize("name", names(*LONG))
 def test_it_is_crossed_straight_and_in_time(name: str) -> None:
     scene, roots = scene_of(name), roots_of(name)
-    assert scene.finished(type(scene.start)(*roots[-1].tolist()))
+    assert scene.finished(RootState.of(roots[-1]))
     assert not any(frame.touching for frame in walked(name))
     assert np.diff(roots[roots[:, 1] < 1.0, 1]).min() > -1e-3, "nobody steps back from what is far ahead"
     assert np.abs(roots[:, 0]).max() < (0.3 if "stair" in name else 0.02)

@@ -1,4 +1,4 @@
-"""Feet on ground that is not a plane, from frame to frame: where they have no room at once they take another way."""
+"""Feet that glide on ground that is not a plane: where they have no room at once they take another way."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,17 +9,20 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RISES, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
+from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
-from elbowroom.control.feet.feet import Around, Moment
-from elbowroom.control.feet.raised import RaisedFeet, raised
+from elbowroom.control.feet.feet import Around, Look, Moment
+from elbowroom.control.feet.raised import raised
+from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.key_frame_queue import Playback
-from elbowroom.planning.model.footing import Footing
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 DT = 1 / 60
 STEP = {"type": "box", "center": [0.0, 0.1, 2.0], "size": [3.0, 0.2, 2.0]}
+HUMANOID, UPPER = Humanoid.default(), np.zeros(LOCAL)
+FEET = Stepping(HUMANOID, STOCK, AboveSoles(body_model(HUMANOID), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground))
 
 
 def before(rise: float) -> Floats:
@@ -27,6 +30,14 @@ def before(rise: float) -> Floats:
     root = np.zeros(ROOT_STATE)
     root[RISES + 2] = rise
     return root
+
+
+def settling(rise: float, look: Look) -> list[Playback]:
+    """How a pose with a raised foot is held where legs are not clear enough to step."""
+    shown = FEET.standing(before(0.0))
+    shown[RISES + 2] = rise
+    moment = Moment(Playback(shown, UPPER, UPPER), DT, UNKNOWN, -1.0, look, lambda roots, upper: 0.0)
+    return list(FEET.settling(moment, Playback(shown, UPPER, UPPER)))
 
 
 def test_feet_go_slowly_to_what_they_stand_on_or_at_once_or_stay() -> None:
@@ -37,17 +48,11 @@ def test_feet_go_slowly_to_what_they_stand_on_or_at_once_or_stay() -> None:
 
 
 def test_ways_on_which_skin_could_touch_come_last() -> None:
-    humanoid, upper = Humanoid.default(), np.zeros(LOCAL)
-    footing = Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground)
-    feet = RaisedFeet(footing, arms_beside_legs(humanoid, STOCK))
-    shown = Playback(before(0.2), upper, upper)
-
     def first(close_below: float) -> float:
         def look(root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
-            return Around(0.002 if root[RISES + 2] < close_below else 0.1, lasts=True)
+            return Around(0.002 if root[RISES + 2] < close_below else 0.05, lasts=True)
 
-        moment = Moment(shown, DT, UNKNOWN, 0.1, look, lambda roots, upper: 0.1)
-        ways = list(feet.settling(moment, Playback(np.zeros(ROOT_STATE), upper, upper)))
+        ways = settling(0.2, look)
         heights = {round(float(root[RISES + 2]), 6) for root, _, _ in ways}
         assert len(heights) == 4, "each of them may be shown, if no better one is free"
         return float(ways[0].root[RISES + 2])
@@ -58,15 +63,10 @@ def test_ways_on_which_skin_could_touch_come_last() -> None:
 
 
 def test_arms_make_way_for_raised_legs_and_if_that_touches_they_are_as_planned() -> None:
-    humanoid, upper = Humanoid.default(), np.zeros(LOCAL)
-    footing = Footing(body_model(humanoid), Scene.of("step", [STEP], finish=(0.0, 5.0)).ground)
-    arms = arms_beside_legs(humanoid, STOCK)
-    moment = Moment(
-        Playback(before(0.3), upper, upper), DT, UNKNOWN, 0.1, lambda *_: Around(0.1, lasts=True), lambda *_: 0.1
-    )
-    ways = list(RaisedFeet(footing, arms).settling(moment, Playback(before(0.0), upper, upper)))
-    spread = [way for way in ways if way.upper is not upper]
+    arms = arms_beside_legs(HUMANOID, STOCK)
+    ways = settling(0.3, lambda root, upper, axes=None: Around(0.05, lasts=True))
+    spread = [way for way in ways if way.upper is not UPPER]
     assert spread, "no leg comes near a hand"
     assert spread[0] is ways[0]
-    assert np.allclose(spread[0].upper, arms.apart(spread[0].root, upper))
-    assert any(np.allclose(way.root, spread[0].root) for way in ways if way.upper is upper)
+    assert np.allclose(spread[0].upper, arms.apart(spread[0].root, UPPER))
+    assert any(np.allclose(way.root, spread[0].root) for way in ways if way.upper is UPPER)

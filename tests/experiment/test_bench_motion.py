@@ -23,7 +23,7 @@ def test_every_case_of_the_issue_is_walked() -> None:
     cases = {script.case for script in scripts()}
     assert cases == set(SCRIPTED) == {
         "steady", "start", "stop", "turn", "change of direction", "turn in place", "strafe", "back", "circle",
-        "there and back", "crouch", "doorway", "slalom",
+        "there and back", "crouch", "doorway", "slalom", "stair", "ramp", "sill",
     }  # fmt: skip
     assert [script.speed for script in scripts(["steady"])] == list(SPEEDS)
 

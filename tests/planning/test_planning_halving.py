@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, clamp, columns_of
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.pose.kinematics import body_model, pelvis_frames, posture_capsules
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
@@ -145,12 +146,22 @@ def carried(rng: np.random.Generator) -> Frames:
     return Frames((first, last), (upper, upper), (0.0, FRAME))
 
 
+def on_treads(rng: np.random.Generator) -> Frames:
+    """Two frames of such a walk over ground that is not a plane."""
+    frames = carried(rng)
+    first, last = frames.roots
+    first[RISES:ROOT_STATE] = rng.uniform(-0.2, 0.2, 4)
+    last[RISES:ROOT_STATE] = first[RISES:ROOT_STATE] + rng.uniform(-0.05, 0.05, 4)
+    last[HEIGHT] += rng.uniform(-0.02, 0.02)
+    return frames
+
+
 def between(frames: Frames, shares: Floats) -> tuple[Floats, Floats]:
     (a, b), (m, n) = frames.roots, frames.uppers
     return a + shares[:, None] * (b - a), m + shares[:, None] * (n - m)
 
 
-@pytest.mark.parametrize(("drawn", "near"), [(random_frames, 0.3), (on_feet, 0.1), (carried, 0.1)])
+@pytest.mark.parametrize(("drawn", "near"), [(random_frames, 0.3), (on_feet, 0.1), (carried, 0.1), (on_treads, 0.05)])
 def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said(
     drawn: Callable[[np.random.Generator], Frames], near: float
 ) -> None:

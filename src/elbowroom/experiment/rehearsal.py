@@ -12,12 +12,12 @@ from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
 from elbowroom.body.gait.cycle import feet_standing, stride_length
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
-from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
+from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem

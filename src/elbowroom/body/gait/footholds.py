@@ -345,6 +345,21 @@ def step_feet(
         tilt(foot, pitch, dt)
 
 
+@exact_kernel
+def landing(
+    own: OwnSteps, legs: Floats, scale: float, row: Floats, side: int, coming: Floats, later: Floats
+) -> tuple[float, float, float, float]:
+    """Where a foot that swings in a row (WITH_FEET or more,) will land: x, z and yaw seen from the root; in how long.
+
+    `coming` (m, 8) is as in `step_feet`, seconds from the row; `later` (7,) is scratch.
+    """
+    foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]
+    stride = own_stride_of(own, scale, row[3], row[4], row[5])
+    left = max(_time_left(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
+    goal = _kept_apart(side, _goal(own, legs, scale, side, row, coming, left, later), twin, scale)
+    return goal[0], goal[1], goal[2], max(left, _time_needed(stride, foot, goal))
+
+
 @kernel
 def _settled(legs: Floats, scale: float, row: Floats) -> bool:
     stride, near = stride_of(scale, 0.0, 0.0, 0.0), True

@@ -16,8 +16,37 @@ from elbowroom.jit import kernel
 Floats = NDArray[np.float64]
 
 _HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN = 0, 3, 6, 7, 8, 9  # columns of `GaitShape.legs`
-_STRETCH = 0.992  # of a leg: it is never longer
+STRETCH = 0.992  # of a leg: it is never longer
 _LEVEL = 1e-6  # metres and radians: less is the plane
+
+
+@kernel
+def is_uneven(root: Floats) -> bool:
+    """Whether a root state tells of ground under its feet that is not the root's plane; not where it ends before."""
+    if root.shape[0] <= RISES:
+        return False
+    rises = root[RISES:]
+    return bool(abs(rises[0]) + abs(rises[1]) + abs(rises[2]) + abs(rises[3]) >= _LEVEL)
+
+
+@kernel
+def raise_foot(foot: Floats, ahead: float, rise: float, slope: float) -> None:
+    """Turn a foot (6,) on the plane onto ground: its ankle is `ahead` of where that of the flat foot is."""
+    sine, cosine, above = math.sin(slope), math.cos(slope), foot[1]
+    moved = ahead * (cosine - 1.0) + above * sine
+    foot[0] += moved * math.sin(foot[3])
+    foot[1] = rise - ahead * sine + above * cosine
+    foot[2] += moved * math.cos(foot[3])
+    foot[4] += slope
+
+
+@kernel
+def drop_to(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
+    """How far below T-pose the hips are so that a leg, which is stretched so far at most, reaches its foot (6,)."""
+    length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
+    dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
+    reach = math.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
+    return float(legs[side, _HIP + 1] - foot[1] - reach)
 
 
 @kernel
@@ -26,21 +55,12 @@ def raise_feet(legs: Floats, roots: Floats, feet: Floats, drops: Floats) -> None
 
     Nothing is done where the rows end with the phase.
     """
-    for n in range(len(roots) if roots.shape[1] > RISES else 0):
-        rises = roots[n, RISES:]
-        if abs(rises[0]) + abs(rises[1]) + abs(rises[2]) + abs(rises[3]) < _LEVEL:
+    for n in range(len(roots)):
+        if not is_uneven(roots[n]):
             continue
         for side in range(2):
-            foot, rise, slope = feet[n, side], rises[2 * side], rises[2 * side + 1]
+            foot, at = feet[n, side], RISES + 2 * side
             pitch, pivot = foot[4], legs[side, _BALL] if foot[4] > 0.0 else -legs[side, _HEEL]
             ahead = pivot - pivot * math.cos(pitch) + legs[side, _ANKLE + 1] * math.sin(pitch)
-            sine, cosine, above = math.sin(slope), math.cos(slope), foot[1]
-            moved = ahead * (cosine - 1.0) + above * sine
-            foot[0] += moved * math.sin(foot[3])
-            foot[1] = rise - ahead * sine + above * cosine
-            foot[2] += moved * math.cos(foot[3])
-            foot[4] += slope
-            length = _STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])
-            dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
-            reach = math.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-            drops[n] = max(drops[n], legs[side, _HIP + 1] - foot[1] - reach)
+            raise_foot(foot, ahead, roots[n, at], roots[n, at + 1])
+            drops[n] = max(drops[n], drop_to(legs, side, foot, STRETCH))

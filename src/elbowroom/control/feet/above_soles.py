@@ -34,10 +34,19 @@ class AboveSoles:
         self._feet = self.footing.each_foot(model.body)
         lifted = np.flatnonzero(self._feet.any(axis=0) & (not self.footing.plain))
         self.body = ShownBody(model.whole, model.body.radii, self._sides(model), lifted)  # for kernels
+        self._of_legs = self.body.sides[model.roots.indices]
+        shins = np.isin(model.body.joints, model.figure.legs[:, 1:])
+        self.carried = np.flatnonzero(~(shins & (not self.footing.plain)))  # capsules that count for how hips live
 
     def floors(self, root: Floats) -> Floats:
         """What both soles keep above (2,) in a root state (ROOT_STATE,) that stands."""
         return NOWHERE if self.footing.plain else self.footing.floors(root[None])
+
+    def floors_of_legs(self, roots: Floats) -> Floats:
+        """What the capsules of the legs keep above (C,) in all of the root states (N, WITH_FEET)."""
+        both = NOWHERE if self.footing.plain else self.footing.floors(roots)
+        own: Floats = np.append(both, both.min())[self._of_legs]
+        return own
 
     def change(self, one: Floats, other: Floats) -> bool:
         """Whether soles keep above other heights (2,) in one root state than in another."""

@@ -1,6 +1,6 @@
-"""What the controller asks of feet, whatever they stand on."""
+"""What feet go by as they follow what is played."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -39,31 +39,3 @@ class Moment(NamedTuple):
     room: float  # metres about the whole body as it is shown; negative where that is not looked at
     look: Look
     room_along: RoomAlong
-
-
-class Feet(Protocol):
-    """How one avatar's feet follow what is played; frozen, their state is in the root states that are shown."""
-
-    def standing(self, root: Floats) -> Floats:
-        """A root state (ROOT_STATE,) as it is shown standing."""
-        ...
-
-    def are_still(self, before: Floats, shown: Floats) -> bool:
-        """Whether feet that are shown in a root state, after another, stay as they are while the root rests."""
-        ...
-
-    def next(self, moment: Moment, posed: Playback) -> Playback:
-        """How a pose is shown next, if that is free."""
-        ...
-
-    def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
-        """Poses that could be shown next, each with its stance (3,): best first."""
-        ...
-
-    def settling(self, moment: Moment, held: Playback) -> Iterable[Playback]:
-        """How a pose that is held could be shown next, as legs come to a stand: best first."""
-        ...
-
-    def resting(self, moment: Moment) -> Playback:
-        """What who rests may show next: what is shown, if nothing lives."""
-        ...

@@ -13,11 +13,13 @@ from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
 from elbowroom.body.gait.footholds import step_feet
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.living import Body, live
-from elbowroom.body.gait.own_steps import OwnSteps
-from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
+from elbowroom.body.pose.whole_body import posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
+from elbowroom.control.feet.treading import Stepper, tread, tread_gliding
+from elbowroom.control.shown.standing_about import ShownBody, lift_feet
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
+from elbowroom.planning.model.footing import Underfoot
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -42,17 +44,18 @@ class ArmsAndLegs(NamedTuple):
 class Follower(NamedTuple):
     """What is to be known of one body."""
 
-    whole: WholeBody
-    own: OwnSteps
+    shown: ShownBody
+    feet: Stepper
     body: Body
     pairs: ArmsAndLegs
+    under: Underfoot  # what it stands on
 
 
 class Followed(NamedTuple):
     """A body that has followed."""
 
     root: Floats  # (SHOWN,) with feet and carriage
-    axes: Floats32  # (C, 6, 1) of its capsules, as seen from the root's place
+    axes: Floats32  # (C, 6, 1) of its capsules, as seen from the root's place, feet as high as they are held
     gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
 
 
@@ -68,17 +71,23 @@ def followed(
 ) -> tuple[Floats, Floats32, Floats32]:
     """How a root state (7 or more,) with an upper body (LOCAL,) is shown `dt` seconds after `before` (SHOWN,).
 
-    As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which. `coming`
-    (m, 8) is as in `step_feet`, `room` as in `live`.
+    As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which; that is
+    raised as `root` tells. `coming` (m, 8) is as in `step_feet`, `room` as in `live`.
     """
-    row, planned, legs, scale = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.whole.gait_legs, who.whole.scale
+    row, planned, (legs, scale, own) = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.feet
     if how != STEPS:
         glide_feet(legs, scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
+        if not who.under.ground.plain:
+            tread_gliding(who.under, before, row, dt, how == HOLDS)
     else:
-        step_feet(legs, scale, who.own, before, planned, dt, coming, row[:WITH_FEET])
+        step_feet(legs, scale, own, before, planned, dt, coming, row[:WITH_FEET])
+        if not who.under.ground.plain:
+            tread(who.under, who.feet, before, row, dt, coming)
     live(who.body, before, dt, room, coming, upper[_TWIST] + upper[_HEAD_TURN], row)
     q, near = np.zeros((1, DOF)), row.copy().reshape((1, SHOWN))
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
-    axes = posed_capsules(who.whole, q, near)
-    return row, axes, arm_gaps(axes, who.pairs)
+    axes = posed_capsules(who.shown.whole, q, near)
+    gaps = arm_gaps(axes, who.pairs)
+    lift_feet(who.shown, q, near, axes)
+    return row, axes, gaps

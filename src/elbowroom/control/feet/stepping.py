@@ -1,7 +1,8 @@
 """The avatar's feet and hips under what is played.
 
-Feet step as the root goes, and wait or glide where no step can be shown. Hips, chest and head live
-(`body/gait/living.py`) as far as there is room, and are where they were planned where there is none.
+Feet step as the root goes, on the plane and on any other ground, and wait or glide where no step can be shown. Hips,
+chest and head live (`body/gait/living.py`) as far as there is room, and are where they were planned where there is
+none.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,70 +12,82 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.foot_state import standing
-from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
-from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
+from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body
-from elbowroom.body.root import CARRIAGE, ROOT_STATE, WITH_FEET
+from elbowroom.body.root import CARRIAGE, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
+from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Moment
+from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
+from elbowroom.control.feet.raised import raised
+from elbowroom.control.feet.treading import Stepper
 from elbowroom.control.key_frame_queue import Playback
 
 Floats = NDArray[np.float64]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
-_CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
+CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _FORESEEN = 0.75  # seconds that are looked ahead
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
+_SKIN = 0.01  # metres: nearly all of a foot's surface is within so much of its capsules (`body/fitting/coverage.py`)
+_LONG = 60.0  # seconds in which feet have glided wherever they were planned
 
 
 class Stepping:
     """How one avatar stands and steps; frozen, the state of its feet is in the root states that are shown."""
 
-    def __init__(self, humanoid: Humanoid, motions: MotionSet) -> None:
-        """`motions` are those that it walks with."""
+    def __init__(self, humanoid: Humanoid, motions: MotionSet, soles: AboveSoles) -> None:
+        """`motions` are those that it walks with, `soles` stand on the ground there."""
         model = body_model(humanoid)
-        self._gait, self._own = model.gait, motions.own_steps
+        self._gait, self._own, self._footing = model.gait, motions.own_steps, soles.footing
         self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
         self._arms = arms_beside_legs(humanoid, motions)
-        self._follower = Follower(model.whole, self._own, self._body, self._arms.pairs)
+        feet = Stepper(model.gait.legs, model.gait.scale, self._own)
+        self._follower = Follower(soles.body, feet, self._body, self._arms.pairs, soles.footing.underfoot)
 
     def standing(self, root: Floats) -> Floats:
-        """A root state (7,) with feet beside each other, carried as planned, (SHOWN,)."""
-        return np.concatenate([beside(self._gait, root), np.zeros(CARRIAGE)])
+        """A root state (ROOT_STATE,) with feet beside each other, carried as planned, (SHOWN,)."""
+        return np.concatenate([beside(self._gait, self._stood(root)), np.zeros(CARRIAGE)])
 
     def are_still(self, before: Floats, shown: Floats) -> bool:
         """Whether feet that are shown (SHOWN,), after others, make no step while the root rests.
 
         They are where they were and stand, so that no step can be shown or none is needed; or none is left to make.
         """
-        moved = np.abs(shown[ROOT_STATE:WITH_FEET] - before[ROOT_STATE:WITH_FEET]).max()
-        return bool(standing(shown).all() and moved < _SAME) or settled(self._gait, shown)
+        rises, moved = (
+            np.abs(shown[part] - before[part]).max() for part in (slice(RISES, ROOT_STATE), slice(RISES, WITH_FEET))
+        )
+        settles = rises < _SAME and settled(self._gait, shown)
+        return bool(standing(shown).all() and moved < _SAME) or bool(settles)
 
     def resting(self, moment: Moment) -> Playback:
         """What who rests shows next: it breathes, and shifts its weight."""
         return self._alive(moment._replace(ahead=UNKNOWN), moment.shown.root[:WITH_FEET], moment.shown)
 
-    def settling(self, moment: Moment, held: Playback) -> list[Playback]:
+    def settling(self, moment: Moment, held: Playback) -> Iterator[Playback]:
         """How a pose that is held could be shown next, as legs come to a stand: best first.
 
         Arms make way for legs that come to a stand; if that touches they stay.
         """
         moment = moment._replace(ahead=UNKNOWN)
-        before, after, dt = moment.shown.root, held.root, moment.dt
-        steps, glides = onward(self._gait, before, after, dt, own=self._own), gliding(self._gait, before, after, dt)
-        roots = [steps, glides] if moment.look(steps, held.upper).room >= _ROOM else [glides, steps]
-        made = [self._alive(moment, root, held) for root in roots]
+        steps = self._followed(moment, held, STEPS)
+        roomy = moment.look(steps.root, held.upper, steps.axes).room >= _ROOM or self._is_clear(moment, steps, held)
+        order, still = (STEPS, GLIDES) if roomy else (GLIDES, STEPS), moment._replace(room=_NOT_AT_ALL)
+        made = [pose for how in order for pose in self._ways(moment, held, how)]
         if any(lively(pose.root) for pose in made):
-            made += [self._alive(moment._replace(room=_NOT_AT_ALL), root, held) for root in roots]
-        return [pose._replace(upper=self._arms.apart(pose.root, pose.upper)) for pose in made] + made
+            made += [pose for how in order for pose in self._ways(still, held, how)]
+        for pose in made:
+            is_apart = pose.upper is not held.upper
+            yield pose if is_apart else pose._replace(upper=self._arms.apart(pose.root, pose.upper))
+        yield from made
 
     def next(self, moment: Moment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
@@ -100,16 +113,54 @@ class Stepping:
                 yield self.next(still, posed), stance
         for how in (GLIDES, STEPS):
             for posed, stance in played:
-                yield posed._replace(root=self._followed(still, posed, how).root), stance
+                for way in self._ways(still, posed, how):
+                    yield way, stance
         for posed, stance in played:
-            root = onward(self._gait, moment.shown.root, posed.root, 0.0)
-            if not self._is_strained(root, posed.upper):
-                yield self._alive(still, root, posed), stance
+            waits = self._made(still._replace(dt=0.0), posed, STEPS).root
+            if not self._is_strained(waits, posed.upper):
+                yield posed._replace(root=waits), stance
+
+    def _ways(self, moment: Moment, posed: Playback, how: int) -> Iterator[Playback]:
+        """How a pose can be shown on feet that follow in one of the ways: best first.
+
+        On ground that is not plain there are more where feet glide: they are raised slowly or hastily, on arms that
+        make way for them or do not; or they are at once where they were planned. Skin may be a little outside the
+        capsules, so legs that have less room than that come last.
+        """
+        if self._footing.plain or how != GLIDES:
+            yield posed._replace(root=self._followed(moment, posed, how).root)
+            return
+        stood, close, as_planned = self._stood(posed.root), list[Playback](), list[Playback]()
+        before, still = moment.shown.root, moment._replace(room=_NOT_AT_ALL)
+        gliding_ways = (
+            self._made(moment, posed._replace(root=root), GLIDES).root for root in raised(before, stood, moment.dt)
+        )
+        for root in (*gliding_ways, self._alive(still, gliding(self._gait, before, stood, _LONG), posed).root):
+            upper = self._arms.apart(root, posed.upper)
+            if upper is not posed.upper:
+                as_planned.append(posed._replace(root=root))
+            pose = posed._replace(root=root, upper=upper)
+            if moment.look(root, upper).room < _SKIN:
+                close.append(pose)
+            else:
+                yield pose
+        yield from close
+        yield from as_planned
+
+    def _stood(self, root: Floats) -> Floats:
+        """A root state (ROOT_STATE or more,) with what the feet of the walking cycle stand on (ROOT_STATE,)."""
+        stood: Floats = self._footing.stood(root[None, :ROOT_STATE])[0][0]
+        return stood
 
     def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
         """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
-        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own)
-        return moment.room_along(rows, upper) >= _CLEAR
+        under = self._follower.under
+        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own, under)
+        return moment.room_along(rows, upper) >= CLEAR
+
+    def _is_clear(self, moment: Moment, after: Followed, posed: Playback) -> bool:
+        """Whether legs are clear of what is near, but for the ground under them, where that is not plain."""
+        return not self._footing.plain and moment.room_along(after.root[None, :WITH_FEET], posed.upper) >= CLEAR
 
     def _glided(self, moment: Moment, posed: Playback, *, lasts: bool) -> Followed:
         """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it.
@@ -118,14 +169,23 @@ class Stepping:
         """
         if lasts:
             held = self._followed(moment, posed, HOLDS)
-            if moment.look(held.root, posed.upper, held.axes).room >= _CLEAR:
-                back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN)
-                if moment.room_along(back, posed.upper) >= _CLEAR:
+            near = moment.look(held.root, posed.upper, held.axes).room
+            if near >= CLEAR or self._is_clear(moment, held, posed):
+                under = self._follower.under
+                back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN, under)
+                if moment.room_along(back, posed.upper) >= CLEAR:
                     return held
         return self._followed(moment, posed, GLIDES)
 
     def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
         """A pose on feet that follow in one of the ways, with hips, chest and head that live."""
+        if how == STEPS or self._footing.plain:
+            return self._made(moment, posed, how)
+        root = next(raised(moment.shown.root, self._stood(posed.root), moment.dt))
+        return self._made(moment, posed._replace(root=root), how)
+
+    def _made(self, moment: Moment, posed: Playback, how: int) -> Followed:
+        """The same, where the root tells already how high feet glide."""
         before, coming, root, upper = moment.shown.root, moment.ahead, posed.root, posed.upper
         return Followed(*followed(self._follower, before, root, upper, coming, moment.dt, moment.room, how))
 

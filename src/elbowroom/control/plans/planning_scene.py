@@ -4,9 +4,6 @@ from functools import cached_property
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
-from elbowroom.control.feet.feet import Feet
-from elbowroom.control.feet.raised import RaisedFeet
 from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.plans.planners import Planners
 from elbowroom.control.plans.wayfinder import Wayfinder
@@ -23,12 +20,7 @@ class PlanningScene:
         """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
         self._humanoid, self.scene = humanoid, scene
         self.check = BodyCheck(humanoid, scene)
-        footing = self.check.footing
-        self.feet: Feet
-        if footing.plain:
-            self.feet = Stepping(humanoid, motions)
-        else:
-            self.feet = RaisedFeet(footing, arms_beside_legs(humanoid, motions))
+        self.feet = Stepping(humanoid, motions, self.check.soles)
         self.planners = Planners(settings.planner, humanoid, scene, motions)
         self.wayfinder = Wayfinder(settings, self.check, motions, self.planners)
 

@@ -63,10 +63,9 @@ class Rehearsal:
         return np.array(found)
 
     def _on_feet(self, before: Floats, root: Floats) -> Floats:
-        """A root state (7,) after the one `before`, which may have feet, on its own."""
-        if len(before) > ROOT_STATE:
-            return gliding(self._check.model.gait, before, root, _SPACING)
-        return self._check.standing(root)
+        """A root state (7,) after the one `before`, which may have feet, on what it stands on."""
+        stood = self._check.standing(root)
+        return gliding(self._check.model.gait, before, stood, _SPACING) if len(before) > ROOT_STATE else stood
 
 
 def standing_path(path: RootPath, root: Floats) -> RootPath:

@@ -35,6 +35,7 @@ Indices = NDArray[np.int64]
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _REMEMBERED = 4  # poses
+_OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 _LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
 
 
@@ -73,7 +74,7 @@ class BodyCheck:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
-        self._soles = AboveSoles(self.model, scene.ground)
+        self.soles = AboveSoles(self.model, scene.ground)  # how it stands on the ground here
         self._levers = body_levers(humanoid).own
         moving = scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
@@ -86,7 +87,7 @@ class BodyCheck:
     @property
     def footing(self) -> Footing:
         """How feet stand on the ground here."""
-        return self._soles.footing
+        return self.soles.footing
 
     @property
     def alone(self) -> bool:
@@ -135,16 +136,23 @@ class BodyCheck:
         return np.inf if self.alone else self._least(self._pose(root, upper, axes), time, -np.inf, legs)
 
     def room_along(self, roots: Floats, upper: Floats) -> float:
-        """Metres from the legs to what stands about feet on the plane, the least of root states (N, WITH_FEET)."""
+        """Metres from the legs to what stands about feet, the least of root states (N, WITH_FEET).
+
+        Feet are held some millimetres higher, where ground is not plain: so what they stand on counts as no nearer.
+        """
         if self._empty:
             return np.inf
-        legs, near = self.model.roots, roots.copy()
+        legs, near, lowering = self.model.roots, roots.copy(), upper[_LOWERING]
         near[:, :2] -= roots[0, :2]
-        axes = leg_capsules(self.model, near, upper[_LOWERING])
+        axes = self.footing.lifted(leg_capsules(self.model, near, lowering), legs, near, lowering, _OVER_GROUND)
         lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
-        radii = np.tile(legs.radii, len(roots))
-        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, np.full(len(radii), -np.inf))
+        radii, floors = np.tile(legs.radii, len(roots)), np.tile(self.soles.floors_of_legs(roots), len(roots))
+        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors)
         return float(found.min(initial=np.inf))
+
+    def room_of_trunk(self, root: Floats, upper: Floats, time: float) -> float:
+        """The same of all that is carried by the shins: what feet stand on, and go over, is no nearer for them."""
+        return np.inf if self.alone else self._least(self._pose(root, upper), time, -np.inf, self.soles.carried)
 
     def shown_clearance(self, root: Floats, upper: Floats, time: float) -> float:
         """The same while others still are as they were shown last: what they mean to do next is for them to answer."""
@@ -173,11 +181,11 @@ class BodyCheck:
             return True
         before, after = (self._pose(root, upper) for root, upper in zip(frames.roots, frames.uppers, strict=True))
         floors, gaps = np.minimum(before.floors, after.floors), [before.gaps, after.gaps]
-        if self._soles.change(before.floors, after.floors):
+        if self.soles.change(before.floors, after.floors):
             gaps = [self._gaps(pose.axes, pose.root, floors) for pose in (before, after)]
-        if self._soles.raised(*frames.roots) and not self._turns_free(frames, floors):
+        if self.soles.raised(*frames.roots) and not self._turns_free(frames, floors):
             return False
-        body, standing, ends = self._soles.body, self._standing.about_bodies, np.array(gaps)
+        body, standing, ends = self.soles.body, self._standing.about_bodies, np.array(gaps)
         if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, ends, floors):
             return False
         return not self.accompanied or self._free_of_movers(frames, (before, after))
@@ -198,10 +206,10 @@ class BodyCheck:
     def _turns_free(self, frames: Frames, floors: Floats) -> bool:
         """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
         legs, parts = turned_legs(self.model, frames.roots, frames.uppers), self.model.roots
-        lifted = self._soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
+        lifted = self.soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
         axes = np.repeat(self._pose(frames.roots[0], frames.uppers[0]).axes, len(legs.states), axis=2)
         axes[parts.indices] = lifted
-        if self._soles.soles_above(axes, floors) < 0.0:
+        if self.soles.soles_above(axes, floors) < 0.0:
             return False
         each = (np.ascontiguousarray(axes[:, :, [n]]) for n in range(len(legs.states)))
         return all(self._gaps(one, frames.roots[0], floors)[parts.indices].min() >= 0.0 for one in each)
@@ -221,7 +229,7 @@ class BodyCheck:
         part = shares[:, None]
         roots, uppers = first + part * (last - first), begin + part * (end - begin)
         roots[:, :2] -= first[:2]
-        axes = lifted_capsules(self._soles.body, np.concatenate([roots[:, :3], uppers], axis=1), roots)
+        axes = lifted_capsules(self.soles.body, np.concatenate([roots[:, :3], uppers], axis=1), roots)
         times = before + shares * (after - before)
         found = [self._from_movers(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
         return np.array(found, np.float32)
@@ -234,21 +242,21 @@ class BodyCheck:
     def _gaps(self, axes: Floats32, root: Floats, floors: Floats) -> Floats32:
         """How far each of the axes (C, 6, 1) about a root's place is from what stands, (C,)."""
         x, z = root[:2].tolist()
-        return gaps_about(self._soles.body, self._standing.about_bodies, axes, x, z, floors)
+        return gaps_about(self.soles.body, self._standing.about_bodies, axes, x, z, floors)
 
     def _pose(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> _Pose:
         """A pose, remembered; its `axes` may be known."""
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
-        posed, floors = capsules_of(self._soles.body, root, upper) if axes is None else axes, self._soles.floors(root)
+        posed, floors = capsules_of(self.soles.body, root, upper) if axes is None else axes, self.soles.floors(root)
         pose = _Pose(root, upper, posed, floors, self._gaps(posed, root, floors))
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with what the feet stand on."""
-        stood: Floats = root if self._soles.footing.plain else self._soles.footing.stood(root[None])[0][0]
+        stood: Floats = root if self.soles.footing.plain else self.soles.footing.stood(root[None])[0][0]
         return stood
 
     def _least(self, pose: _Pose, time: float, others_at: float, parts: Indices | None = None) -> float:

@@ -42,7 +42,7 @@ class Showing:
 
     @property
     def pose(self) -> Playback:
-        """What is shown: its root state is followed by feet and carriage on the plane."""
+        """What is shown: its root state is followed by feet and carriage."""
         return self._pose
 
     @property
@@ -161,8 +161,16 @@ class Showing:
 
     def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
-        room = max(self._clearance, 0.0) if self.assist else -1.0
-        return Moment(self._pose, dt, ahead, room, self._look, self._around.check.room_along)
+        return Moment(self._pose, dt, ahead, self._room(), self._look, self._around.check.room_along)
+
+    def _room(self) -> float:
+        """Metres about the body as it is shown; where ground is not plain, about what the shins carry."""
+        check = self._around.check
+        if not self.assist:
+            return -1.0
+        if check.footing.plain:
+            return max(self._clearance, 0.0)
+        return max(check.room_of_trunk(self._pose.root, self._pose.upper, self._now), 0.0)
 
     def _look(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
         """What stands and moves about a body."""

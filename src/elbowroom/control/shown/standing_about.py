@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
@@ -41,18 +41,28 @@ class ShownBody(NamedTuple):
 
 
 @exact_kernel
+def lift_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None:
+    """Lift the feet among the capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more): they are held so.
+
+    Nothing is done on plain ground.
+    """
+    if len(body.feet) == 0:
+        return
+    level = roots.copy()
+    level[:, HEIGHT:ROOT_STATE] = 0.0
+    strides = posed_capsules(body.whole, q, level)
+    for c in body.feet:
+        for n in range(axes.shape[2]):
+            lift = max(body.radii[c] - min(strides[c, 1, n], strides[c, 4, n]), _ZERO) + _DEEP
+            axes[c, 1, n] += lift
+            axes[c, 4, n] += lift
+
+
+@exact_kernel
 def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
     """The capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more), feet as high as they are held."""
     axes = posed_capsules(body.whole, q, roots)
-    if len(body.feet) > 0:
-        level = roots.copy()
-        level[:, HEIGHT:] = 0.0
-        strides = posed_capsules(body.whole, q, level)
-        for c in body.feet:
-            for n in range(axes.shape[2]):
-                lift = max(body.radii[c] - min(strides[c, 1, n], strides[c, 4, n]), _ZERO) + _DEEP
-                axes[c, 1, n] += lift
-                axes[c, 4, n] += lift
+    lift_feet(body, q, roots, axes)
     return axes
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -34,9 +34,9 @@ class Soles:
             [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)] for side in _SIDES
         ]
         self._level: ShownMotion | None = None  # the same strides on the plane; None where nothing but it is stood on
-        if floors or (motion.roots.shape[1] > HEIGHT and np.abs(motion.roots[:, HEIGHT:]).max(initial=0.0) > 0.0):
+        if floors or np.abs(motion.roots[:, HEIGHT:ROOT_STATE]).max(initial=0.0) > 0.0:
             roots = motion.roots.copy()
-            roots[:, HEIGHT:] = 0.0
+            roots[:, HEIGHT:ROOT_STATE] = 0.0
             self._level = replace(motion, roots=roots)
 
     def raised(self, posed: Posed, moments: Moments, skin: Skin | None = None) -> Posed:

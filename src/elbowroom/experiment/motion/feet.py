@@ -6,9 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.experiment.motion.sole import Sole
 from elbowroom.experiment.motion.stance import slides, standing_by_looks, stretches
 from elbowroom.experiment.motion.walked import RATE, Walked
+from elbowroom.jit import exact_kernel
+from elbowroom.world.ground.ground import Ground, height_at
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -41,7 +44,7 @@ class Feet:
 class FootTrack:
     """One foot in one walk."""
 
-    points: Floats  # (N, P, 3) of its sole
+    points: Floats  # (N, P, 3) of its sole, heights those above the ground
     planned: Bools  # (N,)
     seen: Bools  # (N,)
 
@@ -59,12 +62,27 @@ class FootTrack:
 
 def foot_tracks(walked: Walked, soles: Sequence[Sole]) -> tuple[FootTrack, FootTrack]:
     """Left and right foot of a walk, from where it is settled."""
-    span = walked.settled()
-    left, right = (
-        FootTrack(points, walked.standing[span, side], standing_by_looks(points, RATE))
-        for side, points in enumerate(sole.points(walked.joints)[span] for sole in soles)
-    )
+    span, ground = walked.settled(), walked.script.scene.ground
+    tracks = []
+    for side, sole in enumerate(soles):
+        points, near = (
+            sole.points(walked.joints)[span],
+            walked.roots[span, HEIGHT] + walked.roots[span, RISES + 2 * side],
+        )
+        points[:, :, 1] -= _under(ground, np.ascontiguousarray(points), near)
+        tracks.append(FootTrack(points, walked.standing[span, side], standing_by_looks(points, RATE)))
+    left, right = tracks
     return left, right
+
+
+@exact_kernel
+def _under(ground: Ground, points: Floats, near: Floats) -> Floats:
+    """The ground (N, P) under points (N, P, 3), about the heights `near` (N,)."""
+    found = np.zeros(points.shape[:2])
+    for n in range(points.shape[0]):
+        for p in range(points.shape[1]):
+            found[n, p] = height_at(ground, points[n, p, 0], points[n, p, 2], near[n])
+    return found
 
 
 def feet(tracks: Sequence[FootTrack]) -> Feet:

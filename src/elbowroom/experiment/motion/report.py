@@ -16,7 +16,7 @@ from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
 from elbowroom.experiment.motion.gaps import Narrow, narrow, pass_gap
 from elbowroom.experiment.motion.scripts import Script, scripts
-from elbowroom.experiment.motion.settings import GAPS, STEADY, MotionSettings
+from elbowroom.experiment.motion.settings import GAPS, STEADY, UNEVEN, MotionSettings
 from elbowroom.experiment.motion.smooth import Smoothness, smoothness
 from elbowroom.experiment.motion.sole import soles_of
 from elbowroom.experiment.motion.trunk import Trunk, trunk
@@ -132,8 +132,9 @@ def _share(standing: Bools, phase: Floats) -> float:
 def _of_feet(found: dict[str, Feet]) -> Sequence[Band]:
     rows = []
     for case, own in found.items():
-        rows.append(at_most(f"{case}: slide of a standing foot, 99 %", own.as_planned.p99, 2.0, "mm"))
-        rows.append(at_most(f"{case}: slide of a foot that rests, 99 %", own.by_looks.p99, 2.0, "mm"))
+        most = 5.0 if case in UNEVEN else 2.0
+        rows.append(at_most(f"{case}: slide of a standing foot, 99 %", own.as_planned.p99, most, "mm"))
+        rows.append(at_most(f"{case}: slide of a foot that rests, 99 %", own.by_looks.p99, most, "mm"))
         rows.append(at_most(f"{case}: sole in the ground", own.in_ground, 3.0, "mm"))
     if STEADY in found:
         rows.append(Band(f"{STEADY}: clearance of the swinging foot", found[STEADY].clearance, 10.0, 25.0, "mm"))

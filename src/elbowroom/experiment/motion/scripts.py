@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from elbowroom.body.root import RootState
 from elbowroom.experiment.bench.steer_scenes import slalom
@@ -17,6 +17,8 @@ TURN_AT = 2.0  # seconds, when the walk `turn 90` is told to turn
 _AHEAD = Command(forward=1.0)
 _OPEN = 40.0  # metres of empty ground ahead
 _SETTLED = 2.5  # seconds after which a steady walk is measured
+_WIDE, _TREAD, _RISE, _STEPS = 1.8, 0.28, 0.17, 4  # metres, of a stair; its steps
+_SLOPE, _RAMP, _TOP = math.radians(12.0), 2.0, 1.5  # of a ramp; metres along it, and of the level ground on top
 _OFFSETS = (0.0, 0.13, 0.26, 0.39)  # seconds: a start and a stop at other places of the stride
 
 
@@ -39,7 +41,7 @@ class Script(NamedTuple):
 def scripts(names: Sequence[str] = (), speeds: Sequence[float] = SPEEDS) -> tuple[Script, ...]:
     """All walks, or those named by case, of `SCRIPTED`; raises `InputError` if there is no such case."""
     check_cases(names)
-    every = [steady(speed) for speed in speeds] + [*_on_open_ground(), *_among_things()]
+    every = [steady(speed) for speed in speeds] + [*_on_open_ground(), *_among_things(), *_on_uneven_ground()]
     return tuple(script for script in every if not names or script.case in names)
 
 
@@ -115,3 +117,30 @@ def _among_things() -> list[Script]:
         Script("doorway", Scene.load("doorway"), _held(_AHEAD), 9.0),
         Script("slalom", posts.scene, lambda time, root: mouse(time, root.x, root.z), 9.0),
     ]
+
+
+def _on_uneven_ground() -> list[Script]:
+    """Up and down again: a stair, a ramp and a sill."""
+    made = [("stair", _stair(), 18.0), ("ramp", _ramp(), 12.0), ("sill", [_block(2.0, 0.1, 0.1)], 6.0)]
+    end = {"stair": 2.0 + 2.0 * _TREAD * _STEPS + _TOP, "ramp": 2.0 + 2.0 * _RAMP + _TOP, "sill": 2.0}
+    return [
+        Script(name, Scene.of(name, obstacles, finish=(0.0, end[name] + 2.0)), _held(_AHEAD), seconds)
+        for name, obstacles, seconds in made
+    ]
+
+
+def _block(begin: float, length: float, top: float) -> dict[str, Any]:
+    return {"type": "box", "center": [0.0, 0.5 * top, begin + 0.5 * length], "size": [_WIDE, top, length]}
+
+
+def _stair() -> list[dict[str, Any]]:
+    """Each step a block that goes through below those above it."""
+    whole = 2.0 * _TREAD * _STEPS + _TOP
+    return [_block(2.0 + _TREAD * i, whole - 2.0 * _TREAD * i, _RISE * (i + 1)) for i in range(_STEPS)]
+
+
+def _ramp() -> list[dict[str, Any]]:
+    half, top = 0.5 * _WIDE, math.tan(_SLOPE) * _RAMP
+    ends = ((0.0, 0.0), (_RAMP, top), (_RAMP + _TOP, top), (2.0 * _RAMP + _TOP, 0.0))
+    points = [[x, height, along] for x in (-half, half) for along, height in ends]
+    return [{"type": "hull", "points": points, "center": [0.0, 0.0, 2.0]}]

@@ -7,10 +7,12 @@ from elbowroom.errors import InputError
 from elbowroom.planning.root.settings import RootMotionSettings
 
 STEADY, GAPS = "steady", "gaps"
+UNEVEN = ("stair", "ramp", "sill")
 SCRIPTED = (
     STEADY,
     *("start", "stop", "turn", "change of direction", "turn in place", "strafe", "back", "circle", "there and back"),
     *("crouch", "doorway", "slalom"),
+    *UNEVEN,
 )  # `scripts` makes them
 SPEEDS = (0.5, 0.8, 1.1, 1.4, 2.0)  # m/s
 RATIOS = (0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.5)  # of a gap to the width of the shoulders

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -58,7 +59,7 @@ def posed(humanoid: Humanoid, q: Floats, roots: Floats) -> Posed:
     """Every joint in the world for configurations (N, DOF) and root states (N, 7)."""
     poser = Poser(humanoid)
     local, hips = poser.local(q, roots)
-    return poser.world(local, hips, roots[:, :3])
+    return poser.world(local, hips, roots[:, [0, 1, 2, HEIGHT] if roots.shape[1] > HEIGHT else [0, 1, 2]])
 
 
 def joint_track(joints: Posed, skeleton: Skeleton, bone: str) -> Floats:

@@ -147,7 +147,7 @@ class Footing:
     def _lifts(self, states: Floats, lowerings: ArrayLike) -> Floats32:
         """How far each capsule of the feet (F,) is below the plane in the same strides on it (N,), and 3 mm: (F, N)."""
         level, roots = states.copy(), self._model.roots
-        level[:, HEIGHT:] = 0.0
+        level[:, HEIGHT:ROOT_STATE] = 0.0
         feet = self._feet(roots)
         ends = leg_capsules(self._model, level, lowerings)[feet][:, [1, 4]]
         below = roots.radii[feet][:, None] - ends.min(axis=1)

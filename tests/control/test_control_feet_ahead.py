@@ -5,11 +5,11 @@ import pytest
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
-from elbowroom.body.gait.footholds_ahead import glides_ahead, steps_ahead
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
+from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.world.scene import Scene
 

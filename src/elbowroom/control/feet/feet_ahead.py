@@ -1,14 +1,19 @@
-"""Where feet will be that step or glide on as the root goes on: the rows of `footholds`, one after the other."""
+"""Where feet will be that step or glide on as the root goes on: the rows of `following`, one after the other."""
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
+from elbowroom.body.gait.foot_state import YAW, X, Z
 from elbowroom.body.gait.footholds import step_feet
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
-from elbowroom.body.root import ROOT_STATE, WITH_FEET
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
+from elbowroom.control.feet.treading import Stepper, stood_at, tread
 from elbowroom.jit import exact_kernel, plain
+from elbowroom.planning.model.footing import ON_PLANE, Underfoot
 
 Floats = NDArray[np.float64]
 
@@ -17,18 +22,20 @@ _STEP, _GLIDE = plain(True), plain(False)  # whether feet step
 _HELD = plain(False)  # whether feet that stand stay, where they glide
 
 
-def steps_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, own: OwnSteps = CYCLE) -> Floats:
+def steps_ahead(
+    gait: GaitShape, row: Floats, ahead: Floats, until: float, own: OwnSteps = CYCLE, under: Underfoot = ON_PLANE
+) -> Floats:
     """Root states with feet (N, WITH_FEET) from `row` (WITH_FEET,) on, as feet step under a root that goes on.
 
     The root goes straight from one of the states that it is to come to, `ahead` (m, 8) with the seconds from now, to
     the next, past the first that is `until` seconds away.
     """
-    return _feet_ahead(gait.legs, gait.scale, own, row, ahead, until, _STEP)
+    return _feet_ahead(Stepper(gait.legs, gait.scale, own), under, row, ahead, until, _STEP)
 
 
-def glides_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float) -> Floats:
-    """The same of feet that glide from where they are in `row` into the walking cycle."""
-    return _feet_ahead(gait.legs, gait.scale, CYCLE, row, ahead, until, _GLIDE)
+def glides_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, under: Underfoot = ON_PLANE) -> Floats:
+    """The same of feet that glide from where they are in `row` into the walking cycle, over what is under them."""
+    return _feet_ahead(Stepper(gait.legs, gait.scale, CYCLE), under, row, ahead, until, _GLIDE)
 
 
 @exact_kernel
@@ -37,10 +44,18 @@ def _pieces(span: float) -> int:
 
 
 @exact_kernel
-def _feet_ahead(
-    legs: Floats, scale: float, own: OwnSteps, row: Floats, ahead: Floats, until: float, steps: bool
-) -> Floats:
-    first, last, since, count = 0, 0, 0.0, 1
+def _lay(under: Underfoot, row: Floats) -> None:
+    """Put both feet of a row on the ground where they are."""
+    for side in range(2):
+        foot, at = row[ROOT_STATE + FOOT * side :], RISES + 2 * side
+        height, slope = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+        if height > -math.inf:
+            row[at], row[at + 1] = height - row[HEIGHT], slope
+
+
+@exact_kernel
+def _feet_ahead(who: Stepper, under: Underfoot, row: Floats, ahead: Floats, until: float, steps: bool) -> Floats:
+    (legs, scale, own), first, last, since, count = who, 0, 0, 0.0, 1
     while first < len(ahead) and ahead[first, 0] <= 0.0:
         first += 1
     last = first
@@ -61,6 +76,10 @@ def _feet_ahead(
                 step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
             else:
                 glide_feet(legs, scale, rows[at], root, span / pieces, _HELD, rows[at + 1])
+            if steps and not under.ground.plain:
+                tread(under, who, rows[at], rows[at + 1], span / pieces, coming[n:])
+            elif not under.ground.plain:
+                _lay(under, rows[at + 1])
             at += 1
         since = ahead[n, 0]
     return rows

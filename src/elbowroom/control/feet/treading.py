@@ -1,0 +1,163 @@
+"""What feet that step stand on where ground is not a plane: a state that goes on from frame to frame, as `footholds`.
+
+A foot that stands keeps its height and its slope in the world, whatever the root does. One that swings goes to those of
+the ground where it will land, over what is in between: it is as high as it has to be to get over all that lies ahead of
+it at the rate by which feet rise, and comes down as soon as nothing is.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z
+from elbowroom.body.gait.footholds import landing
+from elbowroom.body.gait.own_steps import OwnSteps
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE
+from elbowroom.jit import exact_kernel, helper
+from elbowroom.planning.model.footing import Underfoot
+from elbowroom.world.ground.ground import Sole, height_along, height_at, level_about, sole_on, under_body
+
+Floats = NDArray[np.float64]
+Place = tuple[float, float, float]  # x, z and yaw as seen from the root
+Landing = tuple[float, float, float, float]  # the same, and seconds until then
+Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
+
+_NONE = -math.inf
+_OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, that a swinging foot keeps
+_LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no other slope
+_LOOKS = 8  # places of the rest of a swing that are looked at
+_RISING, _UP, _HASTY = 2.0, 3.0, 4.0  # m/s that a foot is foreseen to rise by, does, and does at most
+_EASE = 2.0  # how much faster than evenly it comes down: the power of the time that is left
+_TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
+
+
+class Stepper(NamedTuple):
+    """Whose feet step: what `step_feet` needs of a body."""
+
+    legs: Floats
+    scale: float
+    own: OwnSteps
+
+
+@helper
+def _in_world(row: Floats, x: float, z: float) -> tuple[float, float]:
+    sine, cosine = math.sin(row[2]), math.cos(row[2])
+    return row[0] + x * cosine + z * sine, row[1] - x * sine + z * cosine
+
+
+@helper
+def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> float:
+    """The height of the ground where it is one level under a root, a foot and its goal; minus infinity where not."""
+    low_x, high_x = min(0.0, foot[X], goal[0]), max(0.0, foot[X], goal[0])
+    low_z, high_z = min(0.0, foot[Z], goal[1]), max(0.0, foot[Z], goal[1])
+    around = math.hypot(max(under.sole.back, under.sole.ahead) + _BESIDE, under.sole.aside)
+    x, z = _in_world(row, 0.5 * (low_x + high_x), 0.5 * (low_z + high_z))
+    reach = 0.5 * math.hypot(high_x - low_x, high_z - low_z) + around
+    return level_about(under.ground, x, z, reach, row[HEIGHT])
+
+
+@exact_kernel
+def stood_at(under: Underfoot, row: Floats, x: float, z: float, yaw: float) -> Lie:
+    """Height and slope of a foot that stands at a place seen from a root; minus infinity where there is no ground."""
+    wx, wz = _in_world(row, x, z)
+    near = height_along(under.ground, (row[0], under_body(under.ground, row[0], row[HEIGHT], row[1]), row[1]), wx, wz)
+    if near == _NONE:
+        return near, 0.0
+    return sole_on(under.ground, under.sole, (wx, near, wz), row[2] + yaw)
+
+
+@helper
+def _needed(under: Underfoot, row: Floats, foot: Floats, goal: Place, left: float, lands: float) -> float:
+    """How high a swinging foot has to be now to get over what is on its way to a goal, where it lands at a height.
+
+    It goes there in the seconds that are `left`, as `footholds` has it.
+    """
+    ground, sole = under.ground, Sole(under.sole.back + _BESIDE, under.sole.ahead + _BESIDE, under.sole.aside)
+    x, z = _in_world(row, foot[X], foot[Z])
+    near = height_along(ground, (row[0], under_body(ground, row[0], row[HEIGHT], row[1]), row[1]), x, z)
+    near, wanted = near if near > _NONE else row[HEIGHT], _NONE
+    for k in range(_LOOKS):
+        u = k / _LOOKS
+        rest, gone = 1.0 - u, u * u * (3.0 - 2.0 * u)
+        early = rest * rest * u * left
+        x, z = _in_world(
+            row,
+            foot[X] + gone * (goal[0] - foot[X]) + early * foot[VELOCITY],
+            foot[Z] + gone * (goal[1] - foot[Z]) + early * foot[VELOCITY + 1],
+        )
+        found = height_at(ground, x, z, near)
+        near = found if found > _NONE else near
+        over, _ = sole_on(ground, sole, (x, near, z), row[2] + foot[YAW] + gone * (goal[2] - foot[YAW]))
+        if over > _NONE:
+            wanted = max(wanted, over + (_OVER if over > lands + _LEVEL else 0.0) - _RISING * u * left)
+    return max(wanted, lands - _RISING * left)
+
+
+@helper
+def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt: float) -> Lie:
+    """Height and slope of a swinging foot that `was` so high and tilted `dt` seconds ago."""
+    foot, place, left = row[ROOT_STATE + FOOT * side :], (goal[0], goal[1], goal[2]), goal[3]
+    level = _level_there(under, row, foot, place)
+    lands, slope = level, 0.0
+    if level == _NONE:
+        lands, slope = stood_at(under, row, place[0], place[1], place[2])
+    if lands == _NONE:
+        return was
+    wanted = level if level > _NONE else _needed(under, row, foot, place, left, lands)
+    part = min(_EASE * dt / (left + dt), 1.0)
+    height = min(was[0] + _UP * dt, wanted) if wanted > was[0] else was[0] + part * (wanted - was[0])
+    return height, was[1] + part * (slope - was[1])
+
+
+@exact_kernel
+def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) -> Lie:
+    """Height and slope of a foot that stands, and was so high and tilted: those of its ground, or nearer to them.
+
+    It rises or comes down by no more than `most` metres.
+    """
+    foot = row[ROOT_STATE + FOOT * side :]
+    height, slope = _level_there(under, row, foot, (foot[X], foot[Z], foot[YAW])), 0.0
+    if height == _NONE:
+        height, slope = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+    if height == _NONE or (abs(height - was[0]) < _LEVEL and abs(slope - was[1]) < _TILTED):
+        return was
+    turn = _TURNS * most
+    return was[0] + min(max(height - was[0], -most), most), was[1] + min(max(slope - was[1], -turn), turn)
+
+
+@exact_kernel
+def tread(under: Underfoot, who: Stepper, before: Floats, row: Floats, dt: float, coming: Floats) -> None:
+    """Write to a row (WITH_FEET or more,) what its feet stand on that have stepped for `dt` seconds since `before`.
+
+    `coming` (m, 8) is as in `step_feet`.
+    """
+    later = np.empty(ROOT_STATE)
+    for side in range(2):
+        at, swing = RISES + 2 * side, ROOT_STATE + FOOT * side + SWING
+        height, slope = before[at] + before[HEIGHT], before[at + 1]
+        if dt > 0.0 and row[swing] > 0.0:
+            goal = landing(who.own, who.legs, who.scale, row, side, coming, later)
+            height, slope = _swung(under, row, side, goal, (height, slope), dt)
+        elif dt > 0.0:
+            most = _HASTY * dt if before[swing] <= 0.0 else math.inf
+            height, slope = _settled(under, row, side, (height, slope), most)
+        row[at], row[at + 1] = height - row[HEIGHT], slope
+
+
+@exact_kernel
+def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, holds: bool) -> None:
+    """The same for feet that glide: they are as high as the row tells, and no deeper than what is under them.
+
+    If it `holds`, one that stands keeps what it stands on.
+    """
+    for side in range(2):
+        at, foot = RISES + 2 * side, row[ROOT_STATE + FOOT * side :]
+        was, now = before[at] + before[HEIGHT], row[at] + row[HEIGHT]
+        if holds and foot[SWING] <= 0.0:
+            now, row[at + 1] = _settled(under, row, side, (was, before[at + 1]), _HASTY * dt)
+        else:
+            lies, _ = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+            now = max(now, min(lies, was + _HASTY * dt))
+        row[at] = now - row[HEIGHT]
