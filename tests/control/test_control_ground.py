@@ -7,15 +7,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE, RootState
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import judge
+from elbowroom.experiment.motion.stance import stretches
 from elbowroom.planning.command import Command
 from elbowroom.world.ground.ground import height_along
 from elbowroom.world.scene import Scene
+from feet_walks import in_world
 
 AVATAR = Humanoid.default()
 FORWARD = Command(forward=1.0)
@@ -109,6 +112,18 @@ def test_the_root_follows_the_ground_and_no_foot_is_under_it(name: str) -> None:
     assert soles.min() > -1e-6
     jumps = np.abs(np.diff(soles, axis=0)).max(axis=1) > 4.0 / 60 + 1e-9
     assert jumps.sum() <= 1, "feet are raised as fast as they are lifted, but where that touches"
+
+
+@pytest.mark.parametrize("name", names(*LONG, SLOWLY_JUDGED))
+def test_a_foot_that_stands_keeps_its_place_and_what_it_stands_on(name: str) -> None:
+    """But for one stance, where no step is clear of the treads."""
+    rows, slid = roots_of(name), []
+    for side in range(2):
+        places = np.column_stack([in_world(rows, side)[:, :2], rows[:, HEIGHT] + rows[:, RISES + 2 * side]])
+        for stance in stretches(standing(rows)[:, side]):
+            slid.append(float(np.linalg.norm(places[stance] - places[stance.start], axis=1).max()))
+    assert np.sort(slid)[-2] < 5e-3
+    assert np.median(slid) < 1e-9
 
 
 def test_on_the_plane_nothing_rises() -> None:

@@ -8,6 +8,8 @@ even walk that is the cycle. Who has come to rest puts the feet beside each othe
 steps who turns in place.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,6 +39,7 @@ Floats = NDArray[np.float64]
 
 _LEFT, _RIGHT = plain(0), plain(1)
 
+NO_FARTHER = np.zeros(2)
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 _HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
 _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
@@ -53,6 +56,14 @@ _NEARLY = 0.12  # metres: so near it lands
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
 _THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
+
+
+class Stepper(NamedTuple):
+    """Whose feet step."""
+
+    legs: Floats  # as in `GaitShape`
+    scale: float
+    own: OwnSteps
 
 
 @kernel
@@ -202,6 +213,13 @@ def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale
 
 
 @helper
+def _farther(goal: tuple[float, float, float], ahead: float) -> tuple[float, float, float]:
+    """A place (x, z, yaw) farther ahead."""
+    x, z, yaw = goal
+    return x + ahead * np.sin(yaw), z + ahead * np.cos(yaw), yaw
+
+
+@helper
 def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
     """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
     rest, start, slope = 1.0 - part, foot[i], foot[VELOCITY + i] * time
@@ -301,20 +319,15 @@ def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foo
 
 @exact_kernel
 def step_feet(
-    legs: Floats,
-    scale: float,
-    own: OwnSteps,
-    before: Floats,
-    root: Floats,
-    dt: float,
-    coming: Floats,
-    out: Floats,
+    who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, farther: Floats, out: Floats
 ) -> None:
     """The feet `dt` seconds later: `out` (WITH_FEET,) is for `root` (7,) what `before` (WITH_FEET,) was then.
 
     They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
-    known of that it keeps its velocities. With `dt` 0 nothing moves over the ground, a swinging foot neither.
+    known of that it keeps its velocities; and so many metres `farther` (2,) ahead. With `dt` 0 nothing moves over the
+    ground, a swinging foot neither.
     """
+    legs, scale, own = who
     carry(before, root, out)
     if dt <= 0.0:
         return
@@ -333,11 +346,13 @@ def step_feet(
             since = _lifted_since(stride, side, root, dt) if lifted == side else dt
             left = max(_time_left(own, legs, stride, side, root, foot, twin, since), 0.0)
             lands = left if left > 0.0 else -_landed_since(stride, side, root, dt)
-            goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, lands, later), twin, scale)
+            under = _goal(own, legs, scale, side, root, coming, lands, later)
+            goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
             needed = _time_needed(stride, foot, goal)
             if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
-                goal = _kept_apart(side, _goal(own, legs, scale, side, root, coming, left, later), twin, scale)
+                under = _goal(own, legs, scale, side, root, coming, left, later)
+                goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
                 foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
             pitch = _swing(own, stride, side, goal, (since, left), foot, twin)
         else:
@@ -347,16 +362,18 @@ def step_feet(
 
 @exact_kernel
 def landing(
-    own: OwnSteps, legs: Floats, scale: float, row: Floats, side: int, coming: Floats, later: Floats
+    who: Stepper, row: Floats, side: int, coming: Floats, farther: Floats, later: Floats
 ) -> tuple[float, float, float, float]:
     """Where a foot that swings in a row (WITH_FEET or more,) will land: x, z and yaw seen from the root; in how long.
 
-    `coming` (m, 8) is as in `step_feet`, seconds from the row; `later` (7,) is scratch.
+    `coming` (m, 8), seconds from the row, and `farther` (2,) are as in `step_feet`; `later` (7,) is scratch.
     """
+    legs, scale, own = who
     foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]
     stride = own_stride_of(own, scale, row[3], row[4], row[5])
     left = max(_time_left(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
-    goal = _kept_apart(side, _goal(own, legs, scale, side, row, coming, left, later), twin, scale)
+    under = _goal(own, legs, scale, side, row, coming, left, later)
+    goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
     return goal[0], goal[1], goal[2], max(left, _time_needed(stride, foot, goal))
 
 
@@ -387,7 +404,8 @@ def onward(
     `own`.
     """
     out = np.empty(WITH_FEET)
-    step_feet(gait.legs, gait.scale, own, before, root[:ROOT_STATE].copy(), dt, coming, out)
+    who = Stepper(gait.legs, gait.scale, own)
+    step_feet(who, before, root[:ROOT_STATE].copy(), dt, coming, NO_FARTHER, out)
     return out
 
 

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.foot_state import YAW, X, Z
-from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.footholds import Stepper
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
-from elbowroom.control.feet.treading import Stepper, stood_at, tread
+from elbowroom.control.feet.treading import step_on, stood_at
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.footing import ON_PLANE, Underfoot
 
@@ -55,7 +55,7 @@ def _lay(under: Underfoot, row: Floats) -> None:
 
 @exact_kernel
 def _feet_ahead(who: Stepper, under: Underfoot, row: Floats, ahead: Floats, until: float, steps: bool) -> Floats:
-    (legs, scale, own), first, last, since, count = who, 0, 0, 0.0, 1
+    first, last, since, count = 0, 0, 0.0, 1
     while first < len(ahead) and ahead[first, 0] <= 0.0:
         first += 1
     last = first
@@ -73,13 +73,11 @@ def _feet_ahead(who: Stepper, under: Underfoot, row: Floats, ahead: Floats, unti
             for k in range(n, len(ahead)):
                 coming[k, 0] = ahead[k, 0] - since - share * span
             if steps:
-                step_feet(legs, scale, own, rows[at], root, span / pieces, coming[n:], rows[at + 1])
+                step_on(under, who, rows[at], root, span / pieces, coming[n:], rows[at + 1])
             else:
-                glide_feet(legs, scale, rows[at], root, span / pieces, _HELD, rows[at + 1])
-            if steps and not under.ground.plain:
-                tread(under, who, rows[at], rows[at + 1], span / pieces, coming[n:])
-            elif not under.ground.plain:
-                _lay(under, rows[at + 1])
+                glide_feet(who.legs, who.scale, rows[at], root, span / pieces, _HELD, rows[at + 1])
+                if not under.ground.plain:
+                    _lay(under, rows[at + 1])
             at += 1
         since = ahead[n, 0]
     return rows

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
-from elbowroom.body.gait.footholds import step_feet
+from elbowroom.body.gait.footholds import Stepper
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.living import Body, live
 from elbowroom.body.pose.whole_body import posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
-from elbowroom.control.feet.treading import Stepper, tread, tread_gliding
+from elbowroom.control.feet.treading import step_on, tread_gliding
 from elbowroom.control.shown.standing_about import ShownBody, lift_feet
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
@@ -74,15 +74,13 @@ def followed(
     As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which; that is
     raised as `root` tells. `coming` (m, 8) is as in `step_feet`, `room` as in `live`.
     """
-    row, planned, (legs, scale, own) = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.feet
+    row, planned, (legs, scale, _) = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.feet
     if how != STEPS:
         glide_feet(legs, scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
         if not who.under.ground.plain:
             tread_gliding(who.under, before, row, dt, how == HOLDS)
     else:
-        step_feet(legs, scale, own, before, planned, dt, coming, row[:WITH_FEET])
-        if not who.under.ground.plain:
-            tread(who.under, who.feet, before, row, dt, coming)
+        step_on(who.under, who.feet, before, planned, dt, coming, row)
     live(who.body, before, dt, room, coming, upper[_TWIST] + upper[_HEAD_TURN], row)
     q, near = np.zeros((1, DOF)), row.copy().reshape((1, SHOWN))
     q[0, DOF - LOCAL :] = upper

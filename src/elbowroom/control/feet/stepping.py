@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.foot_state import standing
-from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
+from elbowroom.body.gait.footholds import UNKNOWN, Stepper, beside, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
@@ -25,7 +25,6 @@ from elbowroom.control.feet.feet import Moment
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
 from elbowroom.control.feet.raised import raised
-from elbowroom.control.feet.treading import Stepper
 from elbowroom.control.key_frame_queue import Playback
 
 Floats = NDArray[np.float64]

@@ -6,15 +6,13 @@ it at the rate by which feet rise, and comes down as soon as nothing is.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z
-from elbowroom.body.gait.footholds import landing
-from elbowroom.body.gait.own_steps import OwnSteps
-from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE
+from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
+from elbowroom.body.gait.footholds import Stepper, landing, step_feet
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.footing import Underfoot
 from elbowroom.world.ground.ground import Sole, height_along, height_at, level_about, sole_on, under_body
@@ -30,15 +28,9 @@ _LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no oth
 _LOOKS = 8  # places of the rest of a swing that are looked at
 _RISING, _UP, _HASTY = 2.0, 3.0, 4.0  # m/s that a foot is foreseen to rise by, does, and does at most
 _EASE = 2.0  # how much faster than evenly it comes down: the power of the time that is left
+_AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
+_BALL = 6  # column of `GaitShape.legs`
 _TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
-
-
-class Stepper(NamedTuple):
-    """Whose feet step: what `step_feet` needs of a body."""
-
-    legs: Floats
-    scale: float
-    own: OwnSteps
 
 
 @helper
@@ -127,23 +119,70 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
     return was[0] + min(max(height - was[0], -most), most), was[1] + min(max(slope - was[1], -turn), turn)
 
 
-@exact_kernel
-def tread(under: Underfoot, who: Stepper, before: Floats, row: Floats, dt: float, coming: Floats) -> None:
-    """Write to a row (WITH_FEET or more,) what its feet stand on that have stepped for `dt` seconds since `before`.
+@helper
+def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> bool:
+    """Whether a foot at a place would have ground under its ankle and its ball, and not under its toes alone."""
+    lies, slope = stood_at(under, row, foot[0], foot[1], foot[2])
+    x, z = _in_world(row, foot[0], foot[1])
+    ankle = height_at(under.ground, x, z, lies)
+    x, z = _in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
+    front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
+    return lies > _NONE and lies - ankle < _AIR and lies - front < _AIR
 
-    `coming` (m, 8) is as in `step_feet`.
+
+@exact_kernel
+def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> float:
+    """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
+
+    As little as possible; 0 where that is not had within a few centimetres.
     """
-    later = np.empty(ROOT_STATE)
+    ball, scale = who.legs[side, _BALL], who.scale
+    for k in range(2 * _TRIED + 1):
+        ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
+        x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
+        if _bears(under, row, (x, z, goal[2]), ball):
+            return float(ahead)
+    return 0.0
+
+
+@helper
+def _set_farther(
+    under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, farther: Floats, later: Floats
+) -> None:
+    """Set how much farther ahead feet that swing have to land (2,) under a root state, on after the row `before`."""
+    row = np.empty(WITH_FEET)
+    carry(before, root, row)
     for side in range(2):
+        foot = row[ROOT_STATE + FOOT * side :]
+        if foot[SWING] > 0.0:
+            x, z, yaw, _ = landing(who, row, side, coming, farther, later)
+            if _level_there(under, row, foot, (x, z, yaw)) == _NONE:
+                farther[side] = _farther_onto(under, who, row, side, (x, z, yaw))
+
+
+@exact_kernel
+def step_on(
+    under: Underfoot, who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, out: Floats
+) -> None:
+    """`step_feet` on any ground: the feet, and what they stand on, `dt` seconds after the row `before`.
+
+    To `out` (WITH_FEET or more,). On the plane that is all of it; elsewhere feet that would land across an edge land a
+    little farther ahead or back.
+    """
+    farther, later = np.zeros(2), np.empty(ROOT_STATE)
+    if not under.ground.plain and dt > 0.0:
+        _set_farther(under, who, before, root, coming, farther, later)
+    step_feet(who, before, root, dt, coming, farther, out[:WITH_FEET])
+    for side in range(0 if under.ground.plain else 2):
         at, swing = RISES + 2 * side, ROOT_STATE + FOOT * side + SWING
         height, slope = before[at] + before[HEIGHT], before[at + 1]
-        if dt > 0.0 and row[swing] > 0.0:
-            goal = landing(who.own, who.legs, who.scale, row, side, coming, later)
-            height, slope = _swung(under, row, side, goal, (height, slope), dt)
+        if dt > 0.0 and out[swing] > 0.0:
+            goal = landing(who, out, side, coming, farther, later)
+            height, slope = _swung(under, out, side, goal, (height, slope), dt)
         elif dt > 0.0:
             most = _HASTY * dt if before[swing] <= 0.0 else math.inf
-            height, slope = _settled(under, row, side, (height, slope), most)
-        row[at], row[at + 1] = height - row[HEIGHT], slope
+            height, slope = _settled(under, out, side, (height, slope), most)
+        out[at], out[at + 1] = height - out[HEIGHT], slope
 
 
 @exact_kernel
