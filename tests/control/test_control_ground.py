@@ -116,13 +116,15 @@ def test_the_root_follows_the_ground_and_no_foot_is_under_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", names(*LONG, SLOWLY_JUDGED))
 def test_a_foot_that_stands_keeps_its_place_and_what_it_stands_on(name: str) -> None:
-    """But for one stance, where no step is clear of the treads."""
-    rows, slid = roots_of(name), []
+    """But for one stance, where no step is clear of the treads; and it may come down a little later than it stands."""
+    rows, slid, sunk = roots_of(name), [], []
     for side in range(2):
-        places = np.column_stack([in_world(rows, side)[:, :2], rows[:, HEIGHT] + rows[:, RISES + 2 * side]])
+        places, heights = in_world(rows, side)[:, :2], rows[:, HEIGHT] + rows[:, RISES + 2 * side]
         for stance in stretches(standing(rows)[:, side]):
             slid.append(float(np.linalg.norm(places[stance] - places[stance.start], axis=1).max()))
+            sunk.append(float(np.ptp(heights[stance][-len(heights[stance]) // 2 :])))
     assert np.sort(slid)[-2] < 5e-3
+    assert np.sort(sunk)[-2] < 5e-3
     assert np.median(slid) < 1e-9
 
 

@@ -122,19 +122,15 @@ class Stepping:
     def _ways(self, moment: Moment, posed: Playback, how: int) -> Iterator[Playback]:
         """How a pose can be shown on feet that follow in one of the ways: best first.
 
-        On ground that is not plain there are more where feet glide: they are raised slowly or hastily, on arms that
-        make way for them or do not; or they are at once where they were planned. Skin may be a little outside the
+        On ground that is not plain there are more: on arms that make way for the legs or do not, and where feet glide
+        they are raised slowly or hastily, or are at once where they were planned. Skin may be a little outside the
         capsules, so legs that have less room than that come last.
         """
-        if self._footing.plain or how != GLIDES:
+        if self._footing.plain:
             yield posed._replace(root=self._followed(moment, posed, how).root)
             return
-        stood, close, as_planned = self._stood(posed.root), list[Playback](), list[Playback]()
-        before, still = moment.shown.root, moment._replace(room=_NOT_AT_ALL)
-        gliding_ways = (
-            self._made(moment, posed._replace(root=root), GLIDES).root for root in raised(before, stood, moment.dt)
-        )
-        for root in (*gliding_ways, self._alive(still, gliding(self._gait, before, stood, _LONG), posed).root):
+        close, as_planned = list[Playback](), list[Playback]()
+        for root in [self._followed(moment, posed, how).root] if how != GLIDES else self._glides(moment, posed):
             upper = self._arms.apart(root, posed.upper)
             if upper is not posed.upper:
                 as_planned.append(posed._replace(root=root))
@@ -145,6 +141,14 @@ class Stepping:
                 yield pose
         yield from close
         yield from as_planned
+
+    def _glides(self, moment: Moment, posed: Playback) -> Iterator[Floats]:
+        """Root states (SHOWN,) of a pose on feet that glide where ground is not plain: best first."""
+        before, stood = moment.shown.root, self._stood(posed.root)
+        for root in raised(before, stood, moment.dt):
+            yield self._made(moment, posed._replace(root=root), GLIDES).root
+        at_once = gliding(self._gait, before, stood, _LONG)
+        yield self._alive(moment._replace(room=_NOT_AT_ALL), at_once, posed).root
 
     def _stood(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE or more,) with what the feet of the walking cycle stand on (ROOT_STATE,)."""

@@ -99,7 +99,8 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
         return was
     wanted = level if level > _NONE else _needed(under, row, foot, place, left, lands)
     part = min(_EASE * dt / (left + dt), 1.0)
-    height = min(was[0] + _UP * dt, wanted) if wanted > was[0] else was[0] + part * (wanted - was[0])
+    change = wanted - was[0]
+    height = was[0] + (min(change, _UP * dt) if change > 0.0 else max(part * change, -_HASTY * dt))
     return height, was[1] + part * (slope - was[1])
 
 
@@ -180,8 +181,7 @@ def step_on(
             goal = landing(who, out, side, coming, farther, later)
             height, slope = _swung(under, out, side, goal, (height, slope), dt)
         elif dt > 0.0:
-            most = _HASTY * dt if before[swing] <= 0.0 else math.inf
-            height, slope = _settled(under, out, side, (height, slope), most)
+            height, slope = _settled(under, out, side, (height, slope), _HASTY * dt)
         out[at], out[at + 1] = height - out[HEIGHT], slope
 
 
