@@ -1,6 +1,7 @@
-"""Legs on a spiral stair of open, tapering treads: the walking cycle goes up and down it, and touches nothing."""
+"""Legs on stairs: the walking cycle goes up and down them in whatever phase one comes, and touches nothing."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,8 +10,12 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import phase_rate, quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import HEIGHT, RISES, RootState
+from elbowroom.planning.command import Command
 from elbowroom.planning.root.legs.lower_body import LowerBody
-from elbowroom.world.ground.ground import eased_height
+from elbowroom.planning.root.plan import RootPlanKind
+from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.world.ground.ground import eased_height, heights_along
+from elbowroom.world.scene import Scene
 from stairs import RISE, TURN, spiral_stair, tread_top
 
 AVATAR = Humanoid.default()
@@ -47,3 +52,29 @@ def test_a_walk_on_the_treads_of_a_spiral_touches_none(radius: float, up: bool) 
         assert np.abs(stood[:, [RISES, RISES + 2]]).max() < 0.9
         worst = min(worst, float(body.clearance(body.near(0.0, 0.0, 4.0, 1.0), rows).min()))
     assert worst >= 0.0
+
+
+def even_stair(rise: float, deep: float, count: int) -> Scene:
+    """A stair that begins 2 m ahead, and what it leads to."""
+    boxes: list[dict[str, Any]] = []
+    for begin, top in ((2.0 + deep * i, rise * (i + 1)) for i in range(count)):
+        middle = 0.5 * (begin + 8.0)
+        boxes.append({"type": "box", "center": [0.0, 0.5 * top, middle], "size": [1.8, top, 8.0 - begin]})
+    return Scene.of("stair", boxes, finish=(0.0, 6.0))
+
+
+@pytest.mark.parametrize("heading", [0.0, math.pi], ids=["up", "down"])
+@pytest.mark.parametrize("rise", [0.05, 0.17])
+def test_wherever_and_in_whatever_phase_one_comes_to_an_even_stair_one_walks_on(rise: float, heading: float) -> None:
+    scene = even_stair(rise, 0.28, 4)
+    planner, rng = RootPlanner(AVATAR, scene), np.random.default_rng(4)
+    walk = np.stack([np.zeros(81), np.linspace(0.0, 4.0, 81)], axis=1)
+    heights = heights_along(scene.ground, 0.0, walk)
+    for _ in range(12):
+        place, phase, speed = rng.uniform((0.5, 0.0, 0.0), (3.9, 1.0, 1.1)).tolist()
+        near = float(heights[round(20.0 * place)])
+        height = eased_height(scene.ground, (0.0, near, place), 0.0, place)
+        start = RootState(0.0, place, heading, speed, phase=phase, height=height)
+        planner.reset()
+        plan = planner.plan(start, Command(forward=1.0), 16, 0.15)
+        assert plan.kind is RootPlanKind.STRAIGHT, start

@@ -1,7 +1,8 @@
 """How the feet of a walk stand on the ground: what rises under them, and how much of them may be in it.
 
 Where a foot stands, and where it will, follows from the root's state (`gait.stood_places`). It stands on the highest
-ground under its sole; on its way it goes from the one height to the other, higher where something is in between.
+ground under its sole, or so near before or behind it that it would come against its edge; on its way it goes from the
+one height to the other, higher where something is in between.
 
 A capsule round a foot reaches a little below the sole, at heel strike more. As deep as it is below level ground in the
 same stride it may be below any: feet are held against obstacles as much higher, so they may stand on them, no more.
@@ -28,7 +29,8 @@ Bools = NDArray[np.bool_]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
-_OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, that a swinging foot keeps
+_OVER = 0.03  # metres above an edge that a swinging foot keeps
+_BESIDE = 0.04  # metres before and behind an edge that a foot keeps: where it rolls its toes come 3 cm farther
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS, _QUICK = 25, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
 _LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
@@ -156,15 +158,18 @@ class Footing:
 
     @cached_property
     def _sole(self) -> Sole:
-        """The rectangle over which the capsules of a standing foot lie, about its ankle."""
+        """The rectangle over which the capsules of a standing foot lie, about its ankle, and what it keeps to edges.
+
+        So a foot is never just before an edge, nor rolls or slides into one: it is on it already.
+        """
         roots, legs = self._model.roots, self._model.gait.legs
         feet = self._feet(roots)
         ends = leg_capsules(self._model, np.zeros((1, ROOT_STATE)))[feet].reshape(-1, 2, 3).astype(np.float64)
         radii, ankle = roots.radii[feet][:, None], legs[:, 5].mean()
         aside = np.abs(np.abs(ends[:, :, 0]) - np.abs(legs[:, 3]).mean()) + radii
         return Sole(
-            float((ankle - ends[:, :, 2] + radii).max()),
-            float((ends[:, :, 2] + radii - ankle).max()),
+            float((ankle - ends[:, :, 2] + radii).max()) + _BESIDE,
+            float((ends[:, :, 2] + radii - ankle).max()) + _BESIDE,
             float(aside.max()),
         )
 
@@ -214,7 +219,7 @@ def _level_under(ground: Ground, sole: Sole, root: Floats, places: Floats) -> fl
     for i in range(0, places.shape[0], 3):
         x, z = places[i] * cosine + places[i + 1] * sine, places[i + 1] * cosine - places[i] * sine
         low_x, high_x, low_z, high_z = min(low_x, x), max(high_x, x), min(low_z, z), max(high_z, z)
-    around = math.hypot(max(sole.back, sole.ahead) + _BESIDE, sole.aside)
+    around = math.hypot(max(sole.back, sole.ahead), sole.aside)
     reach = 0.5 * max(high_x - low_x, high_z - low_z) + around
     middle_x, middle_z = root[0] + 0.5 * (low_x + high_x), root[1] + 0.5 * (low_z + high_z)
     return level_about(ground, middle_x, middle_z, reach, root[HEIGHT])
@@ -232,12 +237,11 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
     if min(begin, end) == _NONE:
         return _NONE, 0.0
     part, higher = _climbed(w, end - begin), 0.0
-    longer = Sole(sole.back + _BESIDE, sole.ahead + _BESIDE, sole.aside)
     for k in range(1, _LOOKS):
         u = k / _LOOKS
         gone = _eased(u)
         x, z = places[0] + gone * (places[3] - places[0]), places[1] + gone * (places[4] - places[1])
-        over, _ = _stand(ground, longer, root, under, x, z, places[2] + gone * (places[5] - places[2]))
+        over, _ = _stand(ground, sole, root, under, x, z, places[2] + gone * (places[5] - places[2]))
         lacks = over - begin - _climbed(u, end - begin) * (end - begin)
         if lacks > _LEVEL:
             higher = max(higher, (lacks + _OVER) / max(_raised(u), _LEAST))
