@@ -94,10 +94,10 @@ def test_legs_are_where_the_ground_has_them_at_every_moment() -> None:
     for seed in range(4):
         path, keys, _ = swung(seed)
         states = np.pad(path.states, ((0, 0), (0, ROOT_STATE - 7)))
-        states[:, HEIGHT] = 0.2 / 0.3 * states[:, 1]
+        states[:, HEIGHT], states[:, HEIGHT + 1] = 0.2 / 0.3 * states[:, 1], 0.2 / 0.3 * states[:, 3]
         path = RootPath(0.0, T, footing.stood(states)[0])
         keys[:, ARMS] = [-1.0, 0.0, 0.0, 0.3, -1.0, 0.0, 0.0, 0.3]
-        keys[:, columns_of(DofGroup.WAIST)] = [0.9, 0.0, 0.2]
+        keys[:, columns_of(DofGroup.WAIST)] = [1.2, 0.0, 0.4]
         gaps, groups = OwnMotion(PARTS, footing.underfoot).proven(path, keys, np.zeros_like(keys), keys + ASIDE)
         for k in range(path.horizon):
             each = looked_at(path, keys, np.zeros_like(keys), k, footing)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.jit import helper, kernel
 
@@ -25,11 +26,14 @@ STANDARD_LEG = 0.491 * 1.72  # metres: thigh and shin of an average adult, see `
 # height of the toes' joint above the sole.
 _HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN, _TOES = 0, 3, 6, 7, 8, 9, 10
 
+_CLIMB = HEIGHT + 1  # column of root states: how fast they go up
+
 _STATURE = 1.72  # metres, of the standard leg
 _CADENCE = 64.8 / 60.0  # strides/s at one stature per second
 _SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
 _PACE = 0.57  # power of a body's size by which its strides are quicker at the same speed
 _STILL = 1e-3  # m/s: below, the phase rests
+_RISE_OF_STEP = 0.17  # metres that a step leads up or down at most, on the whole: a tread
 _LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
 _DUTY, _DUTY_LOSS = 0.6425, 0.0353  # stance part of the cycle at standstill, and how much less per m/s (Kirtley 1985)
 _REACH = 1.4  # longest stance path in leg lengths, beyond it the body runs
@@ -76,12 +80,12 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
 
 
 @kernel
-def _cadence(forward: float, lateral: float, turn: float) -> float:
-    """Strides per second, not yet resting at standstill."""
+def _cadence(forward: float, lateral: float, turn: float, climb: float) -> float:
+    """Strides per second, not yet resting at standstill; more where it is so steep that steps would climb too far."""
     side, spin = _LATERAL * lateral, _TURN * turn
     ahead = forward if forward >= 0.0 else _BACK * forward
     relative = (ahead * ahead + side * side + spin * spin) / _STATURE**2
-    return float(_CADENCE * (relative + _SLOW) ** 0.285)
+    return float(max(_CADENCE * (relative + _SLOW) ** 0.285, abs(climb) / (2.0 * _RISE_OF_STEP)))
 
 
 @kernel
@@ -105,15 +109,21 @@ def phase_rate(forward: float, lateral: float, turn: float) -> float:
     D. W. Grieve & R. J. Gear, "The relationships between length of stride, step frequency, time of swing and speed of
     walking for children and adults", Ergonomics 9 (1966): cadence 64.8 (speed / stature)^0.57 strides a minute.
     """
+    return climbing_rate(forward, lateral, turn, 0.0)
+
+
+@kernel
+def climbing_rate(forward: float, lateral: float, turn: float, climb: float) -> float:
+    """`phase_rate` of who also goes up or down at `climb` m/s: on stairs steps are short and quick, a tread each."""
     if abs(forward) + abs(lateral) + abs(turn) < _STILL:
         return 0.0
-    return _cadence(forward, lateral, turn)
+    return _cadence(forward, lateral, turn, climb)
 
 
 @kernel
 def stride_length(speed: float) -> float:
     """Length in metres of an average adult's stride (two steps), walking forward at `speed` m/s; see `quickness`."""
-    return abs(speed) / _cadence(abs(speed), 0.0, 0.0)
+    return abs(speed) / _cadence(abs(speed), 0.0, 0.0, 0.0)
 
 
 @helper
@@ -188,8 +198,8 @@ class Stride(NamedTuple):
 
 
 @kernel
-def _stride(scale: float, forward: float, lateral: float, turn: float) -> Stride:
-    period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn))
+def _stride(scale: float, forward: float, lateral: float, turn: float, climb: float) -> Stride:
+    period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn, climb))
     speed = np.sqrt(forward * forward + lateral * lateral)
     duty = _stance_part(speed, speed * period, scale)
     ahead = min(max(forward * period / (_STEP * scale), -_LONGEST), _LONGEST)
@@ -200,8 +210,14 @@ def _stride(scale: float, forward: float, lateral: float, turn: float) -> Stride
 
 @kernel
 def stride_of(scale: float, forward: float, lateral: float, turn: float) -> Stride:
-    """What root velocities in m/s and rad/s make of the cycle of a body with legs of this `scale`."""
-    return _stride(scale, forward, lateral, turn)
+    """What root velocities in m/s and rad/s make of the cycle of a body with legs of this `scale`, on the level."""
+    return _stride(scale, forward, lateral, turn, 0.0)
+
+
+@kernel
+def _stride_at(scale: float, root: Floats) -> Stride:
+    """What a root state (7 or more,) makes of it."""
+    return _stride(scale, root[3], root[4], root[5], root[_CLIMB] if root.shape[0] > _CLIMB else 0.0)
 
 
 @kernel
@@ -338,11 +354,13 @@ def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Fl
 
     `scratch` (6,) is a foot's.
     """
-    stride, low, wanted = _stride(scale, 0.0, 0.0, 0.0), -1.0, feet.shape[0] > 0
+    stride, low, wanted, climb = _stride(scale, 0.0, 0.0, 0.0, 0.0), -1.0, feet.shape[0] > 0, 0.0
     for n in range(len(roots)):
         forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        if low < 0.0 or forward != stride.forward or lateral != stride.lateral or turn != stride.turn:
-            stride = _stride(scale, forward, lateral, turn)
+        climbs = roots[n, _CLIMB] if roots.shape[1] > _CLIMB else 0.0
+        same = forward == stride.forward and lateral == stride.lateral and turn == stride.turn and climbs == climb
+        if low < 0.0 or not same:
+            stride, climb = _stride(scale, forward, lateral, turn, climbs), climbs
             low = _highest(legs, stride, scratch)
         if wanted:
             for side in range(2):
@@ -369,7 +387,7 @@ def feet_standing(scale: float, roots: Floats) -> Bools:
     standing = np.empty((len(roots), 2), np.bool_)
     for n in range(len(roots)):
         forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        duty = _stride(scale, forward, lateral, turn).duty
+        duty = _stride_at(scale, roots[n]).duty
         rests = abs(forward) + abs(lateral) + abs(turn) < _STILL
         for side in range(2):
             cycle = phase + 0.5 * side
@@ -384,7 +402,7 @@ def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Float
     Ankle x, z and yaw of the flat foot in the root frame, twice, to `out` (6,). Returns the part of the swing that is
     over, 0 for a foot that stands.
     """
-    stride = _stride(scale, root[3], root[4], root[5])
+    stride = _stride_at(scale, root)
     cycle = root[6] + 0.5 * side
     u, half = cycle - np.floor(cycle), 0.5 * stride.duty
     _foot_pose(legs, stride, side, half, out)

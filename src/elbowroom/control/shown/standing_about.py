@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
-from elbowroom.body.root import HEIGHT, ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
@@ -49,7 +49,7 @@ def lift_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None
     if len(body.feet) == 0:
         return
     level = roots.copy()
-    level[:, HEIGHT:ROOT_STATE] = 0.0
+    level[:, HEIGHT] = level[:, RISES:ROOT_STATE] = 0.0
     strides = posed_capsules(body.whole, q, level)
     for c in body.feet:
         for n in range(axes.shape[2]):

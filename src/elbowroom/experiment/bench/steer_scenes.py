@@ -23,6 +23,8 @@ _STRETCH = 2.2  # metres between bends
 _WALL = (0.1, 2.2)  # metres: thickness and height
 _POSTS, _APART, _BESIDE = 6, 1.5, 0.2  # a slalom: posts, metres from one to the next, and beside the middle
 _POST = 0.05  # metres, half the thickness
+_TREADS, _RISE, _DEEP = 5, 0.17, 0.28  # a stair up and down again: treads, metres
+_STAIR, _LANDING, _SILL = 2.0, 1.2, (7.5, 0.1, 0.1)  # where it begins, its landing; a sill's place, depth and height
 _PAST = 0.45  # metres beside the middle at which a user means to pass a post
 _LEAD = 0.9  # metres ahead on the route to where a user looks
 _HAND, _FASTEST = 6.0, 3.5  # 1/s, rad/s: how a mouse is moved to where one means to look
@@ -114,6 +116,7 @@ def _made() -> dict[str, Callable[[], SteeredScene]]:
         "course 3": lambda: _course(3),
         "course 5": lambda: _course(5),
         "traffic": lambda: _stock("traffic", STOP_AND_GO),
+        "stair": stair,
     }
 
 
@@ -145,6 +148,18 @@ def slalom() -> SteeredScene:
     past = np.stack([-(_PAST - _BESIDE) * sides, places[:, 1]], axis=1)
     route = np.concatenate([[[0.0, 0.0]], past, [[0.0, _APART * (_POSTS + 1.5)]]])
     return SteeredScene("slalom", _scene("slalom", route, boxes), route, mouse_look)
+
+
+def stair() -> SteeredScene:
+    """Up a stair of even treads, down again on the other side, and over a sill."""
+    boxes: list[tuple[Floats, float, tuple[float, float, float]]] = []
+    for i in range(_TREADS):
+        size = (2.0, _RISE * (i + 1), _LANDING + 2.0 * _DEEP * (_TREADS - 1 - i))
+        boxes.append((np.array([0.0, 0.5 * size[1], _STAIR + _DEEP * i + 0.5 * size[2]]), 0.0, size))
+    at, deep, high = _SILL
+    boxes.append((np.array([0.0, 0.5 * high, at]), 0.0, (2.0, high, deep)))
+    route = np.array([[0.0, 0.0], [0.0, at + 1.5]])
+    return SteeredScene("stair", _scene("stair", route, boxes), route, mouse_look)
 
 
 def _scene(name: str, corners: Floats, boxes: list[tuple[Floats, float, tuple[float, float, float]]]) -> Scene:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT, ROOT_STATE
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -36,7 +36,7 @@ class Soles:
         self._level: ShownMotion | None = None  # the same strides on the plane; None where nothing but it is stood on
         if floors or np.abs(motion.roots[:, HEIGHT:ROOT_STATE]).max(initial=0.0) > 0.0:
             roots = motion.roots.copy()
-            roots[:, HEIGHT:ROOT_STATE] = 0.0
+            roots[:, HEIGHT] = roots[:, RISES:ROOT_STATE] = 0.0
             self._level = replace(motion, roots=roots)
 
     def raised(self, posed: Posed, moments: Moments, skin: Skin | None = None) -> Posed:

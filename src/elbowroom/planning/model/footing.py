@@ -32,8 +32,8 @@ _NONE = -math.inf
 _OVER = 0.03  # metres above an edge that a swinging foot keeps
 _BESIDE = 0.04  # metres before and behind an edge that a foot keeps: where it rolls its toes come 3 cm farther
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
-_LOOKS, _QUICK = 25, 0.3  # places of a swing that are looked at; the part of it in which a foot is raised over an edge
-_LEAST, _MOST = 0.2, 0.4  # of that raising by which it counts; metres that a foot is raised
+_LOOKS = 25  # places of a swing that are looked at
+_QUICKEST = 0.12  # the part of a swing in which a foot is raised over what is close, at least
 _BELOW, _ABOVE = 0.4, 1.4  # of a standing body's height: so far below and above its place it reaches at most
 _UPRIGHT, _EVEN = 1e-4, 5e-4  # radians: a level sole; metres by which level ground may be uneven
 NOWHERE = np.full(2, -math.inf)
@@ -149,7 +149,7 @@ class Footing:
     def _lifts(self, states: Floats, lowerings: ArrayLike) -> Floats32:
         """How far each capsule of the feet (F,) is below the plane in the same strides on it (N,), and 3 mm: (F, N)."""
         level, roots = states.copy(), self._model.roots
-        level[:, HEIGHT:ROOT_STATE] = 0.0
+        level[:, HEIGHT] = level[:, RISES:ROOT_STATE] = 0.0
         feet = self._feet(roots)
         ends = leg_capsules(self._model, level, lowerings)[feet][:, [1, 4]]
         below = roots.radii[feet][:, None] - ends.min(axis=1)
@@ -181,9 +181,9 @@ def _eased(x: float) -> float:
 
 
 @helper
-def _raised(w: float) -> float:
-    """How much of its height over an edge a foot has when the part `w` of its swing is over."""
-    return _eased(w / _QUICK) * _eased((1.0 - w) / _QUICK)
+def _uneased(y: float) -> float:
+    """Where `_eased` is `y`."""
+    return 0.5 - math.sin(math.asin(1.0 - 2.0 * min(max(y, 0.0), 1.0)) / 3.0)
 
 
 @helper
@@ -236,17 +236,35 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
     end, last = _stand(ground, sole, root, under, places[3], places[4], places[5])
     if min(begin, end) == _NONE:
         return _NONE, 0.0
-    part, higher = _climbed(w, end - begin), 0.0
+    rise, lacks, overs = end - begin, 0.0, np.empty(_LOOKS)
+    above = max(rise, 0.0)
     for k in range(1, _LOOKS):
         u = k / _LOOKS
         gone = _eased(u)
         x, z = places[0] + gone * (places[3] - places[0]), places[1] + gone * (places[4] - places[1])
         over, _ = _stand(ground, sole, root, under, x, z, places[2] + gone * (places[5] - places[2]))
-        lacks = over - begin - _climbed(u, end - begin) * (end - begin)
-        if lacks > _LEVEL:
-            higher = max(higher, (lacks + _OVER) / max(_raised(u), _LEAST))
-    height = begin + part * (end - begin) + min(higher, _MOST) * _raised(w)
+        overs[k] = over - begin
+        above, lacks = max(above, overs[k]), max(lacks, overs[k] - _climbed(u, rise) * rise)
+    part = _climbed(w, rise)
+    height = begin + (_lifted(overs, rise, above + _OVER, w) if lacks > _LEVEL else part * rise)
     return height, first + part * (last - first)
+
+
+@helper
+def _lifted(overs: Floats, rise: float, top: float, w: float) -> float:
+    """How high a foot is lifted that goes over edges: up to the `top`, no sooner and no later than it must, and down.
+
+    `overs` (_LOOKS,) are heights of the ground in its way, `rise` is that of where it comes down; all from where it
+    stood.
+    """
+    up, down = _UP, _UP
+    for k in range(1, _LOOKS):
+        if overs[k] > _LEVEL:
+            up = min(up, (k - 0.5) / _LOOKS / _uneased((overs[k] + 0.5 * _OVER) / top))
+        if overs[k] > rise + _LEVEL:
+            down = min(down, (_LOOKS - k - 0.5) / _LOOKS / _uneased((overs[k] + 0.5 * _OVER - rise) / (top - rise)))
+    risen, sunk = _eased(w / max(up, _QUICKEST)), _eased((1.0 - w) / max(down, _QUICKEST))
+    return min(top * risen, rise + (top - rise) * sunk)
 
 
 @exact_kernel

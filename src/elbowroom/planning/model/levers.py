@@ -33,6 +33,7 @@ _STRIDES, _STEP, _SPARE = 2048, 1e-3, 1.25  # strides that are measured, by chan
 _VELOCITIES = np.array([[-1.5, 3.0], [-1.0, 1.0], [-2.5, 2.5]])  # m/s ahead and to the left, rad/s
 _LOWEST = 0.7  # half leg lengths
 _KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by one, or slopes by a radian more
+_STEPS = 2.5  # and where one goes up faster by 1 m/s: steps are shorter then
 # Where feet are measured: x from the hip, z, yaw, pitch, lift, share of the swing. Metres of a standard leg, radians.
 _FEET_AT = np.array([[-0.15, 0.15], [-0.5, 0.5], [-0.7, 0.7], [-0.4, 1.2], [0.0, 0.07], [0.0, 1.0]])
 _FOOT_MOVES = len(_FEET_AT) - 1  # of each foot: its way over the ground is one
@@ -196,10 +197,13 @@ def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
 
 @exact_kernel
 def raised_between(one: Floats, other: Floats) -> float:
-    """No point of a leg moves farther, metres, while what the feet of a root state stand on changes to another's."""
+    """No point of a leg moves farther, metres, while what the feet of a root state stand on, and how fast that rises,
+    changes to another's.
+    """
     left, right = abs(other[RISES] - one[RISES]), abs(other[RISES + 2] - one[RISES + 2])
     slopes = abs(other[RISES + 1] - one[RISES + 1]) + abs(other[RISES + 3] - one[RISES + 3])
-    return float(_KNEES * (left + right) + _ANKLES * slopes)
+    climbs = abs(other[HEIGHT + 1] - one[HEIGHT + 1])
+    return float(_KNEES * (left + right) + _ANKLES * slopes + _STEPS * climbs)
 
 
 _LEVERS: Shared[BodyLevers] = Shared()

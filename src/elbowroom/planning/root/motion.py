@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.cycle import climbing_rate
 from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
@@ -75,13 +75,14 @@ def _finish_step(
     sine, cosine = np.sin(b[2]), np.cos(b[2])
     b[3], b[4], b[5] = vx * sine + vz * cosine, vx * cosine - vz * sine, turn
     b[6:] = a[6:]
+    if b.shape[0] > HEIGHT:
+        _follow_ground(a, b, vx, vz, bounds.ground)
     strides, rates, between = 0.0, rates_at(a, b), np.empty(a.shape[0])
     for i in range(_PHASE_STEPS):
         interpolate_between(a, b, rates, (i + 0.5) / _PHASE_STEPS, interval, between)
-        strides += phase_rate(between[3], between[4], between[5])
+        climb = between[HEIGHT + 1] if b.shape[0] > HEIGHT else 0.0
+        strides += climbing_rate(between[3], between[4], between[5], climb)
     b[6] = a[6] + bounds.quickness * strides * interval / _PHASE_STEPS
-    if b.shape[0] > HEIGHT:
-        _follow_ground(a, b, vx, vz, bounds.ground)
 
 
 @helper

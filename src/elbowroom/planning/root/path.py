@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.cycle import climbing_rate
 from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.jit import exact_kernel
 
@@ -68,7 +68,13 @@ def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, f
     """Velocities along world x and z in state `a` and in `b`, and the strides per second there."""
     ax, az = _ground_velocity(a)
     bx, bz = _ground_velocity(b)
-    return ax, az, bx, bz, phase_rate(a[3], a[4], a[5]), phase_rate(b[3], b[4], b[5])
+    return ax, az, bx, bz, _strides(a), _strides(b)
+
+
+@exact_kernel
+def _strides(state: Floats) -> float:
+    climb = state[HEIGHT + 1] if state.shape[0] > HEIGHT else 0.0
+    return float(climbing_rate(state[3], state[4], state[5], climb))
 
 
 @exact_kernel

@@ -27,7 +27,7 @@ from elbowroom.planning.root.legs.leg_check import LegCheck
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.moving_legs import MovingAround
 from elbowroom.planning.root.line.ahead import NONE_TIGHT, Above, RouteFinder
-from elbowroom.planning.root.line.climbing import steep_places
+from elbowroom.planning.root.line.climbing import places_along, places_on, steep_places
 from elbowroom.planning.root.line.line import TravelLine, straight_route, wanted_speed, wanted_velocities
 from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
 from elbowroom.planning.root.line.way_ahead import Corners, line_of, way_ahead
@@ -130,7 +130,8 @@ class RootPaths:
         sight = self._sight(asked, speed)
         narrow = self._narrow_ahead(asked, line, sight)
         slow = np.concatenate([narrow, self._low_ahead(asked, line, sight)])
-        slow = self._with_steep(slow, asked, straight_route(asked.start.x, asked.start.z, line, sight), speed)
+        ahead = float(line.coordinates(asked.start.x, asked.start.z)[0])
+        slow = self._with_steep(slow, asked, places_on(line, ahead, sight), speed)
         tight = NONE_TIGHT if through or not line.turns else narrow
         if not self._moving.tracks and self._routes.above is None and not len(tight):
             stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
@@ -149,7 +150,7 @@ class RootPaths:
         began, way, speed = perf_counter_ns(), asked.command.way, wanted_speed(asked.command, self.settings.motion)
         ahead = way_ahead(way, leg, asked.start.x, asked.start.z, self._sight(asked, speed) + _AIMED)
         slow = np.concatenate([self._slow_on(way, number, asked.start.height) for number in ahead.legs])
-        slow = self._with_steep(slow, asked, ahead.seen, speed)
+        slow = self._with_steep(slow, asked, places_along(way, ahead.legs), speed)
         query = self._query(asked)
         before = query.checks
         answer = query.travelled(line_of(way, leg), pace * speed, self._sight(asked, speed), slow, ahead)
@@ -159,9 +160,10 @@ class RootPaths:
             lost = crowded(self.settings, lost, line_of(way, leg), answer.states, query.around, self._figure)
         return _plan(asked, answer, query.checks - before, began, lost)
 
-    def _with_steep(self, slow: Floats, asked: Asked, route: Floats, speed: float) -> Floats:
-        """Slow places (K, 3), and those where it is steep on a route at the wanted speed."""
-        steep = steep_places(self.bounds.ground, route, asked.start.height, speed)
+    def _with_steep(self, slow: Floats, asked: Asked, places: Floats, speed: float) -> Floats:
+        """Slow places (K, 3), and those of some (N, 2) where it is steep at the wanted speed."""
+        start = asked.start
+        steep = steep_places(self.bounds.ground, places, (start.x, start.height, start.z), speed)
         return np.concatenate([slow, steep]) if len(steep) else slow
 
     def _slow_on(self, way: Corners, leg: int, height: float) -> Floats:
