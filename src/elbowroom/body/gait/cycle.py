@@ -215,8 +215,8 @@ def stride_of(scale: float, forward: float, lateral: float, turn: float) -> Stri
 
 
 @kernel
-def _stride_at(scale: float, root: Floats) -> Stride:
-    """What a root state (7 or more,) makes of it."""
+def stride_at(scale: float, root: Floats) -> Stride:
+    """What a root state (7 or more,) makes of it, by its velocities and by how fast it climbs where it tells."""
     return _stride(scale, root[3], root[4], root[5], root[_CLIMB] if root.shape[0] > _CLIMB else 0.0)
 
 
@@ -387,7 +387,7 @@ def feet_standing(scale: float, roots: Floats) -> Bools:
     standing = np.empty((len(roots), 2), np.bool_)
     for n in range(len(roots)):
         forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        duty = _stride_at(scale, roots[n]).duty
+        duty = stride_at(scale, roots[n]).duty
         rests = abs(forward) + abs(lateral) + abs(turn) < _STILL
         for side in range(2):
             cycle = phase + 0.5 * side
@@ -402,7 +402,7 @@ def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Float
     Ankle x, z and yaw of the flat foot in the root frame, twice, to `out` (6,). Returns the part of the swing that is
     over, 0 for a foot that stands.
     """
-    stride = _stride_at(scale, root)
+    stride = stride_at(scale, root)
     cycle = root[6] + 0.5 * side
     u, half = cycle - np.floor(cycle), 0.5 * stride.duty
     _foot_pose(legs, stride, side, half, out)

@@ -29,7 +29,7 @@ from elbowroom.body.gait.foot_state import (
     rests,
     tilt,
 )
-from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_of
+from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_at
 from elbowroom.body.gait.roll import least_lift, straight_part
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import exact_kernel, helper, kernel, plain
@@ -178,7 +178,7 @@ def _goal(
     scratch.
     """
     _root_later(root, coming, left, later)
-    stride = own_stride_of(own, scale, later[3], later[4], later[5])
+    stride = own_stride_at(own, scale, later)
     half = 0.0 if rests(later) else 0.5 * stride.duty * stride.period
     x, z, heading, most = later[0], later[1], later[2], half * (stride.speed + _MORE * scale)
     _root_later(root, coming, left + half, later)
@@ -331,7 +331,7 @@ def step_feet(
     carry(before, root, out)
     if dt <= 0.0:
         return
-    stride = own_stride_of(own, scale, root[3], root[4], root[5])
+    stride = own_stride_at(own, scale, root)
     one, other = out[ROOT_STATE : ROOT_STATE + FOOT], out[ROOT_STATE + FOOT :]
     standing = one[SWING] <= 0.0 and other[SWING] <= 0.0
     lifted, later = -1, np.empty(ROOT_STATE)
@@ -370,7 +370,7 @@ def landing(
     """
     legs, scale, own = who
     foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]
-    stride = own_stride_of(own, scale, row[3], row[4], row[5])
+    stride = own_stride_at(own, scale, row)
     left = max(_time_left(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
     under = _goal(own, legs, scale, side, row, coming, left, later)
     goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)

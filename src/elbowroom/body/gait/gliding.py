@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import GaitShape, flat_place, roll_of, stride_of
+from elbowroom.body.gait.cycle import GaitShape, flat_place, roll_of, stride_at
 from elbowroom.body.gait.foot_state import (
     FLAT,
     LIFT,
@@ -40,7 +40,7 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
     """
     carry(before, root, out)
     holds = holds and not rests(root)
-    first, stride = stride_of(scale, before[3], before[4], before[5]), stride_of(scale, root[3], root[4], root[5])
+    first, stride = stride_at(scale, before), stride_at(scale, root)
     for side in range(2):
         foot, was = out[ROOT_STATE + FOOT * side :], before[ROOT_STATE + FOOT * side :]
         x0, z0, yaw0, _ = flat_place(legs, first, side, position(before[6], side))

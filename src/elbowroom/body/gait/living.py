@@ -25,7 +25,7 @@ from elbowroom.body.gait.carriage import (
     TURN,
     UP,
 )
-from elbowroom.body.gait.cycle import GaitShape, Stride, stride_of
+from elbowroom.body.gait.cycle import GaitShape, Stride, stride_at
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
@@ -175,7 +175,7 @@ def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, fac
         out[WITH_FEET + i] = 0.0
     share = _smooth(out[SHARE])
     if share > 0.0:
-        part = _walk(stride_of(body.scale, out[3], out[4], out[5]), out[6], out)
+        part = _walk(stride_at(body.scale, out), out[6], out)
         if body.own.speed > 0.0:
             carry_as_recorded(body.own, part, out[3], body.scale, out[6], out)
         _idle(body.scale, _smooth(out[REST]), out[CLOCK], out)

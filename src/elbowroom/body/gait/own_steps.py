@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride, home_of, stride_of
+from elbowroom.body.gait.cycle import Stride, home_of, stride_at
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
 from elbowroom.body.gait.roll import ahead_part, stepping_roll
 from elbowroom.jit import helper, kernel, plain
@@ -68,9 +68,9 @@ def _value(own: OwnSteps, side: int, column: int, place: float) -> float:
 
 
 @kernel
-def own_stride_of(own: OwnSteps, scale: float, forward: float, lateral: float, turn: float) -> Stride:
-    """What root velocities in m/s and rad/s make of the steps of a body with legs of this `scale`."""
-    s = stride_of(scale, forward, lateral, turn)
+def own_stride_at(own: OwnSteps, scale: float, root: Floats) -> Stride:
+    """What a root state (7 or more,) makes of the steps of a body with legs of this `scale`."""
+    s = stride_at(scale, root)
     duty = s.duty + _share(own, s) * own.duty
     return Stride(s.forward, s.lateral, s.turn, s.speed, s.period, duty, s.ahead, s.aside, s.effort, s.scale)
 
