@@ -8,29 +8,20 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup
-from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.group.problem import Group
 from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
-from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.motion_bounds import (
     KinematicChain,
     LimbSweeps,
     RootSweeps,
     new_limb_sweeps,
     new_root_sweeps,
-    root_sweeps,
 )
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
 from elbowroom.planning.model.footing import Underfoot
-
-Floats = NDArray[np.float64]
-Longs = NDArray[np.int64]
 
 _CACHED = 5  # times the horizon: as many results of key intervals are remembered
 
@@ -124,10 +115,3 @@ def _new_sweeps(horizon: int, group: DofGroup) -> LimbSweeps:
 
 def _own_nodes(model: UpperBodyModel, group: DofGroup, made: PostureSet) -> OwnBodyNodes:
     return model.own_body.own_body_nodes(group, made.postures, made.resting)
-
-
-@exact_kernel
-def begin_root_sweeps(cache: GroupCache, states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The `root_sweeps` of a new plan: cache entries (n,) between key states (n+1, 7), each with its stamp (n,)."""
-    begin_round(cache.roots.entries)
-    return root_sweeps(cache.roots, cache.chain, states, interval, stamps)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.caches import GroupCache
-from elbowroom.planning.exact.group.node_costs import Carriers, carriers_at, node_costs
+from elbowroom.planning.exact.group.carriers import Carriers, carrier_in, carriers_of
+from elbowroom.planning.exact.group.node_costs import node_costs
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, new_closed_edges, reopen_first, with_tables
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
@@ -22,9 +23,11 @@ from elbowroom.planning.exact.lattice.paths import keys_into, traced
 from elbowroom.planning.exact.lattice.tangents import peak_acceleration, peak_speed, smooth_tangents
 from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.edges import MOST_EDGES, close_edges, close_near, promising_edges
-from elbowroom.planning.exact.sweep.proof import Carrier, MovedLimb, limb_sweep
+from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
+from elbowroom.planning.exact.sweep.proof import MovedLimb, limb_sweep
 from elbowroom.planning.exact.sweep.scratch import Scratch, new_scratch
 from elbowroom.planning.halving import ENOUGH
+from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.rows import at_span
 
 Floats = NDArray[np.float64]
@@ -38,56 +41,41 @@ _GENTLY = plain(True)  # how it begins
 
 
 class _Question(NamedTuple):
-    """What one search is about, and what it works on."""
+    """What one search is about, and what it works on: only what is asked for again and again.
+
+    A kernel copies a tuple, with all that is in it, wherever it names it: a whole cache or task takes long to compile.
+    """
 
     scratch: Scratch
-    cache: GroupCache
-    task: GroupTask
+    sweeps: LimbSweeps
+    limb: MovedLimb
     carriers: Carriers
+    obstacles: Spans
     margins: Floats  # (n,) clearance that the motion needs in each interval, metres
-
-
-@helper
-def _carrier(cache: GroupCache, task: GroupTask, k: int) -> Carrier:
-    """What carries the limb in interval k, as a proof needs it."""
-    roots, waists, root = cache.roots, cache.waists, task.roots[k]
-    states, heights = roots.entries.keys[root], roots.places[root]
-    if cache.group.postures.limb.chain.carries:
-        return Carrier(roots.entries.ids[root], heights, roots.turns[root], roots.sway[root], states, heights, states)
-    at = task.carriers[k]
-    return Carrier(
-        waists.entries.ids[at],
-        waists.places[at],
-        waists.turns[at],
-        waists.sway[at],
-        states,
-        heights,
-        waists.entries.keys[at],
-    )
+    speed: float  # the greatest of the group, rad/s, and
+    acceleration: float  # rad/s^2
 
 
 @helper
 def _proven(
-    question: _Question, keys: Floats, tangents: Floats, gentle: bool, entries: Longs, touches: Bools
+    question: _Question, interval: float, curve: tuple[Floats, Floats], gentle: bool, entries: Longs, touches: Bools
 ) -> tuple[int, bool]:
-    """Prove the curve through `keys` (n+1, d) free: `touches` (n,) where it is not; the capsules checked.
+    """Prove the curve through keys (n+1, d) with tangents free: `touches` (n,) where it is not; the capsules checked.
 
-    An interval fails too if its curve is faster than the group or asks for too much acceleration, the first only if it
-    has to be `gentle`. Also whether that does. The cache entries of the sweeps are written to `entries` (n,).
+    An interval of so many seconds fails too if its curve is faster than the group or asks for too much acceleration,
+    the first only if it has to be `gentle`. Also whether that does. The cache entries of the sweeps are written to
+    `entries` (n,).
     """
-    scratch, cache, task, _, margins = question
-    group, checks, harsh = cache.group, 0, False
-    sweeps, interval = group.sweeps, task.interval
-    limb = MovedLimb(group.postures, group.levers, cache.chain)
+    scratch, sweeps, limb, carriers, obstacles, margins, speed, acceleration = question
+    (keys, tangents), checks, harsh = curve, 0, False
     begin_round(sweeps.entries)
     for k in range(entries.shape[0]):
         a, m, b, n = keys[k], tangents[k], keys[k + 1], tangents[k + 1]
-        carrier, near = _carrier(cache, task, k), at_span(task.obstacles, k)
+        carrier, near = carrier_in(carriers, k), at_span(obstacles, k)
         at, count = limb_sweep(scratch, sweeps, limb, carrier, (a, m, b, n), near, margins[k])
         entries[k] = at
         checks += count
-        much = peak_acceleration(a, m, b, n, interval) > group.acceleration
-        much = much or peak_speed(a, m, b, n, interval) > group.speed
+        much = peak_acceleration(a, m, b, n, interval) > acceleration or peak_speed(a, m, b, n, interval) > speed
         harsh = harsh or (k == 0 and much)
         touches[k] = sweeps.least[at] < margins[k] or sweeps.proven[at] < ENOUGH or ((k > 0 or gentle) and much)
     return checks, harsh
@@ -142,13 +130,14 @@ def _close(
     checked.
     """
     first, farthest = touches.shape[0], 0.0
+    tables, _, _, slacks = edges
     for k in range(touches.shape[0] - 1, -1, -1):
         if touches[k]:
             close_near(lattice, work, k, nodes[k], nodes[k + 1], _CLOSE_RADIUS)
         if looked_at[k]:
-            first, at = k, edges.tables[k]
-            slack = max(2.0 * edges.slack[at], _FIRST_SLACK)
-            edges.slack[at], farthest = slack, max(farthest, slack)
+            first, at = k, tables[k]
+            slack = max(2.0 * slacks[at], _FIRST_SLACK)
+            slacks[at], farthest = slack, max(farthest, slack)
     return first, farthest
 
 
@@ -160,19 +149,19 @@ def _close_promising(
 
     Of the intervals with a table, from `first` on. Returns the capsules checked.
     """
-    scratch, cache, task, carriers, margins = question
+    scratch, _, limb, carriers, obstacles, margins, _, _ = question
+    tables, _, seen, slack = edges
+    postures, places, turns = limb.postures, carriers.places, carriers.turns
     pairs, checks = np.empty((MOST_EDGES, 2), np.int64), 0
     for k in range(first, margins.shape[0]):
-        at = edges.tables[k]
+        at = tables[k]
         if at >= 0:
-            count = promising_edges(lattice, work, k, best + edges.slack[at], edges.seen[at], pairs)
+            count = promising_edges(lattice, work, k, best + slack[at], seen[at], pairs)
             if count == MOST_EDGES:
-                edges.slack[at] *= 0.5  # there are more of them: the same once again
+                slack[at] *= 0.5  # there are more of them: the same once again
             if count:
-                carrier, near = (carriers.places[k], carriers.turns[k]), at_span(task.obstacles, k)
-                checks += close_edges(
-                    scratch, cache.group.postures, lattice, k, pairs[:count], carrier, near, margins[k]
-                )
+                carrier, near = (places[k], turns[k]), at_span(obstacles, k)
+                checks += close_edges(scratch, postures, lattice, k, pairs[:count], carrier, near, margins[k])
     return checks
 
 
@@ -185,24 +174,22 @@ def _begun(
     Also the greatest clearance that may be asked for, and the capsules checked.
     """
     group, roots, waists, chain = cache
-    postures = group.postures
-    scratch = new_scratch(postures, chain.waist, at_span(task.obstacles, 0))
-    begin_round(group.tables.entries)
-    if postures.limb.chain.carries:
-        carriers = carriers_at(roots.entries.ids, roots.places, roots.turns, task.roots)
-    else:
-        carriers = carriers_at(waists.entries.ids, waists.places, waists.turns, task.carriers)
+    postures, levers, _, speed, acceleration, tables, sweeps = group
+    obstacles, goals = task.obstacles, task.goals
+    scratch = new_scratch(postures, chain.waist, at_span(obstacles, 0))
+    carriers = carriers_of(roots, waists, task.roots, task.carriers, postures.limb.chain.carries)
+    begin_round(tables.entries)
     extras = extra_nodes(
-        postures.configurations, postures.columns, postures.step, task.goals, task.previous, task.start, task.settled
+        postures.configurations, postures.columns, postures.step, goals, task.previous, task.start, task.settled
     )
-    cost, most, checks = node_costs(scratch, group, carriers, task, weights, extras)
+    cost, most, checks = node_costs(scratch, postures, tables, carriers, task, weights, extras)
     lattice = Lattice(
         postures.configurations,
         postures.columns,
         postures.moves,
         postures.spans,
         extras.postures,
-        task.goals,
+        goals,
         cost,
         edges.tables,
         edges.closed,
@@ -210,7 +197,8 @@ def _begun(
         postures.step,
         weights.step,
     )
-    return _Question(scratch, cache, task, carriers, np.minimum(task.motion_margins, most)), lattice, most, checks
+    margins, limb = np.minimum(task.motion_margins, most), MovedLimb(postures, levers, chain)
+    return _Question(scratch, sweeps, limb, carriers, obstacles, margins, speed, acceleration), lattice, most, checks
 
 
 @exact_kernel
@@ -219,19 +207,21 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
 
     It begins gently; if there is no such path, and the task allows it, it begins as hard as it takes.
     """
-    horizon, row = task.goals.shape[0] - 1, cache.group.postures.moves.shape[1] + EXTRA
+    goals, interval, velocity, may_be_harsh = task.goals, task.interval, task.velocity, task.harsh
+    limits, most_rounds = cache.group.limits, weights.rounds
+    horizon, row = goals.shape[0] - 1, cache.group.postures.moves.shape[1] + EXTRA
     work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
     question, lattice, most, checks = _begun(cache, task, weights, edges)
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
-    first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, weights.rounds, 0, _GENTLY, False
-    keys, tangents = np.empty(task.goals.shape), np.empty(task.goals.shape)
-    for rounds in range(weights.rounds):
+    first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False
+    keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
+    for rounds in range(most_rounds):
         reached, count = cheapest_path(lattice, work, first, rounds == 0)
         settled += count
         nodes = traced(lattice, work, reached)
         keys_into(lattice, nodes, keys)
-        if reached < horizon and gentle and harsh and task.harsh:
+        if reached < horizon and gentle and harsh and may_be_harsh:
             gentle, first = False, _BEGIN
             reopen_first(edges)
             continue
@@ -240,8 +230,8 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
             break
         stiff[:] = False
         for attempt in range(2):
-            tangents = smooth_tangents(keys, task.interval, task.velocity, cache.group.limits, stiff)
-            count, asks_much = _proven(question, keys, tangents, gentle, entries, touches)
+            tangents = smooth_tangents(keys, interval, velocity, limits, stiff)
+            count, asks_much = _proven(question, interval, (keys, tangents), gentle, entries, touches)
             checks, harsh = checks + count, harsh or asks_much
             if attempt == 1 or not _stiffened(stiff, touches):
                 break

@@ -12,7 +12,6 @@ from elbowroom.body.dof import SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.clips.motion_set import STOCK, MotionSet
-from elbowroom.planning.exact.group.caches import begin_root_sweeps
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import Weights
 from elbowroom.planning.exact.group.upper_body_model import UpperBodyModel, upper_body_model
@@ -22,6 +21,7 @@ from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySea
 from elbowroom.planning.exact.refine.blocked import Known, children_for, waists_for
 from elbowroom.planning.exact.refine.sampling import RefinementSettings
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.sweep.motion_bounds import root_sweeps
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
@@ -120,7 +120,7 @@ class UpperBodyPlanner:
         go_on: GoOn,
     ) -> UpperBodySearch:
         caches = self.memory.begin(path.horizon)
-        roots = begin_root_sweeps(caches.groups[DofGroup.WAIST], path.states, path.interval, near.stamps)
+        roots = root_sweeps(caches.roots, self.model.chain, path.states, path.interval, near.stamps)
         margins = self._required(path, begins.ahead)
         walk = self.model.goals(path)
         goals = goals_where_narrow(self._narrow, path, walk) if any_in(near.spans) else walk

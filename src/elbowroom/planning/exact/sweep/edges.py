@@ -59,13 +59,20 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
 
     They are written to `found` (MOST_STEPS, 2), and marked as seen in `seen` (W+OWN, W+OWN). Returns their number.
     """
-    size, nodes, weight = lattice.postures.shape[0], lattice.cost.shape[1], np.float32(lattice.weight)
+    known, extras, moves, cost, step = lattice.postures, lattice.extras, lattice.moves, lattice.cost, lattice.step
+    size, nodes, weight, onward, squares = (
+        known.shape[0],
+        cost.shape[1],
+        np.float32(lattice.weight),
+        work.onward,
+        work.squares,
+    )
     width, limit = nodes - EXTRA, np.float32(most)
     count, costs, base, end = 0, work.costs[depth], work.base, work.slopes
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
     for b in range(np.uint64(nodes)):
-        end[b] = work.onward[depth + 1, b] + lattice.cost[depth + 1, b] - end[b]
+        end[b] = onward[depth + 1, b] + cost[depth + 1, b] - end[b]
     for a in range(np.uint64(nodes)):
         base[a] = costs[a] + base[a] + square
     least, first, likely, few = least_in(end), least_in(base), work.origins, 0
@@ -83,12 +90,12 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
             if not start + end[b] <= limit or seen[a, b] or closed[a, b] or a == b:
                 continue
             if b >= width:
-                own, posture = lattice.extras[depth + 1, b - width], lattice.extras[depth, max(a - width, 0)]
-                posture = lattice.postures[a] if a < width else posture
+                own, posture = extras[depth + 1, b - width], extras[depth, max(a - width, 0)]
+                posture = known[a] if a < width else posture
                 move = np.float32(squared_distance(own, posture))
-                move = move if move <= lattice.step * lattice.step else _INFINITE
+                move = move if move <= step * step else _INFINITE
             else:
-                move = lattice.moves[a, b] if a < size else work.squares[depth, a - width, b]
+                move = moves[a, b] if a < size else squares[depth, a - width, b]
             if start + weight * move + end[b] <= limit:
                 seen[a, b] = True
                 found[count, 0], found[count, 1] = a, b
@@ -106,28 +113,30 @@ def _posed_between(
 
     The lanes beyond the steps (K, 2) repeat the last.
     """
-    size, width, share, lanes = lattice.postures.shape[0], lattice.moves.shape[1], ON_EDGE[part], scratch.checks.lanes
-    pairs, filled = postures.pairs, min(steps.shape[0] - first, BLOCK)
+    known, extras, share, lanes = lattice.postures, lattice.extras, ON_EDGE[part], scratch.checks.lanes
+    limb, pairs, between = postures.limb, postures.pairs, postures.between
+    configurations, room, filled = scratch.configurations, scratch.limb, min(steps.shape[0] - first, BLOCK)
+    size, width, radii = known.shape[0], lattice.moves.shape[1], postures.limb.radii
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
         pair = pairs[a, b] if a < size and b < size else -1
         if pair >= 0:
-            on_way = postures.between[pair, part if a < b else BETWEEN - 1 - part]
+            on_way = between[pair, part if a < b else BETWEEN - 1 - part]
             for c in range(lanes.shape[0]):
                 for i in range(6):
                     lanes[c, i, n] = on_way[c, i]
         else:
-            start = lattice.postures[a] if a < width else lattice.extras[depth, a - width]
-            end = lattice.postures[b] if b < width else lattice.extras[depth + 1, b - width]
+            start = known[a] if a < width else extras[depth, a - width]
+            end = known[b] if b < width else extras[depth + 1, b - width]
             for i in range(start.shape[0]):
-                scratch.configurations[0, i] = start[i] + share * (end[i] - start[i])
-            pose_into(postures.limb, scratch.limb, scratch.configurations, _ONE, n, lanes)
+                configurations[0, i] = start[i] + share * (end[i] - start[i])
+            pose_into(limb, room, configurations, _ONE, n, lanes)
     for c in range(lanes.shape[0]):
         for i in range(6):
             for n in range(filled, BLOCK):
                 lanes[c, i, n] = lanes[c, i, filled - 1]
         for n in range(BLOCK):
-            lanes[c, 6, n] = postures.limb.radii[c]
+            lanes[c, 6, n] = radii[c]
 
 
 @helper
@@ -146,18 +155,19 @@ def close_edges(
     The `carrier` are the frames that carry the limb during the interval: places (SWEEP+1, 3), turns (SWEEP+1, 4).
     """
     out, closed, checks, many = scratch.found, lattice.closed[lattice.masks[depth]], 0, steps.shape[0]
+    within, near, framed, reach, (places, turns) = scratch.checks, scratch.near, scratch.framed, postures.reach, carrier
     for part in range(BETWEEN):
         sample = (part + 1) * SWEEP // (BETWEEN + 1)
-        place, turn = carrier[0][sample], carrier[1][sample]
-        count = around(obstacles, place, postures.reach, scratch.near)
+        place, turn = places[sample], turns[sample]
+        count = around(obstacles, place, reach, near)
         if count == 0:
             continue
         for b in range(count):
-            move_into(scratch.near, b, place, turn, scratch.framed, b)
+            move_into(near, b, place, turn, framed, b)
         for first in range(0, many, BLOCK):
             _posed_between(scratch, postures, lattice, depth, steps, first, part)
             out[:] = _INFINITE
-            checks += capsule_clearances_in(scratch.checks, scratch.framed, count, out)
+            checks += capsule_clearances_in(within, framed, count, out)
             for k in range(first, min(first + BLOCK, many)):
                 for c in range(out.shape[0]):
                     if out[c, k - first] < motion_margin:

@@ -16,7 +16,7 @@ from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
+from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, begin_round, find, new_cache_index
 from elbowroom.planning.model.levers import MOVES, ROTATION, lifts_of
 from elbowroom.planning.model.limb import Limb
 from elbowroom.planning.root.path import interpolate_between, rates_at
@@ -122,7 +122,11 @@ class RootScratch(NamedTuple):
 
 @exact_kernel
 def root_sweeps(ways: RootSweeps, chain: KinematicChain, states: Floats, interval: float, stamps: Floats) -> Longs:
-    """The slots (n,) of the root ways between states (n+1, 7); stamps (n,) tell apart what moves meanwhile."""
+    """The slots (n,) of the root ways between states (n+1, 7); stamps (n,) tell apart what moves meanwhile.
+
+    They are those of a new plan: none of them is overwritten before the next call.
+    """
+    begin_round(ways.entries)
     scratch = RootScratch(
         np.zeros(2 + 2 * _KNOWN),
         np.empty((SWEEP + 1, ROOT_STATE)),

@@ -80,13 +80,13 @@ def interval_clearances(
     return int(at), checks + count
 
 
-@helper
-def _set_frame(scratch: Scratch, n: int, places: Floats, turns: Floats, sample: int) -> None:
-    """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` in the room."""
+@exact_kernel
+def _set_frame(places: Floats, turns: Floats, sample: int, own_places: Floats, own_turns: Floats, n: int) -> None:
+    """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` among one's own."""
     for i in range(3):
-        scratch.places[n, i] = places[sample, i]
+        own_places[n, i] = places[sample, i]
     for i in range(4):
-        scratch.turns[n, i] = turns[sample, i]
+        own_turns[n, i] = turns[sample, i]
 
 
 @helper
@@ -99,22 +99,23 @@ def _goals_held(
         scratch.segments,
         scratch.found,
     )
+    configurations, own_places, own_turns = scratch.configurations, scratch.places, scratch.turns
     if near == 0:
         return _FAR, _FAR, 0
     for i in range(goals.shape[1]):
-        scratch.configurations[0, i], scratch.configurations[1, i] = goals[0, i], goals[1, i]
-    pose_into(postures.limb, scratch.limb, scratch.configurations, _BOTH, _FIRST, segments)
+        configurations[0, i], configurations[1, i] = goals[0, i], goals[1, i]
+    pose_into(postures.limb, scratch.limb, configurations, _BOTH, _FIRST, segments)
     total = _EARLY + _MOMENTS + 1 - _LATE
     for n in range(total):
         sample = (n + 1 if n < _EARLY else n - _EARLY + _LATE) * _STRIDE
-        _set_frame(scratch, n, places, turns, sample)
+        _set_frame(places, turns, sample, own_places, own_turns, n)
     for c in range(segments.shape[0]):
         for i in range(6):
             first, second = segments[c, i, 0], segments[c, i, 1]
             for n in range(total):
                 segments[c, i, n] = first if n < _EARLY else second
         found[c, :] = _FAR
-    checks = held_against(scratch, postures.limb.radii, near, total, places[0], scratch.places, scratch.turns, found)
+    checks = held_against(scratch, postures.limb.radii, near, total, places[0], own_places, own_turns, found)
     early, late = _FAR, _FAR
     for c in range(found.shape[0]):
         for n in range(_EARLY):
@@ -135,17 +136,18 @@ def _moments(
     late: Floats32,
 ) -> int:
     """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
-    rows, checks = scratch.blocks, 0
+    rows, near, framed, reach, checks = scratch.blocks, scratch.near, scratch.framed, postures.reach, 0
+    within, tiles, spread = scratch.checks, scratch.tiles, scratch.spread
     early[:], late[:] = _FAR, _FAR
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
-        count = around(obstacles, place, postures.reach, scratch.near)
+        count = around(obstacles, place, reach, near)
         if count == 0:
             continue
         for b in range(count):
-            move_into(scratch.near, b, place, turn, scratch.framed, b)
+            move_into(near, b, place, turn, framed, b)
         rows[:] = _FAR
-        checks += lower_blocks_in(scratch.checks, scratch.tiles, scratch.spread, scratch.framed, count, rows)
+        checks += lower_blocks_in(within, tiles, spread, framed, count, rows)
         if moment <= _EARLY:
             _lower(early, rows)
         if moment >= _LATE:
@@ -176,24 +178,24 @@ def held_clearance_in(
     late = (_LATE, _MOMENTS + 1)
     begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
     near, segments = around(obstacles, places[0], postures.reach + 0.5, scratch.near), scratch.segments
+    configurations, found = scratch.configurations, scratch.found
+    own_places, own_turns = scratch.places, scratch.turns
     if near == 0:
         return float(_FAR), 0
     for i in range(configuration.shape[0]):
-        scratch.configurations[0, i] = configuration[i]
-    pose_into(postures.limb, scratch.limb, scratch.configurations, _ONE, _FIRST, segments)
+        configurations[0, i] = configuration[i]
+    pose_into(postures.limb, scratch.limb, configurations, _ONE, _FIRST, segments)
     total = end - begin
     for n in range(total):
         sample = (begin + n) * _STRIDE
-        _set_frame(scratch, n, places, turns, sample)
+        _set_frame(places, turns, sample, own_places, own_turns, n)
     for c in range(segments.shape[0]):
         for i in range(6):
             for n in range(1, total):
                 segments[c, i, n] = segments[c, i, 0]
-        scratch.found[c, :] = _FAR
-    checks = held_against(
-        scratch, postures.limb.radii, near, total, places[0], scratch.places, scratch.turns, scratch.found
-    )
-    return least_of(scratch.found, scratch.checks.apart), checks
+        found[c, :] = _FAR
+    checks = held_against(scratch, postures.limb.radii, near, total, places[0], own_places, own_turns, found)
+    return least_of(found, scratch.checks.apart), checks
 
 
 @exact_kernel
