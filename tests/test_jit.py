@@ -1,4 +1,4 @@
-"""The three kinds of compiled functions, and what they ask of Numba."""
+"""The kinds of compiled functions, and what they ask of Numba."""
 
 import ast
 import os
@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 
 import elbowroom
-from elbowroom.jit import exact_kernel, helper, kernel, kernels_made, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, inner_kernel, kernel, kernels_made, plain
 from sources import nodes_of, tree_of
 
 PACKAGE = Path(elbowroom.__file__).parent
-KINDS = {"kernel", "exact_kernel", "helper"}
+ENTERED, INNER = {"kernel", "exact_kernel"}, {"inner_kernel", "inner_exact_kernel"}
+KINDS = ENTERED | INNER | {"helper"}
 
 
 @helper
@@ -59,7 +60,69 @@ def test_a_plain_constant_asks_for_no_compilation_of_its_own() -> None:
     assert len(made.signatures) == 1
 
 
-def test_every_kernel_is_one_of_three_kinds() -> None:
+@inner_kernel
+def inner_tripled(number: float) -> float:
+    return 3.0 * number
+
+
+@inner_exact_kernel
+def inner_less(number: float) -> float:
+    return inner_tripled(number) - 1.0
+
+
+@exact_kernel
+def entered(number: float) -> float:
+    return inner_less(number)
+
+
+def test_who_calls_an_inner_kernel_from_python_is_told_so() -> None:
+    """Numba has no code for that, and would end the process."""
+    assert entered(2.0) == 5.0
+    for inner in (inner_tripled, inner_less):
+        for arguments in ((2.0,), (2,), ()):
+            with pytest.raises(TypeError, match=f"{inner.__name__} is called by other kernels alone"):
+                inner(*arguments)
+
+
+def _named_outside_of_kernels(path: Path) -> Iterator[tuple[str, str]]:
+    """What a file names where Python reads it: the module that it comes from, and its name there."""
+    tree, own = tree_of(path), ".".join(("elbowroom", *path.with_suffix("").parts[len(PACKAGE.parts) :]))
+    taken = {alias.asname or alias.name: (node.module or "", alias.name)
+             for node in nodes_of(path) if isinstance(node, ast.ImportFrom) for alias in node.names}  # fmt: skip
+    compiled = {id(inside) for node in tree.body if _kinds_of(node) for inside in ast.walk(node)}
+    for node in nodes_of(path):
+        if isinstance(node, ast.Name):
+            named = taken.get(node.id, (own, node.id))
+        elif isinstance(node, ast.Attribute):
+            named = "", node.attr
+        else:
+            continue
+        if id(node) not in compiled:
+            yield named
+
+
+def _kinds_of(node: ast.AST) -> set[str]:
+    marks = node.decorator_list if isinstance(node, ast.FunctionDef) else []
+    return KINDS & {mark.id for mark in marks if isinstance(mark, ast.Name)}
+
+
+def test_what_only_kernels_call_has_no_entrance_from_python() -> None:
+    """An entrance is a third of what compiling a kernel costs."""
+    root = PACKAGE.parents[1]
+    files = [path for folder in (PACKAGE, root / "tests", root / "tools") for path in folder.rglob("*.py")]
+    named = {name for path in files for name in _named_outside_of_kernels(path)}
+    wrong = {}
+    for path in PACKAGE.rglob("*.py"):
+        own = ".".join(("elbowroom", *path.relative_to(PACKAGE).with_suffix("").parts))
+        for node in tree_of(path).body:
+            if isinstance(node, ast.FunctionDef) and (kinds := _kinds_of(node) - {"helper"}):
+                entered = bool({(own, node.name), ("", node.name)} & named)
+                if entered != bool(kinds & ENTERED):
+                    wrong[f"{own}.{node.name}"] = "is entered" if entered else "is never entered"
+    assert not wrong
+
+
+def test_every_kernel_is_one_of_these_kinds() -> None:
     for path in PACKAGE.rglob("*.py"):
         text = path.read_text("utf-8")
         assert not re.search(r"@numba|import njit", text), f"{path} compiles by itself"
@@ -153,6 +216,11 @@ def test_kernels_call_each_other_with_the_same_literals_or_with_none() -> None:
     assert not several, several
 
 
+def _exact(kinds: set[str]) -> bool | None:
+    """Whether a function is compiled with exact mathematics; None where it is not compiled by itself."""
+    return bool(kinds & {"exact_kernel", "inner_exact_kernel"}) if kinds & (ENTERED | INNER) else None
+
+
 def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:
     """Names of a file's private kernels that are named in one place there: within a kernel of the same kind."""
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
@@ -160,7 +228,7 @@ def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:
     named = [(node.id, one.name) for one in functions for node in ast.walk(one) if isinstance(node, ast.Name)]
     for name in sorted(name for name in kinds if name.startswith("_") and kinds[name] & (KINDS - {"helper"})):
         callers = [caller for called, caller in named if called == name]
-        if len(callers) == 1 and kinds[callers[0]] == kinds[name]:
+        if len(callers) == 1 and _exact(kinds[callers[0]]) == _exact(kinds[name]):
             yield name
 
 

@@ -5,6 +5,9 @@ IEEE arithmetic: for searches and state that must repeat bit for bit. A `helper`
 it and computes as they do. Kernels of both kinds may call each other and be called from Python. A kernel is compiled
 with all that it calls: what one kernel alone calls, in one place, is a helper, or it is compiled twice.
 
+To take arguments from Python is a function of its own, and a third of what compiling a kernel costs. Those that only
+kernels call go without it, as an `inner_kernel` or an `inner_exact_kernel`.
+
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
 """
@@ -14,6 +17,7 @@ import warnings
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeVar, cast, overload
 
 import numba
@@ -56,6 +60,16 @@ def exact_kernel(function: Function) -> Function:
     return _compiled(function)
 
 
+def inner_kernel(function: Function) -> Function:
+    """Compile a `kernel` that other kernels alone call."""
+    return _without_entrance(_compiled(function, fastmath=_FASTMATH, no_cpython_wrapper=True))
+
+
+def inner_exact_kernel(function: Function) -> Function:
+    """Compile an `exact_kernel` that other kernels alone call."""
+    return _without_entrance(_compiled(function, no_cpython_wrapper=True))
+
+
 def helper(function: Function) -> Function:
     """Compile a helper that is inlined into the kernels that call it."""
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
@@ -95,6 +109,23 @@ def _compiled(function: Function, **options: Any) -> Function:
         _tell_that_none_are_kept()
     _kernels.append(dispatcher)
     return cast(Function, dispatcher)
+
+
+def _without_entrance(function: Function) -> Function:
+    """Refuse calls from Python: there is no code that would take them, and Numba would not ask."""
+    dispatcher: Any = function
+    kind: Any = type(function)
+    if kind is not FunctionType:  # as it is where Numba is told not to compile
+        dispatcher.__class__ = _refusing(kind)
+    return function
+
+
+@cache
+def _refusing(dispatchers: type) -> type:
+    def refuse(kernel: Any, *_: object, **__: object) -> None:
+        raise TypeError(f"{kernel.__name__} is called by other kernels alone: make it a `kernel` or an `exact_kernel`")
+
+    return type(dispatchers.__name__, (dispatchers,), {"__call__": refuse})
 
 
 @cache

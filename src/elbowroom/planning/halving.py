@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -81,7 +81,7 @@ def begun(gaps: Floats32, lengths: Floats, each: int, enough: float, depth: int)
     return proof
 
 
-@exact_kernel
+@inner_exact_kernel
 def _weigh(proof: Proof, part: int, begin: float, level: int, before: int, after: int) -> None:
     """Settle a piece, between two looks, or note it to be halved."""
     one, other, least, open_pairs = proof.gaps[before], proof.gaps[after], proof.least[part], 0

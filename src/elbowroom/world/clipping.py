@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
 
-@exact_kernel
+@inner_exact_kernel
 def clipped(points: Floats, count: int, axis: int, at: float, side: float, out: Floats) -> int:
     """Cut a polygon at a plane across an axis; how many corners are left (Sutherland and Hodgman, 1974).
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.clips.clip_data import ClipData, parse_clips
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def _swings(starts: Floats, cubics: Floats, hanging: Floats, phases: Floats, spe
     return out
 
 
-@exact_kernel
+@inner_exact_kernel
 def swing_into(starts: Floats, cubics: Floats, hanging: Floats, phase: float, speed: float, out: Floats) -> None:
     """One row of `arm_swing_goal`, written to the first of `out`; the left arm's `cubics` are the right one's half a
     stride on."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import WITH_FEET
-from elbowroom.jit import kernel
+from elbowroom.jit import inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
@@ -25,7 +25,7 @@ HEAD_TURN, HEAD_NOD = WITH_FEET + 8, WITH_FEET + 9
 OF_HIPS, POSING = 5, 10  # so many of the numbers move the hips, and so many pose anything
 
 
-@kernel
+@inner_kernel
 def _turned(turn: float, raised: float) -> Quaternion:
     """Ry(turn) Rz(raised)."""
     cy, sy, cz, sz = math.cos(0.5 * turn), math.sin(0.5 * turn), math.cos(0.5 * raised), math.sin(0.5 * raised)
@@ -44,20 +44,20 @@ def _times(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
-@kernel
+@inner_kernel
 def about_left(angle: float) -> Quaternion:
     """A rotation about the axis to the left."""
     return math.sin(0.5 * angle), 0.0, 0.0, math.cos(0.5 * angle)
 
 
-@kernel
+@inner_kernel
 def hips_turn(row: Floats, lean: float) -> Quaternion:
     """What hips that lean forward by `lean` are turned by in the root's axes, `xyzw`, carried as a row says or not."""
     leaning = about_left(lean)
     return leaning if row.shape[0] <= WITH_FEET else _times(_turned(row[TURN], row[LIST]), leaning)
 
 
-@kernel
+@inner_kernel
 def carried_turns(row: Floats, lean: float) -> tuple[Quaternion, Quaternion]:
     """What a row (SHOWN,) turns the lowest joint of the spine and the lowest joint of the neck by, `xyzw`.
 
@@ -72,14 +72,14 @@ def carried_turns(row: Floats, lean: float) -> tuple[Quaternion, Quaternion]:
     return _times(back, _times(chest, leaning)), _times(head, level)
 
 
-@kernel
+@inner_kernel
 def leant_by(lean: float, up: float, ahead: float) -> tuple[float, float]:
     """How far up and ahead a point moves, metres, as hips lean: it is `up`, `ahead` of the middle of the hip joints."""
     sine, cosine = math.sin(lean), math.cos(lean)
     return cosine * up - sine * ahead - up, sine * up + cosine * ahead - ahead
 
 
-@kernel
+@inner_kernel
 def shifted_by(row: Floats, lean: float, x: float, up: float, ahead: float) -> tuple[float, float, float]:
     """How far a row (SHOWN,) moves a point of the hips that is `x`, `up`, `ahead` of the middle of the hip joints.
 
@@ -98,7 +98,7 @@ def shifted_by(row: Floats, lean: float, x: float, up: float, ahead: float) -> t
     )
 
 
-@kernel
+@inner_kernel
 def carried_hip(legs: Floats, row: Floats, lean: float, side: int) -> tuple[float, float, float]:
     """Where a leg's joint at the hip is in the root's frame; `legs` (2, 3 or more) tell first where it is upright."""
     hip, twin = legs[side], legs[1 - side]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -79,7 +79,7 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
 
 
-@kernel
+@inner_kernel
 def _cadence(forward: float, lateral: float, turn: float, climb: float) -> float:
     """Strides per second, not yet resting at standstill; more where it is so steep that steps would climb too far."""
     side, spin = _LATERAL * lateral, _TURN * turn
@@ -88,7 +88,7 @@ def _cadence(forward: float, lateral: float, turn: float, climb: float) -> float
     return float(max(_CADENCE * (relative + _SLOW) ** 0.285, abs(climb) / (2.0 * _RISE_OF_STEP)))
 
 
-@kernel
+@inner_kernel
 def _quickness(scale: float) -> float:
     return float(scale**-_PACE)
 
@@ -112,7 +112,7 @@ def phase_rate(forward: float, lateral: float, turn: float) -> float:
     return climbing_rate(forward, lateral, turn, 0.0)
 
 
-@kernel
+@inner_kernel
 def climbing_rate(forward: float, lateral: float, turn: float, climb: float) -> float:
     """`phase_rate` of who also goes up or down at `climb` m/s: on stairs steps are short and quick, a tread each."""
     if abs(forward) + abs(lateral) + abs(turn) < _STILL:
@@ -133,14 +133,14 @@ def _stance_part(speed: float, stride: float, scale: float) -> float:
     return float(duty * (1.0 + (duty / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
 
 
-@kernel
+@inner_kernel
 def _smooth(x: float) -> float:
     """Smoothstep, 0 below 0 and 1 above 1."""
     t = min(max(x, 0.0), 1.0)
     return float(t * t * (3.0 - 2.0 * t))
 
 
-@kernel
+@inner_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
     """Cubic from `a` to `b` over w in [0, 1]."""
     rest = 1.0 - w
@@ -167,7 +167,7 @@ def _pitch_back(u: float, duty: float) -> float:
     return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
 
 
-@kernel
+@inner_kernel
 def _foot_on_ground(
     x: float, z: float, time: float, forward: float, lateral: float, turn: float
 ) -> tuple[float, float]:
@@ -214,7 +214,7 @@ def stride_of(scale: float, forward: float, lateral: float, turn: float) -> Stri
     return _stride(scale, forward, lateral, turn, 0.0)
 
 
-@kernel
+@inner_kernel
 def stride_at(scale: float, root: Floats) -> Stride:
     """What a root state (7 or more,) makes of it, by its velocities and by how fast it climbs where it tells."""
     return _stride(scale, root[3], root[4], root[5], root[_CLIMB] if root.shape[0] > _CLIMB else 0.0)
@@ -231,13 +231,13 @@ def home_of(legs: Floats, stride: Stride, side: int) -> tuple[float, float]:
     return x, legs[side, _ANKLE + 2] - _BEHIND * scale * max(ahead, 0.0)
 
 
-@kernel
+@inner_kernel
 def _bump(w: float) -> float:
     """0 at both ends of a swing, with no slope, 1 in its middle."""
     return 16.0 * (w * (1.0 - w)) ** 2
 
 
-@kernel
+@inner_kernel
 def roll_of(stride: Stride, u: float) -> tuple[float, float]:
     """Pitch of a foot at cycle position `u`, radians, positive toes down; and how high it is lifted, metres."""
     duty, ahead = stride.duty, stride.ahead
@@ -249,7 +249,7 @@ def roll_of(stride: Stride, u: float) -> tuple[float, float]:
     return pitch, lift
 
 
-@kernel
+@inner_kernel
 def tilt_foot(
     legs: Floats,
     side: int,
@@ -278,7 +278,7 @@ def tilt_foot(
     out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
 
 
-@kernel
+@inner_kernel
 def ease_of(ahead: float, w: float) -> tuple[float, float]:
     """How gently heel and ball change places at the part `w` of a swing, and how far the toes hang loose."""
     return _ROUND * ahead * ahead * _bump(w), _RELAXED * _bump(w)
@@ -309,7 +309,7 @@ def flat_place(legs: Floats, stride: Stride, side: int, u: float) -> tuple[float
     return x, z, yaw, w
 
 
-@kernel
+@inner_kernel
 def _foot_pose(legs: Floats, stride: Stride, side: int, u: float, out: Floats) -> None:
     """Ankle (x, y, z), yaw, pitch and toe bend of one foot at cycle position `u` in [0, 1), in the root frame."""
     x, z, yaw, w = flat_place(legs, stride, side, u)
@@ -325,7 +325,7 @@ def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float
     return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
 
 
-@kernel
+@inner_kernel
 def _bob(stride: Stride, phase: float) -> float:
     """How far the hips are below the highest place of their stride: they are lowest while both feet stand."""
     long, wide = stride.ahead**4, stride.aside**2
@@ -348,7 +348,7 @@ def _highest(legs: Floats, stride: Stride, foot: Floats) -> float:
     return low
 
 
-@kernel
+@inner_kernel
 def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Floats, scratch: Floats) -> None:
     """`foot_poses`, written to `feet` (N, 2, 6), or (0, 2, 6) where nobody asks for them, and `drops` (N,).
 
@@ -395,7 +395,7 @@ def feet_standing(scale: float, roots: Floats) -> Bools:
     return standing
 
 
-@kernel
+@inner_kernel
 def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Floats) -> float:
     """Where a foot stands or stood last, and where it stands next if the root keeps its velocities; how far it is.
 
@@ -415,13 +415,13 @@ def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Float
     return float(max(u - stride.duty, 0.0) / (1.0 - stride.duty))
 
 
-@kernel
+@inner_kernel
 def hips_lean(lowering: float) -> float:
     """How far lowered hips lean forward, radians."""
     return _LEAN * _smooth(lowering / _LEANING)
 
 
-@kernel
+@inner_kernel
 def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float, float]:
     """One row of `hips_sinks`."""
     lowered = half_leg * lowering

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -23,13 +23,13 @@ _ROLL_RATE = 16.0  # rad/s: nor tilted
 _STILL = 1e-3  # m/s: below, the root rests
 
 
-@exact_kernel
+@inner_exact_kernel
 def rests(root: Floats) -> bool:
     """Whether the root stands still."""
     return bool(abs(root[3]) + abs(root[4]) + abs(root[5]) < _STILL)
 
 
-@exact_kernel
+@inner_exact_kernel
 def carry(before: Floats, root: Floats, out: Floats) -> None:
     """Both feet where they were in the world, as seen from another root."""
     turned = before[2] - root[2]
@@ -55,13 +55,13 @@ def position(phase: float, side: int) -> float:
     return float(cycle - np.floor(cycle))
 
 
-@exact_kernel
+@inner_exact_kernel
 def is_flat(foot: Floats) -> bool:
     """Whether a foot lies flat on the ground."""
     return bool(abs(foot[PITCH]) < FLAT and foot[LIFT] < FLAT)
 
 
-@exact_kernel
+@inner_exact_kernel
 def land(foot: Floats) -> None:
     """Let a foot stand where it is."""
     foot[SWING] = foot[LIFT] = 0.0
@@ -69,7 +69,7 @@ def land(foot: Floats) -> None:
         foot[VELOCITY + i] = 0.0
 
 
-@exact_kernel
+@inner_exact_kernel
 def tilt(foot: Floats, pitch: float, dt: float) -> None:
     """Pitch a foot towards what it should be, no faster than feet roll."""
     most = _ROLL_RATE * dt

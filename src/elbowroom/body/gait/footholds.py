@@ -32,7 +32,7 @@ from elbowroom.body.gait.foot_state import (
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_detour, own_home, own_roll, own_stride_at
 from elbowroom.body.gait.roll import least_lift, straight_part
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel, helper, kernel, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 
@@ -77,21 +77,21 @@ def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
         out[at + X], out[at + Z] = home_of(legs, stride, side)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _away(foot: Floats, place: tuple[float, float, float], scale: float) -> float:
     """How far a foot is from a place (x, z, yaw): above 1 it is worth a step."""
     apart = np.hypot(foot[X] - place[0], foot[Z] - place[1]) / (_CLOSED * scale)
     return float(max(apart, abs(foot[YAW] - place[2]) / _TURNED))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _overtaken(legs: Floats, side: int, foot: Floats) -> bool:
     """Whether a foot is so far from its hip, or so twisted, that it has to follow."""
     far = np.hypot(foot[X] - legs[side, _HIP], foot[Z] - legs[side, _HIP + 2])
     return bool(far > _FAR * (legs[side, _THIGH] + legs[side, _SHIN]) or abs(foot[YAW]) > _TWISTED)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
     """How long ago the root passed by a standing foot, seconds: half its stance later the cycle lifts it."""
     x, z, _ = own_home(own, legs, stride, side)
@@ -100,7 +100,7 @@ def _passed(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats
     return float(way / max(stride.speed * stride.speed + wide * stride.turn * stride.turn, 1e-12))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _urge(
     own: OwnSteps,
     legs: Floats,
@@ -144,7 +144,7 @@ def _time_left(
     return float(min(max(left, least - dt), most))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None:
     """Where the root will be `after` seconds from now, to `out` (7,).
 
@@ -168,7 +168,7 @@ def _root_later(root: Floats, coming: Floats, after: float, out: Floats) -> None
     out[2] += left * out[5]
 
 
-@exact_kernel
+@inner_exact_kernel
 def _goal(
     own: OwnSteps, legs: Floats, scale: float, side: int, root: Floats, coming: Floats, left: float, later: Floats
 ) -> tuple[float, float, float]:
@@ -193,7 +193,7 @@ def _goal(
     return left + x * c + z * s, ahead - x * s + z * c, turned + yaw
 
 
-@exact_kernel
+@inner_exact_kernel
 def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> tuple[float, float]:
     """A place (x, z) from the standing twin, moved to the own side if need be, in axes `turned` to the left."""
     c, s, outward = np.cos(turned), np.sin(turned), 1.0 if side == 0 else -1.0
@@ -203,7 +203,7 @@ def _beside_twin(side: int, x: float, z: float, turned: float, scale: float) -> 
     return aside * c + along * s, -aside * s + along * c
 
 
-@exact_kernel
+@inner_exact_kernel
 def _kept_apart(side: int, goal: tuple[float, float, float], twin: Floats, scale: float) -> tuple[float, float, float]:
     """A place (x, z, yaw) moved to the own side of the standing twin, and turned away from it, if need be."""
     outward = 1.0 if side == 0 else -1.0
@@ -360,7 +360,7 @@ def step_feet(
         tilt(foot, pitch, dt)
 
 
-@exact_kernel
+@inner_exact_kernel
 def landing(
     who: Stepper, row: Floats, side: int, coming: Floats, farther: Floats, later: Floats
 ) -> tuple[float, float, float, float]:

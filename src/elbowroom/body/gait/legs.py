@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_hip, hips_turn
 from elbowroom.body.root import WITH_FEET
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def _soft_reach(distance: float, length: float) -> float:
     return distance if beyond <= 0.0 else length - soft * np.exp(-beyond / soft)
 
 
-@kernel
+@inner_kernel
 def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, out: Floats) -> None:
     """Columns: the bone's direction, the knee axis made perpendicular to it, and their cross product."""
     length = np.sqrt(x * x + y * y + z * z)
@@ -48,7 +48,7 @@ def _bone_basis(x: float, y: float, z: float, nx: float, ny: float, nz: float, o
     out[0, 2], out[1, 2], out[2, 2] = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
 
 
-@kernel
+@inner_kernel
 def _turn_between(rest: Floats, posed: Floats, m: Floats, out: Floats) -> None:
     """The quaternion of `posed rest^T`; rotations of a leg stay well below a half turn. `m` (3, 3) is scratch."""
     for i in range(3):
@@ -61,7 +61,7 @@ def _turn_between(rest: Floats, posed: Floats, m: Floats, out: Floats) -> None:
     out[3] = w
 
 
-@kernel
+@inner_kernel
 def _relative(a: Floats, b: Floats, out: Floats) -> None:
     """The quaternion `a^-1 b`."""
     out[0] = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1]

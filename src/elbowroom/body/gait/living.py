@@ -29,7 +29,7 @@ from elbowroom.body.gait.cycle import GaitShape, Stride, stride_at
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -62,18 +62,18 @@ _LOOK, _MOST, _EASE, _QUICKEST = 0.62, 0.9, 0.08, 4.0  # seconds ahead, radians,
 _STRAIGHT = 1e-3  # radians: less is none
 
 
-@exact_kernel
+@inner_exact_kernel
 def _smooth(x: float) -> float:
     t = min(max(x, 0.0), 1.0)
     return t * t * (3.0 - 2.0 * t)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _wave(phase: float, at: float) -> float:
     return math.cos(2.0 * math.pi * (phase - at))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _radians(line: Floats, speed: float) -> float:
     """Half of a range in degrees that grows with speed."""
     return math.radians(0.5 * (line[0] + line[1] * min(speed, _FASTEST)))
@@ -146,7 +146,7 @@ def _eased(turned: float, goal: float, dt: float) -> float:
     return 0.0 if goal == 0.0 and abs(after) < _STRAIGHT else after
 
 
-@exact_kernel
+@inner_exact_kernel
 def _approached(value: float, goal: float, up: float, down: float) -> float:
     return value + min(max(goal - value, -down), up)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import Stride, home_of, stride_at
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
 from elbowroom.body.gait.roll import ahead_part, stepping_roll
-from elbowroom.jit import helper, kernel, plain
+from elbowroom.jit import helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 
@@ -38,13 +38,13 @@ class OwnSteps(NamedTuple):
 CYCLE = OwnSteps(0.0, 0.0, np.zeros((2, 3)), np.zeros((2, 2 * KEYS + 1, PATH)))
 
 
-@kernel
+@inner_kernel
 def _share(own: OwnSteps, stride: Stride) -> float:
     """How far feet go as recorded: the part of the steps that leads ahead."""
     return ahead_part(stride) if own.speed > 0.0 else 0.0
 
 
-@kernel
+@inner_kernel
 def _gain(own: OwnSteps, stride: Stride) -> float:
     """How large steps are beside those recorded."""
     gain = (1.0 - math.exp(-stride.forward / GROWTH)) / (1.0 - math.exp(-own.speed / GROWTH))
@@ -67,7 +67,7 @@ def _value(own: OwnSteps, side: int, column: int, place: float) -> float:
     return float(value + (place - first) * (own.cycle[side, first + 1, column] - value))
 
 
-@kernel
+@inner_kernel
 def own_stride_at(own: OwnSteps, scale: float, root: Floats) -> Stride:
     """What a root state (7 or more,) makes of the steps of a body with legs of this `scale`."""
     s = stride_at(scale, root)
@@ -75,7 +75,7 @@ def own_stride_at(own: OwnSteps, scale: float, root: Floats) -> Stride:
     return Stride(s.forward, s.lateral, s.turn, s.speed, s.period, duty, s.ahead, s.aside, s.effort, s.scale)
 
 
-@kernel
+@inner_kernel
 def own_home(own: OwnSteps, legs: Floats, stride: Stride, side: int) -> tuple[float, float, float]:
     """Where a flat foot is in the root frame in the middle of its stance: ankle x, z, and yaw."""
     x, z = home_of(legs, stride, side)
@@ -88,7 +88,7 @@ def own_home(own: OwnSteps, legs: Floats, stride: Stride, side: int) -> tuple[fl
     return x, z, share * gain * outward * own.homes[side, 2]
 
 
-@kernel
+@inner_kernel
 def own_roll(own: OwnSteps, stride: Stride, side: int, u: float) -> tuple[float, float]:
     """Pitch of a foot at cycle position `u`, radians, positive toes down; and how high it is lifted, metres."""
     pitch, lift = stepping_roll(stride, u)
@@ -100,7 +100,7 @@ def own_roll(own: OwnSteps, stride: Stride, side: int, u: float) -> tuple[float,
     return pitch, lift
 
 
-@kernel
+@inner_kernel
 def own_detour(own: OwnSteps, stride: Stride, side: int, w: float) -> tuple[float, float, float]:
     """How far a swinging foot is from its even way when `w` of its swing is over: x, z and yaw in the root frame."""
     share = _share(own, stride)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import POSING, UP
 from elbowroom.body.gait.cycle import GaitShape, foot_poses
 from elbowroom.body.root import ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def at_height(own: OwnStride, heights: Floats, lowerings: Floats, gait: GaitShap
     return own._replace(harmonics=made)
 
 
-@exact_kernel
+@inner_exact_kernel
 def carry_as_recorded(own: OwnStride, part: float, forward: float, scale: float, phase: float, out: Floats) -> None:
     """Change how a row (SHOWN,) is carried, by a `part` of the way, to how the recorded walker is, `forward` in m/s.
 

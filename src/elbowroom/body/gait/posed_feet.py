@@ -12,7 +12,7 @@ from elbowroom.body.gait.cycle import ease_of, hips_sink, tilt_foot, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
 from elbowroom.body.gait.rises import STRETCH, drop_to, is_uneven, raise_foot
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE
-from elbowroom.jit import kernel
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ _STRETCH = 0.9985  # of a leg: no foot is farther from its hip
 _UNEVEN = 0.02  # metres that ground rises or falls under the feet, from which on legs are bent as in the cycle there
 
 
-@kernel
+@helper
 def _raised(legs: Floats, side: int, row: Floats, foot: Floats) -> float:
     """Put a foot (6,) on the ground that a row tells of; how far below T-pose the hips are for that, metres."""
     at, rise, slope = ROOT_STATE + FOOT * side, row[RISES + 2 * side], row[RISES + 2 * side + 1]

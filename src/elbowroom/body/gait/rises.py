@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RISES
-from elbowroom.jit import kernel
+from elbowroom.jit import inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ STRETCH = 0.992  # of a leg: it is never longer
 _LEVEL = 1e-6  # metres and radians: less is the plane
 
 
-@kernel
+@inner_kernel
 def is_uneven(root: Floats) -> bool:
     """Whether a root state tells of ground under its feet that is not the root's plane; not where it ends before."""
     if root.shape[0] <= RISES:
@@ -29,7 +29,7 @@ def is_uneven(root: Floats) -> bool:
     return bool(abs(rises[0]) + abs(rises[1]) + abs(rises[2]) + abs(rises[3]) >= _LEVEL)
 
 
-@kernel
+@inner_kernel
 def raise_foot(foot: Floats, ahead: float, rise: float, slope: float) -> None:
     """Turn a foot (6,) on the plane onto ground: its ankle is `ahead` of where that of the flat foot is."""
     sine, cosine, above = math.sin(slope), math.cos(slope), foot[1]
@@ -40,7 +40,7 @@ def raise_foot(foot: Floats, ahead: float, rise: float, slope: float) -> None:
     foot[4] += slope
 
 
-@kernel
+@inner_kernel
 def drop_to(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far below T-pose the hips are so that a leg, which is stretched so far at most, reaches its foot (6,)."""
     length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])

@@ -8,7 +8,7 @@ where `living` carries them. Aside, backward and in turns on the spot feet roll 
 """
 
 from elbowroom.body.gait.cycle import Stride, roll_of
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel
 
 _STRIKE, _FLAT = 0.261, 0.095  # radians, toes up, at heel strike; part of the stance at which the foot is flat
 _RISE, _ROLL = 0.692, 3.34  # part of the stance from which the heel rises; how late it does so
@@ -18,14 +18,14 @@ _LEAST = 0.028  # metres that a standard leg's foot is lifted in any step
 _LIFT, _EARLY, _SOON = 0.078, 0.5, 0.6  # metres of a standard leg; how much of them comes early, and how soon
 
 
-@kernel
+@inner_kernel
 def straight_part(stride: Stride) -> float:
     """The part of the steps that leads ahead or back, 0 to 1; the rest goes aside or turns."""
     along = stride.forward * stride.forward
     return float(along / (along + stride.lateral * stride.lateral + (0.3 * stride.scale * stride.turn) ** 2 + 1e-9))
 
 
-@kernel
+@inner_kernel
 def ahead_part(stride: Stride) -> float:
     """The part of the steps that leads ahead, 0 to 1."""
     return straight_part(stride) if stride.forward > 0.0 else 0.0
@@ -46,21 +46,21 @@ def _pitch(u: float, duty: float) -> float:
     return float(led - _LESS * 16.0 * (w * rest) ** 2)
 
 
-@kernel
+@inner_kernel
 def _lift(w: float) -> float:
     """How high a foot is lifted when `w` of its swing is over, in parts of `_LIFT`."""
     later = w**_SOON
     return float(16.0 * (later * (1.0 - later)) ** 2 * (1.0 + _EARLY * (1.0 - 2.0 * later)))
 
 
-@kernel
+@inner_kernel
 def least_lift(stride: Stride, w: float) -> float:
     """How high a foot is lifted at least when `w` of its swing is over, however short the stride; metres."""
     even = 16.0 * (w * (1.0 - w)) ** 2
     return float(_LEAST * stride.scale * (even + ahead_part(stride) * (_lift(w) - even)))
 
 
-@kernel
+@inner_kernel
 def stepping_roll(stride: Stride, u: float) -> tuple[float, float]:
     """Pitch of a foot that steps at cycle position `u`, radians, positive toes down; and its lift, metres."""
     pitch, lift = roll_of(stride, u)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
-from elbowroom.jit import helper, kernel, plain
+from elbowroom.jit import helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -23,7 +23,7 @@ _WAIST, _HEAD = 0, 1  # places among the columns
 _OTHER_END = plain(3)  # where it begins in the row (6,) of a capsule
 
 
-@kernel
+@inner_kernel
 def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     """out[k] = a[i] b[j]."""
     ax, ay, az, aw = a[i, 0], a[i, 1], a[i, 2], a[i, 3]
@@ -34,7 +34,7 @@ def _product(a: Floats, i: int, b: Floats, j: int, out: Floats, k: int) -> None:
     out[k, 3] = aw * bw - ax * bx - ay * by - az * bz
 
 
-@kernel
+@inner_kernel
 def _offset(
     q: Floats, j: int, arm: tuple[float, float, float], base: Floats, i: int, out: Floats, k: int, at: int
 ) -> None:
@@ -47,7 +47,7 @@ def _offset(
     out[k, at + 2] = base[i, 2] + z + qw * tz + qx * ty - qy * tx
 
 
-@kernel
+@inner_kernel
 def _set_power(x: float, y: float, z: float, scale: float, out: Floats, k: int) -> None:
     """out[k] = exp(scale (x, y, z))."""
     half = 0.5 * scale * np.sqrt(x * x + y * y + z * z)
@@ -140,7 +140,7 @@ class CapsuleChain(NamedTuple):
     ends: Floats  # (C, 6)
 
 
-@kernel
+@inner_kernel
 def _set_column(column: Column, bend: float, twist: float, local: Floats) -> None:
     """The joints of a column: each takes its share of the rotation vector of Ry(twist) Rx(bend)."""
     cb, sb, ct, st = np.cos(0.5 * bend), np.sin(0.5 * bend), np.cos(0.5 * twist), np.sin(0.5 * twist)
@@ -152,7 +152,7 @@ def _set_column(column: Column, bend: float, twist: float, local: Floats) -> Non
         _set_power(x * factor, y * factor, z * factor, column.shares[i], local, column.joints[i])
 
 
-@kernel
+@inner_kernel
 def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch: Floats) -> None:
     """Upper arm and forearm for (flexion, abduction, internal rotation, elbow); `mirror` is +1 left, -1 right."""
     upper, lower = joints[0], joints[1]
@@ -166,7 +166,7 @@ def _set_arm(joints: Indices, mirror: float, arm: Floats, local: Floats, scratch
     local[lower, 2], local[lower, 3] = 0.0, np.cos(0.5 * arm[3])
 
 
-@kernel
+@inner_kernel
 def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
     """Thigh, shin, foot and toes of both legs; joints (2, 4), -1 where the avatar has no such bone."""
     for side in range(2):
@@ -177,7 +177,7 @@ def _set_legs(joints: Indices, rotations: Floats, local: Floats) -> None:
                     local[joint, i] = rotations[side, part, i]
 
 
-@kernel
+@inner_kernel
 def _chain(order: Indices, parents: Indices, offsets: Floats, local: Floats, rotations: Floats, places: Floats) -> None:
     """Frames of the joints in `order`, parents first; the parent of the first is in place already."""
     for i in range(len(order)):
@@ -209,7 +209,7 @@ def _place(joint: int, rotations: Floats, places: Floats, x: float, y: float, z:
     places[joint, 0], places[joint, 1], places[joint, 2] = x, y, z
 
 
-@kernel
+@inner_kernel
 def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, places: Floats, joint: int) -> None:
     """The hips' frame in the world, into row `joint`: T-pose hips in the root's frame, `sink` (2,) below and behind."""
     c, s = np.cos(root[2]), np.sin(root[2])
@@ -221,12 +221,12 @@ def _place_hips(root: Floats, hips: Floats, sink: Floats, rotations: Floats, pla
     _place(joint, rotations, places, x, height, z, root[2])
 
 
-@kernel
+@inner_kernel
 def _set(out: Floats, k: int, turn: tuple[float, float, float, float]) -> None:
     out[k, 0], out[k, 1], out[k, 2], out[k, 3] = turn
 
 
-@kernel
+@inner_kernel
 def _turn_before(turn: tuple[float, float, float, float], local: Floats, joint: int, scratch: Floats) -> None:
     """local[joint] = turn local[joint]; `scratch` (2, 4)."""
     _set(scratch, _FIRST, turn)
@@ -235,7 +235,7 @@ def _turn_before(turn: tuple[float, float, float, float], local: Floats, joint: 
     _product(scratch, _FIRST, scratch, _SECOND, local, joint)
 
 
-@kernel
+@inner_kernel
 def hips_shift(figure: Figure, row: Floats, lean: float) -> tuple[float, float, float]:
     """How far the hips joint is, in the root's axes, from where it was planned upright."""
     one, other, offsets = figure.legs[0, 0], figure.legs[1, 0], figure.offsets
@@ -248,7 +248,7 @@ def hips_shift(figure: Figure, row: Floats, lean: float) -> tuple[float, float, 
     )
 
 
-@kernel
+@inner_kernel
 def _carry_hips(figure: Figure, row: Floats, lean: float, rotations: Floats, places: Floats, scratch: Floats) -> None:
     """Lean the hips, and carry them as a row (SHOWN,) says; they are where they were planned, turned by the heading."""
     if row.shape[0] <= WITH_FEET and lean <= 0.0:
@@ -261,7 +261,7 @@ def _carry_hips(figure: Figure, row: Floats, lean: float, rotations: Floats, pla
     _product(scratch, _SECOND, scratch, _FIRST, rotations, _FIRST)
 
 
-@kernel
+@inner_kernel
 def _carry_trunk(figure: Figure, row: Floats, lean: float, local: Floats, scratch: Floats) -> None:
     """Chest and head as a row (SHOWN,) carries them, beyond their posture."""
     chest, head = carried_turns(row, lean)
@@ -270,7 +270,7 @@ def _carry_trunk(figure: Figure, row: Floats, lean: float, local: Floats, scratc
     _turn_before(head, local, columns.joints[columns.begins[_HEAD]], scratch)
 
 
-@kernel
+@inner_kernel
 def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, scratch: Floats) -> None:
     """Every joint that moves, for a posture `q` (DOF,) and legs (2, 4, 4)."""
     columns, arms = figure.columns, figure.arms
@@ -282,7 +282,7 @@ def _set_body(figure: Figure, q: Floats, leg_rotations: Floats, local: Floats, s
     _set_legs(figure.legs, leg_rotations, local)
 
 
-@kernel
+@inner_kernel
 def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats, lean: float) -> Floats:
     """Local rotations (J, 4) of a posture `q` (DOF,), legs (2, 4, 4), carried as a row (7 or more,) says.
 
@@ -296,7 +296,7 @@ def pose_local(figure: Figure, q: Floats, leg_rotations: Floats, row: Floats, le
     return local
 
 
-@kernel
+@inner_kernel
 def pose_body(
     figure: Figure, capsules: CapsuleChain, q: Floats, roots: Floats, leg_rotations: Floats, sinks: Floats
 ) -> tuple[Segments, Floats, Floats]:
@@ -348,7 +348,7 @@ class PoseScratch(NamedTuple):
     row: Floats  # (1, 6)
 
 
-@kernel
+@inner_kernel
 def pose_scratch(chain: Chain) -> PoseScratch:
     """What `pose_chain_into` works on."""
     return PoseScratch(
@@ -369,7 +369,7 @@ def _sink(chain: Chain, lowering: float, rotations: Floats, places: Floats) -> N
     _set(rotations, chain.start, about_left(lean))
 
 
-@kernel
+@inner_kernel
 def pose_chain_into(
     chain: Chain,
     configurations: Floats,
@@ -417,7 +417,7 @@ def pose_chain(chain: Chain, configurations: Floats) -> tuple[Segments, Floats, 
     return out, places, turns
 
 
-@kernel
+@inner_kernel
 def place_pelvis_into(
     hips: Floats, roots: Floats, sinks: Floats, count: int, places: Floats, rotations: Floats
 ) -> None:

@@ -16,7 +16,7 @@ from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.pose import posing
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -121,7 +121,7 @@ def posed_joints(body: WholeBody, q: Floats, root: Floats) -> tuple[Floats, Floa
     return posing.pose_local(by.figure, q, legs[0], root, sinks[0, 2]), hips
 
 
-@exact_kernel
+@inner_exact_kernel
 def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Floats, Floats]:
     """All capsules (C, 6, N) for postures (N, DOF) and root states (N, 7), or longer ones, in the world.
 

@@ -12,7 +12,7 @@ from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.feet.treading import step_on, stood_at
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.model.footing import ON_PLANE, Underfoot
 
 Floats = NDArray[np.float64]
@@ -38,12 +38,12 @@ def glides_ahead(gait: GaitShape, row: Floats, ahead: Floats, until: float, unde
     return _feet_ahead(Stepper(gait.legs, gait.scale, CYCLE), under, row, ahead, until, _GLIDE)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _pieces(span: float) -> int:
     return max(int(np.rint(span / _PIECE)), 1)
 
 
-@exact_kernel
+@helper
 def _lay(under: Underfoot, row: Floats) -> None:
     """Put both feet of a row on the ground where they are."""
     for side in range(2):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
 from elbowroom.body.gait.footholds import Stepper, landing, step_feet
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import helper, inner_exact_kernel
 from elbowroom.planning.model.footing import Underfoot
 from elbowroom.world.ground.ground import Sole, height_along, height_at, level_about, sole_on, under_body
 
@@ -50,7 +50,7 @@ def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> fl
     return level_about(under.ground, x, z, reach, row[HEIGHT])
 
 
-@exact_kernel
+@inner_exact_kernel
 def stood_at(under: Underfoot, row: Floats, x: float, z: float, yaw: float) -> Lie:
     """Height and slope of a foot that stands at a place seen from a root; minus infinity where there is no ground."""
     wx, wz = _in_world(row, x, z)
@@ -104,7 +104,7 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
     return height, was[1] + part * (slope - was[1])
 
 
-@exact_kernel
+@inner_exact_kernel
 def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) -> Lie:
     """Height and slope of a foot that stands, and was so high and tilted: those of its ground, or nearer to them.
 
@@ -131,7 +131,7 @@ def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> bool:
     return lies > _NONE and lies - ankle < _AIR and lies - front < _AIR
 
 
-@exact_kernel
+@inner_exact_kernel
 def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> float:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
@@ -161,7 +161,7 @@ def _set_farther(
                 farther[side] = _farther_onto(under, who, row, side, (x, z, yaw))
 
 
-@exact_kernel
+@inner_exact_kernel
 def step_on(
     under: Underfoot, who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, out: Floats
 ) -> None:
@@ -185,7 +185,7 @@ def step_on(
         out[at], out[at + 1] = height - out[HEIGHT], slope
 
 
-@exact_kernel
+@inner_exact_kernel
 def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, holds: bool) -> None:
     """The same for feet that glide: they are as high as the row tells, and no deeper than what is under them.
 

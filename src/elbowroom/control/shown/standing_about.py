@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
 from elbowroom.planning.model.levers import Levers, travel
@@ -40,7 +40,7 @@ class ShownBody(NamedTuple):
     feet: Indices  # (F,) capsules round feet, that are lifted on ground that is not plain; none on plain ground
 
 
-@exact_kernel
+@inner_exact_kernel
 def lift_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None:
     """Lift the feet among the capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more): they are held so.
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def least_gap(axes: Floats, radii: Floats, box: Floats) -> float:
     return best
 
 
-@exact_kernel
+@inner_exact_kernel
 def _slope(p: Floats, d: Floats, half: Floats, t: float) -> float:
     """Half the derivative of the squared distance from the box |x| <= half at the axis point p + t d."""
     total = 0.0

@@ -7,7 +7,7 @@ last 16 edges and vertices; what is new is counted on or stored as a delta.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.uint32]
@@ -43,14 +43,14 @@ def _free(data: Bytes, state: NDArray[np.int64], end: int) -> int:
     return int(state[1])
 
 
-@exact_kernel
+@inner_exact_kernel
 def _keep_vertex(fifo: NDArray[np.int64], state: NDArray[np.int64], index: int, wanted: bool) -> None:
     fifo[state[2]] = index
     if wanted:
         state[2] = (state[2] + 1) & 15
 
 
-@exact_kernel
+@inner_exact_kernel
 def _keep_edge(fifo: NDArray[np.int64], state: NDArray[np.int64], a: int, b: int) -> None:
     fifo[state[3], 0], fifo[state[3], 1] = a, b
     state[3] = (state[3] + 1) & 15
@@ -85,7 +85,7 @@ def _on_edge(
     out[0], out[1], out[2] = a, b, c
 
 
-@exact_kernel
+@inner_exact_kernel
 def _corner(data: Bytes, end: int, code: int, kept: int, may_be_free: bool, state: Queue) -> int:
     """A corner by its code: 0 a new index, 15 a free one, else one that was kept."""
     if code == 0:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
@@ -41,7 +41,7 @@ def _distance(a: Vector, u: Vector, b: Vector, v: Vector) -> Any:
     return math.sqrt(x * x + y * y + z * z)
 
 
-@kernel
+@inner_kernel
 def lower_to_axis(lanes: Floats32, other: Floats32, allowed: float, out: Floats32) -> None:
     """out[i] = min(out[i], distance of lane i from the one other axis (6,) - allowed); lanes (6, n)."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]

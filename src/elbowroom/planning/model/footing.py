@@ -19,7 +19,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 
@@ -192,7 +192,7 @@ def _climbed(w: float, rise: float) -> float:
     return _eased(w / _UP) if rise > 0.0 else _eased((w - _DOWN) / (1.0 - _DOWN))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _stand(
     ground: Ground, sole: Sole, root: Floats, under: float, x: float, z: float, yaw: float
 ) -> tuple[float, float]:

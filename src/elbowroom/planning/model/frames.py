@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel
+from elbowroom.jit import inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
 
-@kernel
+@inner_kernel
 def compose_into(
     positions: Floats, rotations: Floats, inner: Floats, turns: Floats, count: int, places: Floats, out: Floats
 ) -> None:

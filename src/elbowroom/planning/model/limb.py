@@ -13,7 +13,7 @@ from elbowroom.body.dof import CHILDREN, DofGroup
 from elbowroom.body.pose import posing
 from elbowroom.body.pose.kinematics import BodyModel, chest_frames, group_capsules
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.model.self_contact import allowed_distances
 
 Floats = NDArray[np.float64]
@@ -67,7 +67,7 @@ class LimbScratch(NamedTuple):
     none: Floats32  # (0, 6, 0) no capsules
 
 
-@exact_kernel
+@inner_exact_kernel
 def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     """What posing a limb in `count` configurations at once works on."""
     return LimbScratch(
@@ -78,7 +78,7 @@ def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     )
 
 
-@exact_kernel
+@inner_exact_kernel
 def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int, first: int, out: Floats32) -> None:
     """`pose` for the first `count` configurations (N, d), written to `out` (C, 6 or more, M) from `first` on.
 
@@ -87,7 +87,7 @@ def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: i
     posing.pose_chain_into(limb.chain, configurations, count, scratch.joints, first, out, scratch.places, scratch.turns)
 
 
-@exact_kernel
+@inner_exact_kernel
 def carry_frames(limb: Limb, scratch: LimbScratch, configurations: Floats, count: int) -> None:
     """The frames that the waist's limb carries, in the pelvis frame, into the scratch memory; no capsules."""
     pose_into(limb, scratch, configurations, count, _FIRST, scratch.none)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -43,7 +43,7 @@ def clear_of_trunk(segments: Floats32, trunk: Floats, allowed: Floats) -> NDArra
     return clear
 
 
-@exact_kernel
+@inner_exact_kernel
 def is_clear_of_trunk(segments: Floats32, n: int, trunk: Floats, allowed: Floats, axis: Floats) -> bool:
     """`clear_of_trunk` of capsules `n` alone; `axis` (6,) is scratch."""
     for c in range(FOREARM, segments.shape[0]):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DofGroup, columns_of
 from elbowroom.body.root import HEIGHT
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.gaze import keeping_gaze
 from elbowroom.planning.narrow.figure import TWIST, Figure
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces
@@ -44,7 +44,7 @@ def goals_where_narrow(narrow: NarrowPlaces, path: RootPath, goals: Floats) -> F
     return wanted
 
 
-@exact_kernel
+@inner_exact_kernel
 def _direction(state: Floats) -> tuple[float, float]:
     """Where a root state (7,) goes, x and z of a unit vector; where it faces if it stands."""
     sine, cosine = np.sin(state[2]), np.cos(state[2])

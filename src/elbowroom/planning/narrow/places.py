@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 from elbowroom.planning.narrow.figure import Figure
 from elbowroom.world.obstacles.free_map import CELL, FreeMap, Window
 
@@ -71,7 +71,7 @@ def beside(window: Window, figure: Figure, place: tuple[float, float], aside: tu
     return far
 
 
-@exact_kernel
+@inner_exact_kernel
 def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
     """The free distance at a place, bilinear, at the levels of a figure; the window's edge holds outside."""
     least = np.inf
@@ -80,7 +80,7 @@ def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
     return float(least)
 
 
-@exact_kernel
+@inner_exact_kernel
 def free_on(window: Window, level: int, x: float, z: float) -> float:
     """The free distance at a place on one level of the map, bilinear; the window's edge holds outside."""
     free = window.distances[level]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
 from elbowroom.world.ground.ground import EVEN_STAIR
@@ -59,7 +59,7 @@ class Costly(NamedTuple):
     prices: Prices
 
 
-@exact_kernel
+@inner_exact_kernel
 def price_at(costly: Costly, n: int) -> float:
     """What a metre costs at a place; infinite where there is no way."""
     here, prices = costly.room[n], costly.prices

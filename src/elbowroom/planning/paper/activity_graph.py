@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, clamp, limits
 from elbowroom.errors import InputError
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 VISITORS = 32  # room for the visitors of one planning call
 MAX_CAPACITY = 4096  # vertices; the neighbour table grows with its square
@@ -178,7 +178,7 @@ def _check(points: Floats, radius: float, capacity: int) -> None:
         raise InputError(f"activity graph: capacity is {capacity}, allowed are {len(points)} to {MAX_CAPACITY}")
 
 
-@exact_kernel
+@inner_exact_kernel
 def squared_distance(a: Floats, b: Floats) -> float:
     """Squared Euclidean distance of two configurations (d,), summed in order."""
     total = 0.0

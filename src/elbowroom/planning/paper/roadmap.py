@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 from elbowroom.planning.model.limb import Limb, pose
 from elbowroom.planning.paper.activity_graph import VISITORS, ActivityGraph, GraphArrays
 from elbowroom.world.obstacles.clearance import clearance_into
@@ -107,7 +107,7 @@ def touch(graph: GraphArrays, roadmap: RoadmapArrays, depth: int) -> None:
     roadmap.ready[depth] = True
 
 
-@exact_kernel
+@inner_exact_kernel
 def clearance_at(roadmap: RoadmapArrays, segments: Floats32, depth: int) -> float:
     """The clearance in metres of one posture, capsules (C, 6, 1), at a depth."""
     out = np.empty(1, np.float32)

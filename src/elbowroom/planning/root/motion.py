@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import climbing_rate
 from elbowroom.body.root import HEIGHT, RISES
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
 from elbowroom.world.ground.ground import PLAIN, Ground, eased_height
 
@@ -103,7 +103,7 @@ def _follow_ground(a: Floats, b: Floats, vx: float, vz: float, ground: Ground) -
         b[HEIGHT + 1] = speed * (ahead - behind) / (2.0 * _GRADE_OVER)
 
 
-@exact_kernel
+@inner_exact_kernel
 def limited_step(
     states: Floats, k: int, vx: float, vz: float, turn: float, interval: float, bounds: MotionBounds
 ) -> None:

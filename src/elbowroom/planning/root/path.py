@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.gait.cycle import climbing_rate
 from elbowroom.body.root import HEIGHT, RootState
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
     return out
 
 
-@exact_kernel
+@inner_exact_kernel
 def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, float]:
     """Velocities along world x and z in state `a` and in `b`, and the strides per second there."""
     ax, az = _ground_velocity(a)
@@ -71,13 +71,13 @@ def rates_at(a: Floats, b: Floats) -> tuple[float, float, float, float, float, f
     return ax, az, bx, bz, _strides(a), _strides(b)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _strides(state: Floats) -> float:
     climb = state[HEIGHT + 1] if state.shape[0] > HEIGHT else 0.0
     return float(climbing_rate(state[3], state[4], state[5], climb))
 
 
-@exact_kernel
+@inner_exact_kernel
 def interpolate_between(
     a: Floats, b: Floats, rates: tuple[float, float, float, float, float, float], u: float, interval: float, out: Floats
 ) -> None:
@@ -98,14 +98,14 @@ def interpolate_between(
             out[HEIGHT], out[HEIGHT + 1] = _hermite(a[HEIGHT], a[HEIGHT + 1], b[HEIGHT], b[HEIGHT + 1], u, interval)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _ground_velocity(state: Floats) -> tuple[float, float]:
     """Velocity along world x and z."""
     sine, cosine = np.sin(state[2]), np.cos(state[2])
     return state[3] * sine + state[4] * cosine, state[3] * cosine - state[4] * sine
 
 
-@exact_kernel
+@inner_exact_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, u: float, interval: float) -> tuple[float, float]:
     """Value and rate of change of the cubic from `a` to `b` with the given rates at its ends."""
     rest = 1.0 - u

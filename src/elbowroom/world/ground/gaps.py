@@ -8,7 +8,7 @@ where a crack goes through a square between its neighbours. Cracks narrower than
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import Ground, height_at, heights_at
 
 Floats = NDArray[np.float64]
@@ -102,7 +102,7 @@ def _is_whole(ground: Ground, cell: int, height: float) -> bool:
     return missing == 0
 
 
-@exact_kernel
+@inner_exact_kernel
 def _is_near(heights: Floats, count: int, height: float, step: float) -> bool:
     """Whether one of the first `count` heights is no more than a step from another."""
     found = False

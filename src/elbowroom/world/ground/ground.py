@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -271,7 +271,7 @@ def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z:
     return middle + mean + lifted * min(uneven / _TREADS, 1.0)
 
 
-@exact_kernel
+@inner_exact_kernel
 def top_about(ground: Ground, x: float, height: float, z: float, radius: float) -> float:
     """The highest ground as far as `radius` metres about a place, as one comes to it from there step by step."""
     top = height

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, kernel, plain
+from elbowroom.jit import exact_kernel, inner_exact_kernel, inner_kernel, plain
 from elbowroom.world.obstacles.layout import HALF, LANES, PER_METRE, ROUNDING, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
@@ -36,7 +36,7 @@ class ClearanceScratch(NamedTuple):
     apart: Floats32  # (16,)
 
 
-@exact_kernel
+@inner_exact_kernel
 def clearance_scratch(tiles: int, capsules: int, near: Nearby) -> ClearanceScratch:
     """Room for checks of so many tiles, or of single capsules, against no more than what is `near`."""
     flat = np.empty(capsules * TILE, np.float32)
@@ -52,7 +52,7 @@ def clearance_scratch(tiles: int, capsules: int, near: Nearby) -> ClearanceScrat
     )
 
 
-@exact_kernel
+@inner_exact_kernel
 def spread_balls(balls: Floats, out: Floats32) -> None:
     """Balls (B, C, 4) by components (5, W): x, y, z, and the square of radius and comfort in the units of tiles.
 
@@ -70,7 +70,7 @@ def spread_balls(balls: Floats, out: Floats32) -> None:
         out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
 
 
-@kernel
+@inner_kernel
 def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int:
     """How far (W,) balls as `spread_balls` are out of reach of the box round obstacle b; how many are within.
 
@@ -92,7 +92,7 @@ def _beyond_reach(balls: Floats32, rows: Floats32, b: int, out: Floats32) -> int
     return within
 
 
-@exact_kernel
+@inner_exact_kernel
 def lower_blocks_in(
     scratch: ClearanceScratch, tiles: Floats32, spread: Floats32, near: Nearby, count: int, out: Floats32
 ) -> int:
@@ -133,7 +133,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, near: Nearby, count: int, out: 
     return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, near, count, out))
 
 
-@exact_kernel
+@inner_exact_kernel
 def place_capsules(
     segments: Floats32, count: int, radii: Floats32, places: Floats, turns: Floats, lanes: Floats32
 ) -> None:
@@ -161,7 +161,7 @@ def place_capsules(
             lanes[c, 6, n] = radii[c]
 
 
-@kernel
+@inner_kernel
 def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     """The ball (4,), centre and radius, around a capsule (7, 16) in all lanes, about the middle of first and last."""
     ax, ay, az, bx, by, bz = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
@@ -178,7 +178,7 @@ def _ball_around(lanes: Floats32, scratch: Floats32, ball: Floats) -> None:
     ball[0], ball[1], ball[2], ball[3] = x, y, z, lanes[6, 0] + np.sqrt(farthest)
 
 
-@exact_kernel
+@inner_exact_kernel
 def capsule_clearances_in(scratch: ClearanceScratch, near: Nearby, count: int, out: Floats32) -> int:
     """`capsule_clearances` of the capsules in the scratch memory."""
     for c in range(scratch.lanes.shape[0]):
@@ -198,7 +198,7 @@ def capsule_clearances(lanes: Floats32, near: Nearby, count: int, out: Floats32)
     return int(capsule_clearances_in(scratch, near, count, out))
 
 
-@exact_kernel
+@inner_exact_kernel
 def least_of(rows: Floats32, scratch: Floats32) -> float:
     """The least number in rows (C, 16) of clearances; `scratch` (16,)."""
     for i in range(np.uint64(LANES)):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -78,13 +78,13 @@ def meeting_any_order(grids: Grids, low_x: float, low_z: float, high_x: float, h
     return found[:count]
 
 
-@exact_kernel
+@inner_exact_kernel
 def _cell(coordinate: float, cell: float) -> int:
     """The number of the cell that holds a coordinate; the outermost for what is farther."""
     return int(min(max(np.floor(coordinate / cell) + _OFFSET, 0.0), 2.0 * _OFFSET - 1.0))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _first_from(keys: Longs, key: int) -> int:
     """The first of the keys that is not less."""
     low, high = 0, keys.shape[0]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import helper, kernel, plain
+from elbowroom.jit import helper, inner_kernel, kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
@@ -80,7 +80,7 @@ def _prepared(segments: ArrayLike, radii: ArrayLike) -> tuple[Floats32, Floats32
     return np.ascontiguousarray(segments, np.float32), np.ascontiguousarray(radii, np.float32)
 
 
-@kernel
+@inner_kernel
 def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> None:
     """Copy `count` configurations of one capsule (6, N); what is left of the last tile repeats the last of them."""
     whole, width = count // LANES, np.uint64(min(count, LANES))  # a known width would be unrolled, number by number
@@ -96,7 +96,7 @@ def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> N
                 tiles[whole * TILE + k * LANES + i] = segment[k, min(start + rest + i, last)]
 
 
-@kernel
+@inner_kernel
 def _lower_all(tiles: Floats32, used: int, rows: Floats32, packed: Floats32, pairs: Longs, squares: Floats32) -> None:
     """Lower the squares of the tiles in use to those from all obstacles; `pairs` (_PAIRS, 2) is scratch."""
     count = _FIRST
@@ -113,7 +113,7 @@ def _lower_all(tiles: Floats32, used: int, rows: Floats32, packed: Floats32, pai
     lower_squares(tiles, rows, packed, pairs, count, squares)
 
 
-@kernel
+@inner_kernel
 def _infinitely_far(values: Floats32) -> None:
     for i in range(np.uint64(values.shape[0])):
         values[i] = _INFINITE
@@ -181,7 +181,7 @@ def clearance_of_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Fl
     lower_each(capsules, radii, near, out)
 
 
-@kernel
+@inner_kernel
 def lower_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """Lower `out` (C,) to the clearances of each of `capsules` (6, C) where these are less."""
     count = capsules.shape[1]

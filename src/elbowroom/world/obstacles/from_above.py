@@ -3,26 +3,26 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import inner_exact_kernel
 from elbowroom.world.obstacles.layout import HALF, ROUNDING, TURN, Nearby, Spans
 
 Floats = NDArray[np.float64]
 
 
-@exact_kernel
+@inner_exact_kernel
 def place_of(near: Nearby, b: int) -> tuple[float, float]:
     """Where the middle of an obstacle is, x and z."""
     return near.rows[b, 0], near.rows[b, 2]
 
 
-@exact_kernel
+@inner_exact_kernel
 def ball_radius(near: Nearby, b: int) -> float:
     """The radius of a ball about an obstacle's middle that holds it."""
     half = near.rows[b]
     return float(np.sqrt(half[HALF] ** 2 + half[HALF + 1] ** 2 + half[HALF + 2] ** 2) + half[ROUNDING])
 
 
-@exact_kernel
+@inner_exact_kernel
 def heights_of(near: Nearby, b: int) -> tuple[float, float]:
     """The lowest and the highest point of an obstacle, or nearly."""
     own = near.rows[b]
@@ -30,7 +30,7 @@ def heights_of(near: Nearby, b: int) -> tuple[float, float]:
     return own[1] - up - own[ROUNDING], own[1] + up + own[ROUNDING]
 
 
-@exact_kernel
+@inner_exact_kernel
 def away_of(near: Nearby, b: int, x: float, z: float) -> float:
     """Metres from a place on the ground to an upright box, seen from above; 0 inside."""
     own = near.rows[b]

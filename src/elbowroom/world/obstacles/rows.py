@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.obstacles.layout import CENTER, DATA, HALF, KIND, ROUNDING, ROW, TURN, Nearby, Spans
 from elbowroom.world.obstacles.meshes.packed import Packed, pack
 from elbowroom.world.obstacles.shapes import Shape
@@ -174,7 +174,7 @@ def move_into(near: Nearby, b: int, place: Floats, turn: Floats, out: Nearby, at
         moved[i] = own[i]
 
 
-@exact_kernel
+@inner_exact_kernel
 def shifted_into(near: Nearby, b: int, place: tuple[float, float, float], out: Nearby, at: int) -> None:
     """Obstacle b as seen from a place (x, height, z), as obstacle `at` of `out`."""
     for k in range(ROW):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.places.enclosed import enclosed, solid_triangles
 from elbowroom.world.places.place import Place
@@ -137,7 +137,7 @@ def _fill(triangles: Floats, level: Flags, width: int, depth: int, most: int, ou
     return count
 
 
-@exact_kernel
+@inner_exact_kernel
 def _range_of(points: Floats, count: int, axis: int, cells: int) -> tuple[int, int]:
     """The first and the last cell along an axis that `count` points reach into."""
     least, most = points[0, axis], points[0, axis]

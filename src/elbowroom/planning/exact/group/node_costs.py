@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.group.carriers import Carriers
 from elbowroom.planning.exact.group.problem import GroupTask, Weights
 from elbowroom.planning.exact.lattice.extra_nodes import ExtraNodes
@@ -92,7 +92,7 @@ def _clearances(
     return clear, checks
 
 
-@exact_kernel
+@inner_exact_kernel
 def _lower(row: Floats32, other: Floats32) -> None:
     """Lower the beginning of a row to another."""
     for i in range(np.uint64(other.shape[0])):

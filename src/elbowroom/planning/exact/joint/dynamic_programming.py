@@ -7,7 +7,7 @@ the right arm's, or the postures of both arms.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel, plain
+from elbowroom.jit import helper, inner_kernel, kernel, plain
 from elbowroom.planning.exact.joint.bounds import Problem
 
 Floats32 = NDArray[np.float32]
@@ -17,7 +17,7 @@ Indices = NDArray[np.int64]
 _START = plain(0)  # the first slice
 
 
-@kernel
+@inner_kernel
 def _compact(edges: Floats32, sources: Indices, targets: Indices) -> Floats32:
     """The edges (N, M) from chosen nodes (N,) to chosen ones (M,), of all edges (V, V)."""
     out = np.empty((sources.shape[0], targets.shape[0]), np.float32)
@@ -28,7 +28,7 @@ def _compact(edges: Floats32, sources: Indices, targets: Indices) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _lower(out: Floats32, values: Floats32, cost: float) -> None:
     """out[i] = min(out[i], values[i] + cost)."""
     for i in range(np.uint64(out.shape[0])):
@@ -74,7 +74,7 @@ def _over_waist(known: Floats32, edges: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@inner_kernel
 def _add_costs(problem: Problem, depth: int, waist: Indices, left: Indices, right: Indices, costs: Floats32) -> bool:
     """Add the node costs of a slice's triples to `costs` (W, L, R); whether any is finite."""
     found = False
@@ -128,7 +128,7 @@ def _least(costs: Floats32) -> Indices:
     return out
 
 
-@kernel
+@inner_kernel
 def _numbers(chosen: Bools) -> Indices:
     """The numbers of those that are chosen (V,)."""
     out, count = np.empty(chosen.shape[0], np.int64), 0

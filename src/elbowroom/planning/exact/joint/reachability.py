@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.joint.bounds import Problem
 
 Bits = NDArray[np.uint64]
@@ -67,7 +67,7 @@ def _free(problem: Problem, depth: int) -> Bits:
     return out
 
 
-@exact_kernel
+@inner_exact_kernel
 def _intersect(known: Bits, free: Bits) -> bool:
     """Leave in `known` the triples that are free; whether there are any."""
     any_left = np.uint64(0)
@@ -129,7 +129,7 @@ def _along_others(known: Bits, waist_edges: Bools, left_edges: Bools) -> Bits:
     return out
 
 
-@exact_kernel
+@inner_exact_kernel
 def _unpacked(bits: Bits, size: int) -> Bools:
     """The words (W, L, words) as flags (W, L, R), R being `size`."""
     out = np.empty((bits.shape[0], bits.shape[1], size), np.bool_)
@@ -140,7 +140,7 @@ def _unpacked(bits: Bits, size: int) -> Bools:
     return out
 
 
-@exact_kernel
+@inner_exact_kernel
 def _after(problem: Problem, depth: int, known: Bits) -> Bits:
     """The triples of the next slice to which edges lead from `known`, free or not."""
     reached = _along_right(known, _packed(_open(problem.right_edges[depth])))

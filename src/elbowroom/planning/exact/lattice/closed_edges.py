@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -21,7 +21,7 @@ class ClosedEdges(NamedTuple):
     slack: Floats  # (M,) squared radians: how much dearer paths were checked
 
 
-@exact_kernel
+@inner_exact_kernel
 def new_closed_edges(intervals: int, nodes: int) -> ClosedEdges:
     """All edges open, in so many intervals between rows of `nodes` nodes."""
     tables = np.empty(intervals, np.int64)
@@ -30,7 +30,7 @@ def new_closed_edges(intervals: int, nodes: int) -> ClosedEdges:
     return ClosedEdges(tables, np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros(1))
 
 
-@exact_kernel
+@inner_exact_kernel
 def with_tables(edges: ClosedEdges, touches: Bools) -> ClosedEdges:
     """The same, and a table with all edges open for each interval that `touches` (n,) and has none yet."""
     used = 0
@@ -49,7 +49,7 @@ def with_tables(edges: ClosedEdges, touches: Bools) -> ClosedEdges:
     return more
 
 
-@exact_kernel
+@inner_exact_kernel
 def reopen_first(edges: ClosedEdges) -> None:
     """Open all edges of the first interval."""
     at = edges.tables[0]

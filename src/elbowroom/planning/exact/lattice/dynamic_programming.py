@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.lattice import (
     EXTRA,
     HOLD,
@@ -33,7 +33,7 @@ _FIRST = plain(0)  # lane, depth
 _NARROW = 0.25  # squared radians: how much dearer than the least node costs a path may be in a narrow search
 
 
-@exact_kernel
+@inner_exact_kernel
 def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int) -> None:
     """out[b] = min(out[b], base + weight row[b]), with its origin; lanes are targets."""
     start, factor, origin = np.float32(base), np.float32(weight), np.int32(source)
@@ -44,7 +44,7 @@ def _relax(out: Floats32, origins: Ints, base: float, row: Floats32, weight: flo
         origins[b] = origin if better else origins[b]
 
 
-@exact_kernel
+@inner_exact_kernel
 def _relax_open(
     out: Floats32, origins: Ints, base: float, row: Floats32, weight: float, source: int, closed: Bools
 ) -> None:
@@ -118,7 +118,7 @@ def _settle_extra(lattice: Lattice, work: Work, depth: int, f: int, base: Floats
     return best, origin
 
 
-@exact_kernel
+@inner_exact_kernel
 def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple[int, int]:
     """Settle the lattice from depth `begin` on, without nodes through which no path costs at most `most`.
 
@@ -165,7 +165,7 @@ def cheapest_path(lattice: Lattice, work: Work, begin: int, narrow: bool) -> tup
     return reached, nodes + count
 
 
-@exact_kernel
+@inner_exact_kernel
 def widen(lattice: Lattice, work: Work) -> int:
     """Settle also what a narrow search left out, if it was one; the number of nodes that have a path."""
     if work.most[0] == work.most[1]:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -75,14 +75,14 @@ def new_work(depths: int, nodes: int) -> Work:
     )
 
 
-@exact_kernel
+@inner_exact_kernel
 def component_of(lattice: Lattice, depth: int, node: int, i: int) -> float:
     """One component of the configuration of a node."""
     width = lattice.moves.shape[1]
     return float(lattice.postures[node, i] if node < width else lattice.extras[depth, node - width, i])
 
 
-@exact_kernel
+@inner_exact_kernel
 def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
     """The squared distances (W,) of the postures from one (d,)."""
     out[:] = 0.0
@@ -92,7 +92,7 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
             out[v] += (column[v] - place) * (column[v] - place)
 
 
-@exact_kernel
+@inner_exact_kernel
 def measure_extras(lattice: Lattice, work: Work) -> None:
     """The squared distances of the extra nodes from the postures; infinite where an edge would be too long."""
     size, width = lattice.postures.shape[0], lattice.moves.shape[1]
@@ -108,7 +108,7 @@ def measure_extras(lattice: Lattice, work: Work) -> None:
             row[size:] = _INFINITE
 
 
-@exact_kernel
+@inner_exact_kernel
 def extra_edge_square(lattice: Lattice, depth: int, e: int, f: int) -> float:
     """The squared length of the edge from extra node `e` at `depth` to `f` at the next; infinite if it is too long."""
     total = 0.0
@@ -117,7 +117,7 @@ def extra_edge_square(lattice: Lattice, depth: int, e: int, f: int) -> float:
     return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_kernel
+@inner_exact_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     """2 w q.g into `out` (W+EXTRA,) for the nodes q of `row`; returns w |g|^2, g the goal's change after `depth`."""
     width, weight = lattice.moves.shape[1], lattice.weight
@@ -134,7 +134,7 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     return square
 
 
-@exact_kernel
+@inner_exact_kernel
 def edge_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What the edge from a node at `depth` to one of the next costs; infinite if there is none."""
     size = lattice.postures.shape[0]
@@ -150,7 +150,7 @@ def edge_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     return lattice.weight * changed if listed and moved <= lattice.step * lattice.step * _ROUNDING else np.inf
 
 
-@exact_kernel
+@inner_exact_kernel
 def least_in(row: Floats32) -> Any:
     """The least of many numbers."""
     least = row[0]
@@ -159,7 +159,7 @@ def least_in(row: Floats32) -> Any:
     return least
 
 
-@exact_kernel
+@inner_exact_kernel
 def place_of_least(row: Floats32) -> int:
     """Where the least of many numbers is; the first of them."""
     place = 0

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, Lattice, Work, component_of, edge_cost, place_of_least
 
 Floats = NDArray[np.float64]
@@ -12,7 +12,7 @@ Longs = NDArray[np.int64]
 _INFINITE = np.float32(np.inf)
 
 
-@exact_kernel
+@inner_exact_kernel
 def cost_through_extras(lattice: Lattice) -> float:
     """The cost of the cheapest path through extra nodes alone: the cheapest of all costs no more."""
     width, last = lattice.moves.shape[1], lattice.goals.shape[0] - 1
@@ -35,7 +35,7 @@ def cost_through_extras(lattice: Lattice) -> float:
     return least
 
 
-@exact_kernel
+@inner_exact_kernel
 def cost_of_previous(lattice: Lattice) -> float:
     """The cost of the last plan's path, infinite where it is not free."""
     total, before = 0.0, lattice.moves.shape[1] + HOLD
@@ -59,7 +59,7 @@ def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     return nodes
 
 
-@exact_kernel
+@inner_exact_kernel
 def keys_into(lattice: Lattice, nodes: Longs, keys: Floats) -> None:
     """The postures of a path's nodes (m+1,) into the first rows of `keys` (n+1, d)."""
     for t in range(nodes.shape[0]):

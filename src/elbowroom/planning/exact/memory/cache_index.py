@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -55,7 +55,7 @@ def find(entries: CacheIndex, key: Floats) -> int:
     return -1
 
 
-@exact_kernel
+@inner_exact_kernel
 def admit(entries: CacheIndex, key: Floats) -> int:
     """A slot for a new result under `key`: one that this round has not asked for, of which there must be one."""
     count = entries.ids.shape[0]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -16,7 +16,7 @@ _LEVEL = 1e-3  # metres, or radians: ground under a foot that is as good as leve
 CONTENT = _STRIDE + ROOT_STATE - RISES  # numbers of a row beside those of the upper body
 
 
-@exact_kernel
+@inner_exact_kernel
 def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
     """The bits of root states (n+1, 7 or more) without place, heading, height and climb, and beside them of `uppers`.
 
@@ -30,7 +30,7 @@ def set_contents(states: Floats, uppers: Floats, out: Longs) -> None:
         set_bits(uppers[t], out[t, CONTENT:])
 
 
-@exact_kernel
+@inner_exact_kernel
 def set_bits(values: Floats, out: Longs) -> None:
     """The bits of values (K,), to `out` (K or more,)."""
     bits = values.view(np.int64)
@@ -38,7 +38,7 @@ def set_bits(values: Floats, out: Longs) -> None:
         out[j] = bits[j]
 
 
-@exact_kernel
+@inner_exact_kernel
 def is_natural(upper: Floats, walk: Floats, state: Floats) -> bool:
     """Whether groups side by side (K,) do as in the natural walk, the first of `walk` (K or more,), on level ground.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Longs = NDArray[np.int64]
 
@@ -36,13 +36,13 @@ def forget(known: RowIndex) -> None:
         known.places[entry] = _EMPTY
 
 
-@exact_kernel
+@inner_exact_kernel
 def place_of(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), or -1 if it is not known."""
     return int(known.places[_entry_of(known, row)])
 
 
-@exact_kernel
+@inner_exact_kernel
 def admit(known: RowIndex, row: Longs) -> int:
     """The place of a row (K,), a new one if it was not known; where all are taken, all others are forgotten."""
     entry = _entry_of(known, row)
@@ -58,7 +58,7 @@ def admit(known: RowIndex, row: Longs) -> int:
     return int(known.places[entry])
 
 
-@exact_kernel
+@inner_exact_kernel
 def _entry_of(known: RowIndex, row: Longs) -> int:
     """Where among `places` that of a row is, or would be."""
     mixed = _SEED

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
 from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_EDGE, Postures
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
@@ -34,7 +34,7 @@ def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
         out[width + e] = squared_distance(lattice.extras[depth, e], posture)
 
 
-@exact_kernel
+@inner_exact_kernel
 def close_near(lattice: Lattice, work: Work, depth: int, source: int, target: int, radius: float) -> None:
     """Close a step, and those whose ends together are within `radius` of its; not the last plan's other steps."""
     nodes, most = lattice.cost.shape[1], np.float32(radius * radius)

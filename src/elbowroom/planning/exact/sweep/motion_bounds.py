@@ -15,7 +15,7 @@ from elbowroom.body.gait.cycle import quickness, walk_into
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, begin_round, find, new_cache_index
 from elbowroom.planning.model.levers import MOVES, ROTATION, lifts_of
 from elbowroom.planning.model.limb import Limb
@@ -103,7 +103,7 @@ def _stretch(offsets: Floats, joints: NDArray[np.int64]) -> float:
     return sum(float(np.linalg.norm(offsets[joint])) for joint in joints)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _jerk(a: float, slope_a: float, b: float, slope_b: float, interval: float) -> float:
     """The third derivative of the cubic with these values and slopes at its ends."""
     return (12.0 * (a - b) + 6.0 * interval * (slope_a + slope_b)) / interval**3

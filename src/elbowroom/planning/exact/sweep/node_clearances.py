@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
@@ -80,7 +80,7 @@ def interval_clearances(
     return int(at), checks + count
 
 
-@exact_kernel
+@inner_exact_kernel
 def _set_frame(places: Floats, turns: Floats, sample: int, own_places: Floats, own_turns: Floats, n: int) -> None:
     """Have the frame at a look of `places` (N, 3), `turns` (N, 4) as number `n` among one's own."""
     for i in range(3):
@@ -155,7 +155,7 @@ def _moments(
     return checks
 
 
-@exact_kernel
+@inner_exact_kernel
 def _lower(row: Floats32, blocks: Floats32) -> None:
     """Lower the beginning of a row to what is in blocks (B, 16)."""
     for b in range(blocks.shape[0]):
@@ -164,7 +164,7 @@ def _lower(row: Floats32, blocks: Floats32) -> None:
             lanes[i] = min(lanes[i], block[i])
 
 
-@exact_kernel
+@inner_exact_kernel
 def held_clearance_in(
     scratch: Scratch,
     postures: Postures,

@@ -15,7 +15,7 @@ from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup,
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
 from elbowroom.planning.exact.sweep.motion_bounds import moves_between, stride_moves
@@ -230,7 +230,7 @@ def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
                 lengths[b, p] += raised
 
 
-@exact_kernel
+@inner_exact_kernel
 def _roots_at(parts: OwnParts, underfoot: Underfoot, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
     """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), on what the feet stand on, at the origin."""
     roots = np.zeros((shares.shape[0], ROOT_STATE))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
 from elbowroom.world.obstacles.blocks import (
@@ -82,7 +82,7 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
     )
 
 
-@exact_kernel
+@inner_exact_kernel
 def held_against(
     scratch: Scratch,
     radii: Floats32,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.root.evasion.turned_body import Discs, Turned, TurnedBody
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.world.obstacles.clearance import lower_clearance
@@ -138,7 +138,7 @@ def _check_narrow(room: _Cells, cells: Indices, near: Nearby, passing: Spans, mo
     return count
 
 
-@exact_kernel
+@inner_exact_kernel
 def _copy_near(own: Nearby, room: _Cells, i: int, j: int, out: Nearby) -> int:
     """Copy the obstacles that may come near a body in row i and column j to `out`, as seen from there; their number."""
     reach, count = room.reach + room.grid.comfort + 2.0 * room.grid.aside, 0
@@ -157,7 +157,7 @@ def _copy_near(own: Nearby, room: _Cells, i: int, j: int, out: Nearby) -> int:
     return count
 
 
-@exact_kernel
+@inner_exact_kernel
 def _in_doubt(room: _Cells, i: int, j: int, t: int) -> bool:
     """Whether a cell is narrow, by the map alone."""
     return not room.known[i, j, t] and min(room.clear[0, i, j, t], room.clear[1, i, j, t]) < _NARROW
@@ -176,7 +176,7 @@ def _best_of(own: Floats32, comfort: float, fine: float) -> float:
     return float(best + min(max(0.5 * (own[best + 1] - own[best - 1]) / fine, -0.5), 0.5))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _measure(room: _Cells, cell: tuple[int, int, int], beside: float, standing: Nearby, moving: Nearby) -> None:
     """The clearance of the capsules in a cell at its best place, and where that is; all is seen from `beside` it.
 

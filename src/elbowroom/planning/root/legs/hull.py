@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import HEIGHT, ROOT_STATE
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, level_about
 from elbowroom.world.ground.ground import Ground as Underfoot
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
@@ -237,7 +237,7 @@ def route_is_open(route: Floats, near: float, half: float, ground: Ground) -> bo
     return True
 
 
-@exact_kernel
+@inner_exact_kernel
 def ground_near(ground: Ground, grids: Grids, x: float, z: float, reach: float) -> Ground:
     """What of it may come within `reach` metres of a place; `grids` as `grids_of` its bounds."""
     near = meeting_any_order(grids, x - reach, z - reach, x + reach, z + reach)

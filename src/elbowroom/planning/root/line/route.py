@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.world.walkable import WalkableMap, interpolate_grid
 
@@ -114,7 +114,7 @@ def _search(grid: Floats32, search: Search) -> Floats:
     return _pulled_tight(grid, search, _trace(parents, goal, grid.shape[1], search))
 
 
-@exact_kernel
+@inner_exact_kernel
 def _needed(search: Search, here: float, a: float, b: float) -> float:
     """Clearance that is asked for at (a, b); `here` is the start's own."""
     if here >= search.margin:

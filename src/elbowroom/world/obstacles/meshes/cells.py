@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -33,7 +33,7 @@ def filled_cells(corners: Floats, x: Floats, y: Floats, z: Floats) -> Bools:
     return inside
 
 
-@exact_kernel
+@inner_exact_kernel
 def _first_cell(planes: Floats, value: float) -> int:
     """The cell in which a coordinate is; the first or the last where it is in none."""
     found = np.searchsorted(planes, value, "right") - 1
@@ -66,7 +66,7 @@ def _touch(corner: Floats, x: Floats, y: Floats, z: Floats, touched: Bools) -> N
                         touched[i, j, k] = True
 
 
-@exact_kernel
+@inner_exact_kernel
 def _side(px: float, py: float, qx: float, qy: float, x: float, y: float) -> bool:
     """On which side of a line from p to q a point is: the opposite one for the line from q to p, also on the line."""
     if px < qx or (px == qx and py < qy):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel
 from elbowroom.world.obstacles.layout import LANES
 from elbowroom.world.obstacles.meshes.clusters import clusters_of
 
@@ -107,7 +107,7 @@ def _from_side(begin: Any, step: Any, dd: Any, side: Any) -> Any:
     return x * x + y * y + z * z
 
 
-@kernel
+@inner_kernel
 def leaf_square(leaves: Floats32, leaf: int, axis: Floats32, squares: Floats32) -> Any:
     """The least squared distance of an axis (6,), begin and step, from the triangles of a leaf; `squares` (16,)."""
     at = np.uint64(leaf) * _LEAF
@@ -150,7 +150,7 @@ def leaf_square(leaves: Floats32, leaf: int, axis: Floats32, squares: Floats32) 
     return found
 
 
-@kernel
+@inner_kernel
 def _boxes_within(boxes: Floats32, node: int, axis: Floats32, reach: Any, gaps: Floats32) -> None:
     """Which boxes of a node an axis may come within reach of: negative `gaps` (16,)."""
     at = np.uint64(node) * _NODE
@@ -168,7 +168,7 @@ def _boxes_within(boxes: Floats32, node: int, axis: Floats32, reach: Any, gaps: 
         gaps[i] = max(min(a, b), first) - min(max(a, b), last)
 
 
-@kernel
+@inner_kernel
 def within_reach(tree: MeshTree, axis: Floats32, reach: Any, waiting: Ints, lanes: Floats32) -> bool:
     """Whether an axis (6,), begin and step, comes within reach of a triangle; `waiting` (256,), `lanes` (16,)."""
     count, waiting[0] = 1, 0
@@ -187,7 +187,7 @@ def within_reach(tree: MeshTree, axis: Floats32, reach: Any, waiting: Ints, lane
     return False
 
 
-@kernel
+@inner_kernel
 def least_square(tree: MeshTree, axis: Floats32, most: Any, waiting: Ints, lanes: Floats32) -> Any:
     """The least squared distance of an axis (6,) from a triangle, `most` squared if none is nearer than `most`."""
     count, waiting[0], found = 1, 0, most * most

@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 
 _LANES, _TILE = np.uint64(LANES), np.uint64(TILE)
@@ -125,7 +125,7 @@ def lower_from_boxes(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, 
             squares[least + i] = min(squares[least + i], _square(tiles, tile + i, box))
 
 
-@kernel
+@inner_kernel
 def lower_from_rounded(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
     """The same from boxes with rounded edges: spheres and capsules."""
     for p in range(count):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel
 from elbowroom.world.obstacles.layout import LANES, ROW, TILE
 from elbowroom.world.obstacles.pairs.own_axes import STATE, may_be_nearer
 
@@ -35,7 +35,7 @@ def _slope(t: Any, n: Vector, d: Vector, radius: Any, half: Any) -> Any:
     return (x * d[0] + z * d[2]) * max(across - radius, _ZERO) + d[1] * (y - max(min(y, half), -half)) * across
 
 
-@kernel
+@inner_kernel
 def lower_from_cylinders(tiles: Floats32, rows: Floats32, pairs: Longs, count: int, squares: Floats32) -> None:
     """Lower the squared distances of tiles to those from cylinders; arguments as in `lower_from_boxes`."""
     state = np.empty(STATE, np.float32)

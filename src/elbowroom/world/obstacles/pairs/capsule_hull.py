@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel
 from elbowroom.world.obstacles.layout import EDGE, LANES, LINE, ROW, TILE
 from elbowroom.world.obstacles.pairs.axis_edge import hold_against_edge
 from elbowroom.world.obstacles.pairs.own_axes import STATE, may_be_nearer
@@ -65,7 +65,7 @@ def _hold_against_triangle(packed: Floats32, at: Any, state: Floats32) -> None:
         state[i + np.uint64(8) * _LANES] = min(state[i + np.uint64(8) * _LANES], one, other)
 
 
-@kernel
+@inner_kernel
 def lower_from_hulls(
     tiles: Floats32, rows: Floats32, packed: Floats32, pairs: Longs, count: int, squares: Floats32
 ) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import helper, inner_kernel
 from elbowroom.world.obstacles.layout import EDGE, LANES, LINE, ROW, TILE
 from elbowroom.world.obstacles.pairs.axis_edge import hold_against_edge
 from elbowroom.world.obstacles.pairs.own_axes import STATE, may_be_nearer
@@ -85,7 +85,7 @@ def _may_be_nearer(packed: Floats32, head: Any, state: Floats32, gaps: Floats32)
     return nearer > 0
 
 
-@kernel
+@inner_kernel
 def lower_from_meshes(
     tiles: Floats32, rows: Floats32, packed: Floats32, pairs: Longs, count: int, squares: Floats32
 ) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import kernel
+from elbowroom.jit import inner_kernel
 from elbowroom.world.obstacles.layout import LANES
 
 STATE = 9 * LANES  # what is known of sixteen axes: begin (3), step (3), two places along them, a squared distance
@@ -17,7 +17,7 @@ _ONE: Any = np.float32(1.0)
 Floats32 = NDArray[np.float32]
 
 
-@kernel
+@inner_kernel
 def may_be_nearer(
     tiles: Floats32, tile: Any, rows: Floats32, row: Any, squares: Floats32, least: Any, state: Floats32
 ) -> bool:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.obstacles.layout import ROW, Kind
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ class Tracks(NamedTuple):
     repeats: Longs  # (B,)
 
 
-@exact_kernel
+@inner_exact_kernel
 def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats) -> None:
     """The pose (4,) of one track, key poses (K, 4) at times (K,), at a time."""
     span, at = times[-1], time
@@ -50,7 +50,7 @@ def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats
         out[i] = poses[k, i] + share * (poses[last, i] - poses[k, i])
 
 
-@exact_kernel
+@inner_exact_kernel
 def _turning_points(times: Floats, repeat: int, first: float, last: float, out: Floats) -> int:
     """How often a track is at a key pose between two times; into `out` (N,) when, in order."""
     span, count = times[-1], 0
