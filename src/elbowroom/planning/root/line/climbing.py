@@ -19,6 +19,10 @@ Floats = NDArray[np.float64]
 
 _EVERY, _ABOUT = 0.12, 3  # metres between places that are looked at; of these before and behind each
 _CLIMB = 0.4  # m/s up or down: some 0.6 m/s over treads of 17 by 28 cm
+_EVEN = (
+    0.72  # metres up or down in a metre, of treads that are counted whole: on an even stair; steeper ones are slower
+)
+_FLAT = 1e-3  # what is no steeper is level
 _FELT = SLOWED_FROM + (_ABOUT + 1) * _EVERY  # metres beyond a stretch that count
 
 
@@ -61,6 +65,7 @@ def steep_places(ground: Ground, places: Floats, start: tuple[float, float, floa
     last = np.minimum(np.arange(len(places)) + _ABOUT, len(places) - 1)
     rise = np.abs(heights[last] - heights[first])
     steep = rise / np.maximum(np.round(along[last] - along[first], 6), 2 * _ABOUT * _EVERY)
-    slow = (rise > ground.step) & (speed * steep > _CLIMB)
-    found: Floats = np.column_stack([places[slow], _CLIMB / (speed * steep[slow])])
+    share = _CLIMB * np.minimum(_EVEN / np.maximum(steep, _FLAT), 1.0) / (speed * np.maximum(steep, _FLAT))
+    slow = (rise > ground.step) & (share < 1.0)
+    found: Floats = np.column_stack([places[slow], share[slow]])
     return found
