@@ -48,10 +48,11 @@ $(VENV)/developer: $(VENV)/library
 	@$(PIP_INSTALL) --quiet --group dev
 	@touch $@
 
-# What keeps processors busy, or waits for a registry, goes side by side; tests that use all of both come after it.
+# What keeps processors busy, or waits for a registry, goes side by side; then the tests, those in a browser beside the
+# others: each waits half of the time.
 test: $(VENV)/library
 	@$(MAKE) --no-print-directory --jobs 3 --output-sync=target $(VENV)/installed types lint web-test browser-tools
-	@$(MAKE) --no-print-directory --jobs 1 unit browser
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target unit browser
 	@echo "==> All tests passed"
 
 lint: $(VENV)/developer
