@@ -29,7 +29,7 @@ Bools = NDArray[np.bool_]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
-_OVER = 0.03  # metres above an edge that a swinging foot keeps
+_OVER = 0.04  # metres above an edge that a swinging foot keeps
 _BESIDE = 0.04  # metres before and behind an edge that a foot keeps: where it rolls its toes come 3 cm farther
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS = 25  # places of a swing that are looked at
@@ -260,9 +260,9 @@ def _lifted(overs: Floats, rise: float, top: float, w: float) -> float:
     up, down = _UP, _UP
     for k in range(1, _LOOKS):
         if overs[k] > _LEVEL:
-            up = min(up, (k - 0.5) / _LOOKS / _uneased((overs[k] + 0.5 * _OVER) / top))
+            up = min(up, (k - 0.5) / _LOOKS / _uneased((overs[k] + 0.9 * _OVER) / top))
         if overs[k] > rise + _LEVEL:
-            down = min(down, (_LOOKS - k - 0.5) / _LOOKS / _uneased((overs[k] + 0.5 * _OVER - rise) / (top - rise)))
+            down = min(down, (_LOOKS - k - 0.5) / _LOOKS / _uneased((overs[k] + 0.9 * _OVER - rise) / (top - rise)))
     risen, sunk = _eased(w / max(up, _QUICKEST)), _eased((1.0 - w) / max(down, _QUICKEST))
     return min(top * risen, rise + (top - rise) * sunk)
 
