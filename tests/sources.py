@@ -4,6 +4,10 @@ import ast
 from functools import cache
 from pathlib import Path
 
+ENTERED = {"kernel", "exact_kernel"}  # kinds of compiled functions that Python may call, as `elbowroom.jit` has them
+INNER = {"inner_kernel", "inner_exact_kernel"}  # those that only kernels call
+COMPILED = ENTERED | INNER | {"helper"}
+
 
 @cache
 def tree_of(path: Path) -> ast.Module:

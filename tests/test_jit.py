@@ -16,11 +16,9 @@ import pytest
 
 import elbowroom
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, inner_kernel, kernel, kernels_made, plain
-from sources import nodes_of, tree_of
+from sources import COMPILED, ENTERED, INNER, nodes_of, tree_of
 
 PACKAGE = Path(elbowroom.__file__).parent
-ENTERED, INNER = {"kernel", "exact_kernel"}, {"inner_kernel", "inner_exact_kernel"}
-KINDS = ENTERED | INNER | {"helper"}
 
 
 @helper
@@ -103,7 +101,7 @@ def _named_outside_of_kernels(path: Path) -> Iterator[tuple[str, str]]:
 
 def _kinds_of(node: ast.AST) -> set[str]:
     marks = node.decorator_list if isinstance(node, ast.FunctionDef) else []
-    return KINDS & {mark.id for mark in marks if isinstance(mark, ast.Name)}
+    return COMPILED & {mark.id for mark in marks if isinstance(mark, ast.Name)}
 
 
 def test_what_only_kernels_call_has_no_entrance_from_python() -> None:
@@ -128,7 +126,7 @@ def test_every_kernel_is_one_of_these_kinds() -> None:
         assert not re.search(r"@numba|import njit", text), f"{path} compiles by itself"
         for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and node.module == "elbowroom.jit":
-                assert {alias.name for alias in node.names} <= KINDS | {"plain", "kernels_made"}, path
+                assert {alias.name for alias in node.names} <= COMPILED | {"plain", "kernels_made"}, path
 
 
 def test_no_private_part_of_numba_is_used() -> None:
@@ -180,7 +178,7 @@ def _calls(tree: ast.Module) -> Iterator[tuple[ast.Call, bool]]:
     """All calls in the functions of a file, and whether it is compiled code that calls."""
     for function in ast.walk(tree):
         if isinstance(function, ast.FunctionDef):
-            compiled = any(isinstance(mark, ast.Name) and mark.id in KINDS for mark in function.decorator_list)
+            compiled = any(isinstance(mark, ast.Name) and mark.id in COMPILED for mark in function.decorator_list)
             yield from ((node, compiled) for node in ast.walk(function) if isinstance(node, ast.Call))
 
 
@@ -226,7 +224,7 @@ def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     kinds = {one.name: {mark.id for mark in one.decorator_list if isinstance(mark, ast.Name)} for one in functions}
     named = [(node.id, one.name) for one in functions for node in ast.walk(one) if isinstance(node, ast.Name)]
-    for name in sorted(name for name in kinds if name.startswith("_") and kinds[name] & (KINDS - {"helper"})):
+    for name in sorted(name for name in kinds if name.startswith("_") and kinds[name] & (COMPILED - {"helper"})):
         callers = [caller for called, caller in named if called == name]
         if len(callers) == 1 and _exact(kinds[callers[0]]) == _exact(kinds[name]):
             yield name

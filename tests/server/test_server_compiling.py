@@ -17,6 +17,7 @@ from elbowroom.cli.bench.compile import compiled_in
 from elbowroom.jit import kernels_made
 from elbowroom.server.kernels import compiling, kernel_cache
 from elbowroom.server.kernels.compiling import PARTS, command_for, compile_apart, compile_parts
+from sources import COMPILED
 
 PACKAGE = Path(elbowroom.__file__).parent
 
@@ -173,7 +174,7 @@ def entered(path: Path) -> tuple[set[str], set[str]]:
             calls = [node.func for node in ast.walk(function) if isinstance(node, ast.Call)]
             called = [getattr(module, call.id, None) for call in calls if isinstance(call, ast.Name)]
             names = {made[id(one)] for one in called if id(one) in made}
-            (compiled if marks & {"kernel", "exact_kernel", "helper"} else plain).update(names)
+            (compiled if marks & COMPILED else plain).update(names)
     return plain, compiled
 
 

@@ -102,7 +102,6 @@ def quickness(scale: float) -> float:
     return _quickness(scale)
 
 
-@kernel
 def phase_rate(forward: float, lateral: float, turn: float) -> float:
     """Strides per second of an average adult for root velocities in m/s and rad/s; 0 at standstill; see `quickness`.
 
@@ -112,7 +111,7 @@ def phase_rate(forward: float, lateral: float, turn: float) -> float:
     return climbing_rate(forward, lateral, turn, 0.0)
 
 
-@inner_kernel
+@kernel
 def climbing_rate(forward: float, lateral: float, turn: float, climb: float) -> float:
     """`phase_rate` of who also goes up or down at `climb` m/s: on stairs steps are short and quick, a tread each."""
     if abs(forward) + abs(lateral) + abs(turn) < _STILL:
