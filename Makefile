@@ -52,7 +52,7 @@ $(VENV)/developer: $(VENV)/library
 # others: each waits half of the time.
 test: $(VENV)/library
 	@$(MAKE) --no-print-directory --jobs 3 --output-sync=target $(VENV)/installed types lint web-test browser-tools
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target unit browser
+	@$(MAKE) --no-print-directory --jobs 2 unit browser
 	@echo "==> All tests passed"
 
 lint: $(VENV)/developer

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.control.feet.treading import HASTY, TURNS
 
 Floats = NDArray[np.float64]
 
-_RATES = (2.25, 4.0)  # m/s up and down: as feet go on stairs, and hastily
-_TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
+_RATES = (2.25, HASTY)  # m/s up and down: as feet go on stairs, and hastily
 _SAME = 1e-9  # metres and radians
 
 
@@ -39,7 +39,7 @@ def raised(before: Floats, stood: Floats, dt: float) -> Iterator[Floats]:
 def _followed(before: Floats, stood: Floats, most: float) -> Floats:
     """A root state that stands, no foot more than `most` metres higher or lower than `before`."""
     out, higher = stood.copy(), stood[HEIGHT] - before[HEIGHT]
-    for at, limit, carried in ((RISES, most, higher), (RISES + 1, _TURNS * most, 0.0)):
+    for at, limit, carried in ((RISES, most, higher), (RISES + 1, TURNS * most, 0.0)):
         change = stood[at : at + 4 : 2] - before[at : at + 4 : 2] + carried
         out[at : at + 4 : 2] += np.clip(change, -limit, limit) - change
     return out

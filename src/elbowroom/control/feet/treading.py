@@ -26,11 +26,11 @@ _NONE = -math.inf
 _OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, that a swinging foot keeps
 _LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no other slope
 _LOOKS = 8  # places of the rest of a swing that are looked at
-_RISING, _UP, _HASTY = 2.0, 3.0, 4.0  # m/s that a foot is foreseen to rise by, does, and does at most
+HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radians that its sole may turn for a metre
+_RISING, _UP = 2.0, 3.0  # m/s that a foot is foreseen to rise by, and does
 _EASE = 2.0  # how much faster than evenly it comes down: the power of the time that is left
 _AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
 _BALL = 6  # column of `GaitShape.legs`
-_TURNS = 4.0  # radians that a sole may turn for each metre that it may rise
 
 
 @helper
@@ -100,7 +100,7 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
     wanted = level if level > _NONE else _needed(under, row, foot, place, left, lands)
     part = min(_EASE * dt / (left + dt), 1.0)
     change = wanted - was[0]
-    height = was[0] + (min(change, _UP * dt) if change > 0.0 else max(part * change, -_HASTY * dt))
+    height = was[0] + (min(change, _UP * dt) if change > 0.0 else max(part * change, -HASTY * dt))
     return height, was[1] + part * (slope - was[1])
 
 
@@ -116,7 +116,7 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
         height, slope = stood_at(under, row, foot[X], foot[Z], foot[YAW])
     if height == _NONE or (abs(height - was[0]) < _LEVEL and abs(slope - was[1]) < _TILTED):
         return was
-    turn = _TURNS * most
+    turn = TURNS * most
     return was[0] + min(max(height - was[0], -most), most), was[1] + min(max(slope - was[1], -turn), turn)
 
 
@@ -181,7 +181,7 @@ def step_on(
             goal = landing(who, out, side, coming, farther, later)
             height, slope = _swung(under, out, side, goal, (height, slope), dt)
         elif dt > 0.0:
-            height, slope = _settled(under, out, side, (height, slope), _HASTY * dt)
+            height, slope = _settled(under, out, side, (height, slope), HASTY * dt)
         out[at], out[at + 1] = height - out[HEIGHT], slope
 
 
@@ -195,8 +195,8 @@ def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, hold
         at, foot = RISES + 2 * side, row[ROOT_STATE + FOOT * side :]
         was, now = before[at] + before[HEIGHT], row[at] + row[HEIGHT]
         if holds and foot[SWING] <= 0.0:
-            now, row[at + 1] = _settled(under, row, side, (was, before[at + 1]), _HASTY * dt)
+            now, row[at + 1] = _settled(under, row, side, (was, before[at + 1]), HASTY * dt)
         else:
             lies, _ = stood_at(under, row, foot[X], foot[Z], foot[YAW])
-            now = max(now, min(lies, was + _HASTY * dt))
+            now = max(now, min(lies, was + HASTY * dt))
         row[at] = now - row[HEIGHT]
