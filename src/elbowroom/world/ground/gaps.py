@@ -5,6 +5,8 @@ middle of a square has no ground at some height, but squares on two sides of it 
 where a crack goes through a square between its neighbours. Cracks narrower than a quarter of a square are overlooked.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,19 +22,26 @@ _LOOKS = 4  # places across a square that are looked at for cracks
 _AXES = np.array([[1, 0], [0, 1], [1, 1], [1, -1]])
 
 
+class _Squares(NamedTuple):
+    """The squares of a ground's grid, and the heights at which there is ground in the middle of each."""
+
+    ground: Ground
+    counts: Longs  # (cells,) heights of each
+    heights: Floats  # (cells, _MOST)
+
+
 def spans_over(ground: Ground) -> Floats:
     """Level triangles (T, 3, 3) over the gaps of some ground, each pair of them as wide as two of its squares.
 
     So they reach the ground beside them, which may begin anywhere in a square.
     """
-    counts, heights = _heights(ground)
-    found = _spanned(ground, counts, heights, np.empty((0, 3)))
-    middles = np.empty((found, 3))
-    _spanned(ground, counts, heights, middles)
+    squares = _Squares(ground, *_heights(ground))
+    middles = np.empty((_spanned(squares, np.empty((0, 3))), 3))
+    _spanned(squares, middles)
     side = ground.cell
     corners = np.array([[-side, 0.0, -side], [side, 0.0, -side], [side, 0.0, side], [-side, 0.0, side]])
-    squares = middles[:, None] + corners
-    return np.concatenate([squares[:, [0, 1, 2]], squares[:, [0, 2, 3]]])
+    spans = middles[:, None] + corners
+    return np.concatenate([spans[:, [0, 1, 2]], spans[:, [0, 2, 3]]])
 
 
 @exact_kernel
@@ -49,42 +58,64 @@ def _heights(ground: Ground) -> tuple[Longs, Floats]:
 
 
 @exact_kernel
-def _spanned(ground: Ground, counts: Longs, heights: Floats, out: Floats) -> int:
+def _spanned(squares: _Squares, out: Floats) -> int:
     """Write the middles (x, height, z) of the squares over which gaps are spanned, as many as `out` holds; how many."""
-    wide, deep = ground.shape
-    widest, found, over = int(WIDEST / ground.cell + 1e-9) + 1, 0, np.empty(_MOST)
-    for cell in range(wide * deep):
-        spanned = 0
-        for axis in range(_AXES.shape[0]):
-            across, along = _AXES[axis]
-            reach = int(widest / np.hypot(across, along))
-            for a in range(1, reach):
-                for b in range(1, reach - a + 1):
-                    one = _beside(cell, -a * across, -a * along, wide, deep)
-                    other = _beside(cell, b * across, b * along, wide, deep)
-                    if one < 0 or other < 0:
-                        continue
-                    for i in range(counts[one]):
-                        for j in range(counts[other]):
-                            low, high = heights[one, i], heights[other, j]
-                            height = low + (high - low) * a / (a + b)
-                            known = _is_near(heights[cell], counts[cell], height, ground.step)
-                            known = known and (a + b > 2 or _is_whole(ground, cell, height))
-                            known = known or _is_near(over, spanned, height, ground.step)
-                            if abs(high - low) <= ground.step and not known and spanned < _MOST:
-                                over[spanned] = height
-                                spanned += 1
-                                if found < out.shape[0]:
-                                    out[found, 0] = ground.corner[0] + ground.cell * (cell // deep + 0.5)
-                                    out[found, 1] = height
-                                    out[found, 2] = ground.corner[1] + ground.cell * (cell % deep + 0.5)
-                                found += 1
+    ground, found, over = squares.ground, 0, np.empty(_MOST)
+    for cell in range(squares.counts.shape[0]):
+        for k in range(_spans_of(squares, cell, over)):
+            if found < out.shape[0]:
+                out[found, 0] = ground.corner[0] + ground.cell * (cell // ground.shape[1] + 0.5)
+                out[found, 1] = over[k]
+                out[found, 2] = ground.corner[1] + ground.cell * (cell % ground.shape[1] + 0.5)
+            found += 1
     return found
 
 
-@exact_kernel
-def _beside(cell: int, rows: int, columns: int, wide: int, deep: int) -> int:
+@helper
+def _spans_of(squares: _Squares, cell: int, over: Floats) -> int:
+    """Write the heights at which gaps are spanned over a square to `over` (_MOST,); how many there are."""
+    ground, spanned = squares.ground, 0
+    widest = int(WIDEST / ground.cell + 1e-9) + 1
+    for axis in range(_AXES.shape[0]):
+        across, along = _AXES[axis]
+        reach = int(widest / np.hypot(across, along))
+        for a in range(1, reach):
+            for b in range(1, reach - a + 1):
+                one = _square_at(ground, cell, -a * across, -a * along)
+                other = _square_at(ground, cell, b * across, b * along)
+                if one >= 0 and other >= 0:
+                    spanned = _span_between(squares, cell, (one, a), (other, b), over, spanned)
+    return spanned
+
+
+@inner_exact_kernel
+def _span_between(
+    squares: _Squares, cell: int, one: tuple[int, int], other: tuple[int, int], over: Floats, spanned: int
+) -> int:
+    """Add the heights at which a square is spanned from `one` beside it to the `other`, each so many squares away.
+
+    Those of them are left out at which there is ground, or which are known: the first `spanned` of `over`. How many are
+    known then.
+    """
+    ground, counts, heights = squares
+    (first, a), (second, b) = one, other
+    for i in range(counts[first]):
+        for j in range(counts[second]):
+            rise = heights[second, j] - heights[first, i]
+            height = heights[first, i] + rise * a / (a + b)
+            known = _is_near(heights[cell], counts[cell], height, ground.step)
+            known = known and (a + b > 2 or _is_whole(ground, cell, height))
+            known = known or _is_near(over, spanned, height, ground.step)
+            if abs(rise) <= ground.step and not known and spanned < _MOST:
+                over[spanned] = height
+                spanned += 1
+    return spanned
+
+
+@inner_exact_kernel
+def _square_at(ground: Ground, cell: int, rows: int, columns: int) -> int:
     """The number of a square so many rows and columns on; -1 beyond the grid."""
+    wide, deep = ground.shape
     i, j = cell // deep + rows, cell % deep + columns
     return i * deep + j if 0 <= i < wide and 0 <= j < deep else -1
 
