@@ -61,14 +61,23 @@ class RootPlanner:
         """Routes lead round what is in the way of what is carried `above` legs and pelvis, if anything is given."""
         self.settings = settings or RootPlannerSettings()
         self._paths = RootPaths(humanoid, scene, self.settings, above)
-        self._ways_out = WayOutFinder(WayOutSettings(), self._paths)
+        self._maker = _OfferMaker(self.settings, self._paths)
         self.reset()
 
     def reset(self) -> None:
         """Forget the line of travel."""
-        self.memory = RootMemory()  # set to what it was, it goes on as it was then
+        self.memory = RootMemory()
         self._offered: list[Offer] = []
         self._from_here = OffersFromHere()
+
+    @property
+    def memory(self) -> RootMemory:
+        """What it remembers; set to what it was, it goes on as it was then."""
+        return self._maker.memory
+
+    @memory.setter
+    def memory(self, memory: RootMemory) -> None:
+        self._maker.memory = memory
 
     @property
     def bounds(self) -> MotionBounds:
@@ -102,26 +111,7 @@ class RootPlanner:
 
         It is walked at the share `pace`, above 0 and up to 1, of the speed that the command asks for.
         """
-        return self._commanded(Asked(start, command, horizon, interval, start_time), pace)
-
-    def _commanded(self, asked: Asked, pace: float) -> RootPlan:
-        command, memory, evading = asked.command, self.memory, self.memory.evading
-        line: TravelLine | None = None
-        leg = memory.leg_of(command.way, asked.start)
-        if command.idle:
-            plan = self._paths.stopped(asked)
-        elif _turns(command):
-            plan, evading = self._paths.steered(asked, pace), None
-        elif command.way:
-            line, plan = line_of(command.way, leg), self._paths.along(asked, leg, pace)
-        else:
-            line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
-            plan = self._paths.travelled(asked, line, pace)
-        out = memory.way_out
-        if out is not None and (line is None or not out.line.is_like(line)):
-            out = None
-        self.memory = RootMemory(line, plan.path.states, evading, out, command.way, leg)
-        return plan
+        return self._maker.commanded(Asked(start, command, horizon, interval, start_time), pace)
 
     def candidates(
         self,
@@ -141,7 +131,7 @@ class RootPlanner:
         earlier one says so (`follow`).
         """
         asked = Asked(start, command, horizon, interval, start_time)
-        for offer in self._offers(f"{grids} grids", asked, lambda: self._candidates(asked, paces, grids)):
+        for offer in self._offers(f"{grids} grids", asked, lambda: self._maker.candidates(asked, paces, grids)):
             yield offer.plan
 
     def ways_out(
@@ -155,7 +145,7 @@ class RootPlanner:
         if line is None or wanted_speed(command, self.settings.motion) < SLOW:
             return  # who is in no hurry stays
         asked, out = Asked(start, command, horizon, interval, start_time), (line, None, before)
-        for offer in self._offers("ways out", asked, lambda: self._out(asked, *out)):
+        for offer in self._offers("ways out", asked, lambda: self._maker.out(asked, *out)):
             yield offer.plan, 0 if offer.memory.way_out is None else offer.memory.way_out.length
 
     def _offers(self, kind: str, asked: Asked, make: Callable[[], Iterator[Offer]]) -> Iterator[Offer]:
@@ -173,9 +163,43 @@ class RootPlanner:
             if offered.plan is plan:
                 self.memory = offered.memory
 
-    def _candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
+
+class _OfferMaker:
+    """Thinks of paths; `memory` is what it goes on from, and then what is remembered of the path thought of last.
+
+    What is begun here and kept to be gone on with holds it, and must not be held by it: a circle stays in memory until
+    garbage is looked for.
+    """
+
+    def __init__(self, settings: RootPlannerSettings, paths: RootPaths) -> None:
+        self.settings, self._paths = settings, paths
+        self._ways_out = WayOutFinder(WayOutSettings(), paths)
+        self.memory = RootMemory()
+
+    def commanded(self, asked: Asked, pace: float) -> RootPlan:
+        """The path as it is asked for, at a share of the speed."""
+        command, memory, evading = asked.command, self.memory, self.memory.evading
+        line: TravelLine | None = None
+        leg = memory.leg_of(command.way, asked.start)
+        if command.idle:
+            plan = self._paths.stopped(asked)
+        elif _turns(command):
+            plan, evading = self._paths.steered(asked, pace), None
+        elif command.way:
+            line, plan = line_of(command.way, leg), self._paths.along(asked, leg, pace)
+        else:
+            line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
+            plan = self._paths.travelled(asked, line, pace)
+        out = memory.way_out
+        if out is not None and (line is None or not out.line.is_like(line)):
+            out = None
+        self.memory = RootMemory(line, plan.path.states, evading, out, command.way, leg)
+        return plan
+
+    def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
+        """What `RootPlanner.candidates` offers."""
         before = self.memory.way_out
-        commanded = self._commanded(asked, 1.0)
+        commanded = self.commanded(asked, 1.0)
         known, line = self.memory.evading, self.memory.line
         direct = known if self.memory.still_turned(asked.start, self.settings.widest_detour) else None
         if (left := self._left_of(self.memory.way_out, asked)) is not None:
@@ -207,13 +231,13 @@ class RootPlanner:
             what = offers.pop(0).what
             if isinstance(what, float):
                 self.memory = self.memory._replace(evading=direct, way_out=before)
-                yield self._offer(self._commanded(asked, what), direct, before)
+                yield self._offer(self.commanded(asked, what), direct, before)
                 continue
             if line is not None and what.plan.kind is RootPlanKind.STOPPED:
-                yield from self._out(asked, line, direct, before)
+                yield from self.out(asked, line, direct, before)
                 line = None
             yield what
-        if len(self.moving):
+        if len(self._paths.moving):
             yield from self._steps_aside(asked, direct)
 
     def _steps_aside(self, asked: Asked, evading: Evading | None) -> Iterator[Offer]:
@@ -221,7 +245,7 @@ class RootPlanner:
         for plan in self._paths.steps_aside(asked):
             yield self._offer(plan, evading, None)
 
-    def _out(self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None) -> Iterator[Offer]:
+    def out(self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None) -> Iterator[Offer]:
         """Ways out for who stands, where all else stands; not again and again without getting farther."""
         if self._paths.restless or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
             return

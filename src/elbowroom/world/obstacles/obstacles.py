@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -137,28 +137,22 @@ class Obstacles:
 
         Those that reach into a span of heights.
         """
-        numbers = meeting(self._grids, (float(least[0]), float(least[1])), (float(most[0]), float(most[1])))
-        if heights == EVERY_HEIGHT or not len(numbers):
-            return numbers
-        own = self._heights[numbers]
-        return numbers[(own[:, 0] <= heights[1]) & (own[:, 1] >= heights[0])]
+        return _numbers_near(self.about_bodies, least, most, heights)
 
     def near(
         self, least: Sequence[float] | Floats, most: Sequence[float] | Floats, heights: Span = EVERY_HEIGHT
     ) -> Nearby:
         """Those that stand over a rectangle on the ground, or nearly: corners x and z; those in a span of heights."""
-        return self.picked(self.numbers_near(least, most, heights))
+        return _near(self.about_bodies, least, most, heights)
 
     def picked(self, numbers: Longs) -> Nearby:
         """Those that stand, by their numbers."""
-        if len(numbers) == len(self.standing.rows):
-            return self.standing
-        return Nearby(self.standing.rows[numbers], self.standing.packed)
+        return _picked(self.standing, numbers)
 
     @cached_property
     def free_map(self) -> FreeMap:
         """How far away those that stand are, over the plane: one map for all who walk here."""
-        return FreeMap(self.near)
+        return FreeMap(partial(_near, self.about_bodies))  # which does not hold the obstacles that hold it
 
     def along(
         self,
@@ -272,6 +266,29 @@ class Nearest(NamedTuple):
     distance: float  # metres; negative where they overlap
     on_axis: Floats  # (3,) the point of the capsule's axis
     on_obstacle: Floats  # (3,)
+
+
+def _numbers_near(
+    standing: Standing, least: Sequence[float] | Floats, most: Sequence[float] | Floats, heights: Span
+) -> Longs:
+    """As `Obstacles.numbers_near`."""
+    numbers = meeting(standing.grids, (float(least[0]), float(least[1])), (float(most[0]), float(most[1])))
+    if heights == EVERY_HEIGHT or not len(numbers):
+        return numbers
+    own = standing.heights[numbers]
+    return numbers[(own[:, 0] <= heights[1]) & (own[:, 1] >= heights[0])]
+
+
+def _picked(standing: Nearby, numbers: Longs) -> Nearby:
+    """As `Obstacles.picked`."""
+    if len(numbers) == len(standing.rows):
+        return standing
+    return Nearby(standing.rows[numbers], standing.packed)
+
+
+def _near(standing: Standing, least: Sequence[float] | Floats, most: Sequence[float] | Floats, heights: Span) -> Nearby:
+    """As `Obstacles.near`."""
+    return _picked(standing.near, _numbers_near(standing, least, most, heights))
 
 
 def _least(segments: Floats32, radii: ArrayLike, near: Nearby) -> float:
