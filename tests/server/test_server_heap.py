@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from elbowroom.cli.doctor.session_cost import memory_budget
-from elbowroom.server.heap import settle, share_one_heap
+from elbowroom.server.heap import HandingBack, settle, share_one_heap
 
 
 def test_glibc_is_asked_for_one_heap_and_others_are_left_alone() -> None:
@@ -20,6 +20,19 @@ def test_glibc_is_asked_for_one_heap_and_others_are_left_alone() -> None:
         assert gc.get_freeze_count() > 1000
     finally:
         gc.unfreeze()
+
+
+def test_what_ended_sessions_have_freed_is_handed_back_while_others_go_on_but_seldom() -> None:
+    now, handed = 0.0, list[float]()
+    heap = HandingBack(lambda: now, lambda: handed.append(now))
+    for step in range(600):  # a session ends every second, and one walks on for ten minutes
+        now = float(step)
+        heap.ended(1)
+    assert 10 <= len(handed) <= 60
+    assert np.diff(handed).min() >= 10.0
+    before = len(handed)
+    heap.ended(0)
+    assert len(handed) == before + 1  # the last one leaves nothing behind
 
 
 def test_the_budget_counts_the_process_once_and_every_session() -> None:

@@ -26,7 +26,7 @@ from elbowroom.server.entrance.guard import Guard, is_loopback
 from elbowroom.server.entrance.open_pages import OpenPages, Tab
 from elbowroom.server.entrance.reception import Reception
 from elbowroom.server.entrance.while_there import while_there
-from elbowroom.server.heap import hand_back
+from elbowroom.server.heap import HandingBack
 from elbowroom.server.kernels.kernel_cache import kernels_in_memory
 from elbowroom.server.metrics import CONTENT_TYPE as METRICS_TYPE
 from elbowroom.server.metrics import metrics_text
@@ -112,6 +112,7 @@ class _Handlers:
         self._library = library
         self._admission = admission
         self._pages = OpenPages()
+        self._heap = HandingBack()
 
     async def health(self, request: Request) -> Response:  # noqa: ARG002
         usage, meter, admission = process_usage(), self._library.meter, self._admission
@@ -224,8 +225,7 @@ class _Handlers:
             with self._pages.showing(tab, session), self._admission.seat(machine):
                 await session.run()
         finally:
-            if self._admission.sessions == 0:
-                await asyncio.to_thread(hand_back)
+            await asyncio.to_thread(self._heap.ended, self._admission.sessions)
 
 
 def _document(scene: Scene) -> Response:

@@ -20,14 +20,17 @@ from urllib.request import Request, urlopen
 
 import numpy as np
 from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection
 
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.cli.doctor.load import ON_TIME, percent
 from elbowroom.cli.doctor.session_cost import client_of, started_server, usage, wait_until_warm, walk_about
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.commands import Configure, Ping
+from elbowroom.server.schema.menus import Settings
+from elbowroom.server.schema.progress import Notice
 from elbowroom.server.sessions.meter import LATE
-from elbowroom.server.wire.codec import encode
+from elbowroom.server.wire.codec import decode_server, encode
 
 SLOPE_BUDGET = 10.0  # MB an hour
 CLIENTS = 2  # who come and go at a time
@@ -36,6 +39,7 @@ _WARM_UP = 0.3  # of the time: then everything has happened at least once
 _VERDICT = 10.0  # minutes after the warm-up; in less, the noise of the heap is larger than the budget
 _SCENES = ("a", "b", "c", "d", "doorway", "beam", "traffic", "empty")
 _STEADY = 5.0  # seconds of walking between two looks at the clock
+_PATIENCE = 60.0  # seconds in which a scene should be shown
 _TOLD = 200  # characters of an error
 
 # Files that ask for too much: objects of few bytes, and a document type that gives every element 2 MB.
@@ -241,9 +245,22 @@ def _guest(yard: _Yard, chance: random.Random) -> None:
             scene = f"gauntlet:{chance.randint(1, 5)}:{chance.randint(1, 10**6)}"
             yard.count("courses")
         client.send(encode(Configure(scene=scene, queue_size=chance.choice((3, 5, 7)))))
+        _until_shown(client, scene)
         walk_about(client, chance.uniform(1.0, 4.0))
         if chance.random() < 0.5:
             client.socket.shutdown(socket.SHUT_RDWR)
+
+
+def _until_shown(client: ClientConnection, scene: str) -> None:
+    """Stay until the scene is there, which takes a while where it has to be made, or the server tells of an error."""
+    end = time.monotonic() + _PATIENCE
+    while time.monotonic() < end:
+        message = client.recv(timeout=_PATIENCE)
+        told = None if isinstance(message, bytes) else decode_server(message)
+        if isinstance(told, Settings) and told.scene == scene:
+            return
+        if isinstance(told, Notice) and told.level == "error":
+            return
 
 
 def _upload(yard: _Yard, chance: random.Random) -> None:

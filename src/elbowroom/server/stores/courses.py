@@ -9,7 +9,7 @@ from dataclasses import replace
 from elbowroom.server.apart.process import run_apart
 from elbowroom.world.scene import Scene
 
-REMEMBERED = 32  # courses
+REMEMBERED = 8  # courses; where somebody has walked, there is a map of room with each, some megabytes
 _AT_ONCE = 1  # processes: the other processors are for walking
 
 
