@@ -38,3 +38,13 @@ def _ours() -> Counter[str]:
     """How many things of ours there are, by their kind."""
     kinds = (type(thing) for thing in gc.get_objects())
     return Counter(kind.__qualname__ for kind in kinds if str(kind.__module__).startswith("elbowroom."))
+
+
+def test_a_place_has_a_map_of_room_while_somebody_walks_there() -> None:
+    scene, before = Scene.load("d"), _ours()["FreeMap"]
+    walkers = [Controller(Humanoid.default(), scene) for _ in range(2)]
+    for walker in walkers:
+        walker.step(Command(forward=1.0), 1.0 / 60.0)
+    assert _ours()["FreeMap"] == before + 1
+    del walker, walkers
+    assert _ours()["FreeMap"] == before

@@ -267,7 +267,7 @@ class Controller:
         self._stands_by = command.idle
         if not command.idle or not self.others or not self.assist:
             return command
-        shown, free_map = self._shown, self._around.scene.free_map
+        shown, free_map = self._shown, self._around.free_map
         body = self._check.body(shown.root, shown.upper)
         return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
 
@@ -334,7 +334,7 @@ class Controller:
         if not self.others:
             return things
         body = self._check.body(start.root, start.upper)
-        others = expected(self._walker(command), body, self.others, self._around.scene.free_map)
+        others = expected(self._walker(command), body, self.others, self._around.free_map)
         clearance = self._check.clearance_from(others, start.root, start.upper, time)
         return things + (slimmer(others, _LEAVING - clearance) if clearance < 0.0 else others)
 

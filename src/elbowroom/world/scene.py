@@ -15,6 +15,7 @@ from elbowroom.world.ground.ground import Ground, eased_height
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json
 from elbowroom.world.obstacles.free_map import FreeMap
+from elbowroom.world.obstacles.lent_map import LentMap
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.scene_place import ScenePlace
@@ -126,11 +127,14 @@ class Scene:
         """
         return ground_of(self.obstacles, self.place.floor if self.place else None)
 
-    @cached_property
+    @property
     def free_map(self) -> FreeMap:
-        """How far away what stands is, over the ground: one map for all who walk here."""
-        obstacles, ground = self.obstacles, self.ground
-        return obstacles.free_map if ground.plain else FreeMap(obstacles.near, ground)
+        """How far away what stands is, over the ground: one map for all who walk here, while they hold it."""
+        return self.obstacles.free_map if self.ground.plain else self._lent_map.take()
+
+    @cached_property
+    def _lent_map(self) -> LentMap:
+        return LentMap(self.obstacles.near, self.ground)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON document of the scene: `Scene.from_dict(scene.to_dict())` is the same scene."""

@@ -19,6 +19,7 @@ class PlanningScene:
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet) -> None:
         """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
         self._humanoid, self.scene = humanoid, scene
+        self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)
         self.feet = Stepping(humanoid, motions, self.check.soles)
         self.planners = Planners(settings.planner, humanoid, scene, motions)

@@ -21,6 +21,7 @@ from elbowroom.world.obstacles.clearance import (
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.free_map import FreeMap
 from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.lent_map import LentMap
 from elbowroom.world.obstacles.meshes.kept_parts import kept_parts
 from elbowroom.world.obstacles.meshes.packed import Packed, pack
 from elbowroom.world.obstacles.meshes.parts import Parts
@@ -149,10 +150,14 @@ class Obstacles:
         """Those that stand, by their numbers."""
         return _picked(self.standing, numbers)
 
-    @cached_property
+    @property
     def free_map(self) -> FreeMap:
-        """How far away those that stand are, over the plane: one map for all who walk here."""
-        return FreeMap(partial(_near, self.about_bodies))  # which does not hold the obstacles that hold it
+        """How far away those that stand are, over the plane: one map for all who walk here, while they hold it."""
+        return self._lent_map.take()
+
+    @cached_property
+    def _lent_map(self) -> LentMap:
+        return LentMap(partial(_near, self.about_bodies))  # which does not hold the obstacles that hold it
 
     def along(
         self,
