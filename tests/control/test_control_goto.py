@@ -1,6 +1,7 @@
 """Walking to a place: there, round things, given up with a reason, and taken over by the next key."""
 
 import math
+from itertools import pairwise, product
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,11 @@ from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
+from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.scene import Scene
+from stairs import BEFORE, ON_FLOOR, TREADS, spiral_stair, tread_top
 
 DT = 1 / 60
 LONG = 60.0  # seconds
@@ -146,3 +149,21 @@ def test_who_was_led_off_the_way_looks_for_it_again(humanoid: Humanoid) -> None:
     assert other != way
     assert math.dist(other[0], (-2.0, 1.0)) < 0.1
     assert math.dist(other[-1], (-2.0, 4.5)) < 0.1
+
+
+@pytest.mark.parametrize("up", [True, False], ids=["up", "down"])
+def test_on_a_spiral_stair_the_same_is_asked_for_all_the_way(humanoid: Humanoid, up: bool) -> None:
+    """Also some centimetres beside the way, from where the next corner may be out of sight."""
+    top, navigator = tread_top(TREADS), Navigator(humanoid, spiral_stair())
+    ends = ((BEFORE[0], 0.0, BEFORE[1]), (ON_FLOOR[0], top, ON_FLOOR[1]))
+    start, goal = ends if up else ends[::-1]
+    way = navigator.find(start, goal)
+    journey, corners = Journey(navigator, way, FORWARD), way.corners(start, 6.0)
+    asked = {journey.command(RootState(x=start[0], z=start[2], height=start[1]), DT, stuck=False).way}
+    for begin, end in pairwise(corners[:-1].tolist()):
+        heading = math.atan2(end[0] - begin[0], end[2] - begin[2])
+        for part, aside in product((0.0, 0.5), (-0.08, 0.0, 0.08)):
+            x, height, z = (a + part * (b - a) for a, b in zip(begin, end, strict=True))
+            here = RootState(x=x + aside * math.cos(heading), z=z - aside * math.sin(heading), height=height)
+            asked.add(journey.command(here, DT, stuck=False).way)
+    assert len(asked) == 1

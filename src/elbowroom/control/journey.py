@@ -8,9 +8,10 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, apart, said
-from elbowroom.planning.root.line.way_ahead import Corners, leg_at
+from elbowroom.planning.root.line.way_ahead import Corners, away_from, leg_at
 
 _FAR = 6.0  # metres along the way that are looked ahead
+_ON_IT = 0.15  # metres from a leg of the way: one is on it
 _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who gets no nearer
 _NEARER = 0.15  # metres that count as progress
 _PATIENCE, _STUCK_PATIENCE = 4.0, 1.2  # seconds without progress; the same where no way on is found
@@ -76,7 +77,7 @@ class Journey:
         return self._onward(here)
 
     def _onward(self, here: Place) -> Command:
-        """Along the same corners, until the next one has gone out of sight."""
+        """Along the same corners, until one has got off them and the next one has gone out of sight."""
         if not self._keeps_to_it(here):
             self._corners, self._leg = self._found(here), 0
             self._along = tuple((x, z) for x, _, z in self._corners)
@@ -88,8 +89,10 @@ class Journey:
     def _keeps_to_it(self, here: Place) -> bool:
         if len(self._corners) < 2:
             return False
-        self._leg = leg_at(self._along, here[0], here[2], self._leg)
-        return self.way.sees(here, self._corners[self._leg + 1])
+        x, _, z = here
+        self._leg = leg_at(self._along, x, z, self._leg)
+        on_it = away_from(self._along, self._leg, x, z) < _ON_IT
+        return on_it or self.way.sees(here, self._corners[self._leg + 1])
 
     def _found(self, here: Place) -> list[Place]:
         """The corners of the way from here, which is searched for where it is not known."""

@@ -29,7 +29,7 @@ def leg_at(way: Corners, x: float, z: float, leg: int) -> int:
 
     So who goes to and fro along a thin wall stays on the side on which it is.
     """
-    while leg + 2 < len(way) and _away(way, leg + 1, x, z) <= _away(way, leg, x, z):
+    while leg + 2 < len(way) and away_from(way, leg + 1, x, z) <= away_from(way, leg, x, z):
         leg += 1
     return leg
 
@@ -65,8 +65,8 @@ def _route(places: Sequence[tuple[float, float]]) -> Floats:
     return np.array([*kept, places[-1]])
 
 
-def _away(way: Corners, leg: int, x: float, z: float) -> float:
-    """Metres from a place to a leg."""
+def away_from(way: Corners, leg: int, x: float, z: float) -> float:
+    """Metres from a place to a leg of a way."""
     (ax, az), (bx, bz) = way[leg], way[leg + 1]
     dx, dz = bx - ax, bz - az
     t = min(max(((x - ax) * dx + (z - az) * dz) / max(dx * dx + dz * dz, _SAME), 0.0), 1.0)
