@@ -1,6 +1,7 @@
 """Legs on stairs: the walking cycle goes up and down them in whatever phase one comes, and touches nothing."""
 
 import math
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,17 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import phase_rate, quickness
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import HEIGHT, RISES, RootState
+from elbowroom.clips.motion_set import STOCK
+from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion, own_parts
+from elbowroom.planning.goal import natural_walk
+from elbowroom.planning.model.levers import body_levers
+from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.root.legs.lower_body import LowerBody
+from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.ground.ground import eased_height, heights_along
@@ -52,6 +61,23 @@ def test_a_walk_on_the_treads_of_a_spiral_touches_none(radius: float, up: bool) 
         assert np.abs(stood[:, [RISES, RISES + 2]]).max() < 0.9
         worst = min(worst, float(body.clearance(body.near(0.0, 0.0, 4.0, 1.0), rows).min()))
     assert worst >= 0.0
+
+
+def test_who_walks_naturally_runs_into_no_part_of_the_own_body_on_treads() -> None:
+    """Head and trunk keep clear of knees that are raised, and so do arms that make way: no plan looks at these."""
+    model, arms, gave_way = body_model(AVATAR), arms_beside_legs(AVATAR, STOCK), 0.0
+    pairs, body = self_pairs(model), LowerBody(AVATAR, STAIR.obstacles, STAIR.ground)
+    own = OwnMotion(own_parts(model, pairs, body_levers(AVATAR)), body.footing.underfoot)
+    for up, phase in product((True, False), (0.0, 0.5)):
+        path = RootPath(0.0, STEP, body.footing.stood(around(0.5, 0.3, phase, up=up))[0])
+        keys = natural_walk()(path)
+        gaps, groups = own.proven(path, keys, np.zeros_like(keys), keys)
+        assert np.isinf(gaps).all()
+        assert (groups == -1).all()
+        shown = np.array([arms.apart(state, upper) for state, upper in zip(path.states, keys, strict=True)])
+        assert self_clearances(model, pairs, path.states, shown).min() >= 0.0
+        gave_way = max(gave_way, float(np.abs(shown - keys).max()))
+    assert gave_way > 0.01, "no knee came to a hand"
 
 
 def even_stair(rise: float, deep: float, count: int) -> Scene:

@@ -11,9 +11,9 @@ from elbowroom.body.gait.footholds import Stepper
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
-from elbowroom.control.feet.treading import step_on, stood_at
+from elbowroom.control.feet.treading import step_on
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
-from elbowroom.planning.model.footing import ON_PLANE, Underfoot
+from elbowroom.planning.model.footing import ON_PLANE, Underfoot, stood_at
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ def _lay(under: Underfoot, row: Floats) -> None:
     """Put both feet of a row on the ground where they are."""
     for side in range(2):
         foot, at = row[ROOT_STATE + FOOT * side :], RISES + 2 * side
-        height, slope = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+        height, slope = stood_at(under.ground, under.sole, row, foot[X], foot[Z], foot[YAW])
         if height > -math.inf:
             row[at], row[at + 1] = height - row[HEIGHT], slope
 

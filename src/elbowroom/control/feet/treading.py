@@ -14,8 +14,9 @@ from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
 from elbowroom.body.gait.footholds import Stepper, landing, step_feet
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.jit import helper, inner_exact_kernel
-from elbowroom.planning.model.footing import Underfoot
-from elbowroom.world.ground.ground import Sole, height_along, height_at, level_about, sole_on, under_body
+from elbowroom.planning.model.footing import OVER, Underfoot, in_world, stood_at
+from elbowroom.world.ground.ground import height_along, height_at, level_about, under_body
+from elbowroom.world.ground.swept import set_highest_under
 
 Floats = NDArray[np.float64]
 Place = tuple[float, float, float]  # x, z and yaw as seen from the root
@@ -23,9 +24,9 @@ Landing = tuple[float, float, float, float]  # the same, and seconds until then
 Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
 
 _NONE = -math.inf
-_OVER, _BESIDE = 0.03, 0.04  # metres above an edge, and before and behind it, that a swinging foot keeps
 _LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no other slope
 _LOOKS = 8  # places of the rest of a swing that are looked at
+_NEAR = 1e-4  # m²: who is no farther from where a foot lands goes there as it comes
 HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radians that its sole may turn for a metre
 _RISING, _UP = 2.0, 3.0  # m/s that a foot is foreseen to rise by, and does
 _EASE = 2.0  # how much faster than evenly it comes down: the power of the time that is left
@@ -34,30 +35,14 @@ _BALL = 6  # column of `GaitShape.legs`
 
 
 @helper
-def _in_world(row: Floats, x: float, z: float) -> tuple[float, float]:
-    sine, cosine = math.sin(row[2]), math.cos(row[2])
-    return row[0] + x * cosine + z * sine, row[1] - x * sine + z * cosine
-
-
-@helper
 def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> float:
     """The height of the ground where it is one level under a root, a foot and its goal; minus infinity where not."""
     low_x, high_x = min(0.0, foot[X], goal[0]), max(0.0, foot[X], goal[0])
     low_z, high_z = min(0.0, foot[Z], goal[1]), max(0.0, foot[Z], goal[1])
-    around = math.hypot(max(under.sole.back, under.sole.ahead) + _BESIDE, under.sole.aside)
-    x, z = _in_world(row, 0.5 * (low_x + high_x), 0.5 * (low_z + high_z))
+    around = math.hypot(max(under.sole.back, under.sole.ahead), under.sole.aside)
+    x, z = in_world(row, 0.5 * (low_x + high_x), 0.5 * (low_z + high_z))
     reach = 0.5 * math.hypot(high_x - low_x, high_z - low_z) + around
     return level_about(under.ground, x, z, reach, row[HEIGHT])
-
-
-@inner_exact_kernel
-def stood_at(under: Underfoot, row: Floats, x: float, z: float, yaw: float) -> Lie:
-    """Height and slope of a foot that stands at a place seen from a root; minus infinity where there is no ground."""
-    wx, wz = _in_world(row, x, z)
-    near = height_along(under.ground, (row[0], under_body(under.ground, row[0], row[HEIGHT], row[1]), row[1]), wx, wz)
-    if near == _NONE:
-        return near, 0.0
-    return sole_on(under.ground, under.sole, (wx, near, wz), row[2] + yaw)
 
 
 @helper
@@ -66,24 +51,19 @@ def _needed(under: Underfoot, row: Floats, foot: Floats, goal: Place, left: floa
 
     It goes there in the seconds that are `left`, as `footholds` has it.
     """
-    ground, sole = under.ground, Sole(under.sole.back + _BESIDE, under.sole.ahead + _BESIDE, under.sole.aside)
-    x, z = _in_world(row, foot[X], foot[Z])
+    ground, (x, z), (to_x, to_z) = under.ground, in_world(row, foot[X], foot[Z]), in_world(row, goal[0], goal[1])
     near = height_along(ground, (row[0], under_body(ground, row[0], row[HEIGHT], row[1]), row[1]), x, z)
-    near, wanted = near if near > _NONE else row[HEIGHT], _NONE
+    near, wanted, shares, overs = near if near > _NONE else row[HEIGHT], _NONE, np.empty(_LOOKS), np.empty(_LOOKS)
+    ahead, aside = goal[0] - foot[X], goal[1] - foot[Z]
+    faster = left * (ahead * foot[VELOCITY] + aside * foot[VELOCITY + 1]) / max(ahead * ahead + aside * aside, _NEAR)
     for k in range(_LOOKS):
         u = k / _LOOKS
-        rest, gone = 1.0 - u, u * u * (3.0 - 2.0 * u)
-        early = rest * rest * u * left
-        x, z = _in_world(
-            row,
-            foot[X] + gone * (goal[0] - foot[X]) + early * foot[VELOCITY],
-            foot[Z] + gone * (goal[1] - foot[Z]) + early * foot[VELOCITY + 1],
-        )
-        found = height_at(ground, x, z, near)
-        near = found if found > _NONE else near
-        over, _ = sole_on(ground, sole, (x, near, z), row[2] + foot[YAW] + gone * (goal[2] - foot[YAW]))
-        if over > _NONE:
-            wanted = max(wanted, over + (_OVER if over > lands + _LEVEL else 0.0) - _RISING * u * left)
+        shares[k] = min(max(u * u * (3.0 - 2.0 * u) + (1.0 - u) ** 2 * u * faster, 0.0), 1.0)
+    way = (x, z, row[2] + foot[YAW]), (to_x, to_z, row[2] + goal[2])
+    set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
+    for k in range(_LOOKS):
+        if overs[k] > _NONE:
+            wanted = max(wanted, overs[k] + (OVER if overs[k] > lands + _LEVEL else 0.0) - _RISING * k / _LOOKS * left)
     return max(wanted, lands - _RISING * left)
 
 
@@ -94,7 +74,7 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
     level = _level_there(under, row, foot, place)
     lands, slope = level, 0.0
     if level == _NONE:
-        lands, slope = stood_at(under, row, place[0], place[1], place[2])
+        lands, slope = stood_at(under.ground, under.sole, row, place[0], place[1], place[2])
     if lands == _NONE:
         return was
     wanted = level if level > _NONE else _needed(under, row, foot, place, left, lands)
@@ -113,7 +93,7 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
     foot = row[ROOT_STATE + FOOT * side :]
     height, slope = _level_there(under, row, foot, (foot[X], foot[Z], foot[YAW])), 0.0
     if height == _NONE:
-        height, slope = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+        height, slope = stood_at(under.ground, under.sole, row, foot[X], foot[Z], foot[YAW])
     if height == _NONE or (abs(height - was[0]) < _LEVEL and abs(slope - was[1]) < _TILTED):
         return was
     turn = TURNS * most
@@ -123,10 +103,10 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
 @helper
 def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> bool:
     """Whether a foot at a place would have ground under its ankle and its ball, and not under its toes alone."""
-    lies, slope = stood_at(under, row, foot[0], foot[1], foot[2])
-    x, z = _in_world(row, foot[0], foot[1])
+    lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
+    x, z = in_world(row, foot[0], foot[1])
     ankle = height_at(under.ground, x, z, lies)
-    x, z = _in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
+    x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
     front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
     return lies > _NONE and lies - ankle < _AIR and lies - front < _AIR
 
@@ -197,6 +177,6 @@ def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, hold
         if holds and foot[SWING] <= 0.0:
             now, row[at + 1] = _settled(under, row, side, (was, before[at + 1]), HASTY * dt)
         else:
-            lies, _ = stood_at(under, row, foot[X], foot[Z], foot[YAW])
+            lies, _ = stood_at(under.ground, under.sole, row, foot[X], foot[Z], foot[YAW])
             now = max(now, min(lies, was + HASTY * dt))
         row[at] = now - row[HEIGHT]

@@ -21,6 +21,7 @@ from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, 
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
+from elbowroom.world.ground.swept import set_highest_under
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 
 Floats = NDArray[np.float64]
@@ -29,7 +30,7 @@ Bools = NDArray[np.bool_]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
-_OVER = 0.04  # metres above an edge that a swinging foot keeps
+OVER = 0.04  # metres above an edge that a swinging foot keeps, as it is planned and as it is shown
 _BESIDE = 0.04  # metres before and behind an edge that a foot keeps: where it rolls its toes come 3 cm farther
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS = 25  # places of a swing that are looked at
@@ -38,6 +39,8 @@ _BELOW, _ABOVE = 0.4, 1.4  # of a standing body's height: so far below and above
 _UPRIGHT, _EVEN = 1e-4, 5e-4  # radians: a level sole; metres by which level ground may be uneven
 NOWHERE = np.full(2, -math.inf)
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
+_TIMES = np.arange(1.0, _LOOKS) / _LOOKS
+_GONE = _TIMES * _TIMES * (3.0 - 2.0 * _TIMES)  # how much of its way a foot has gone at those times of its swing
 
 
 class Underfoot(NamedTuple):
@@ -192,16 +195,21 @@ def _climbed(w: float, rise: float) -> float:
     return _eased(w / _UP) if rise > 0.0 else _eased((w - _DOWN) / (1.0 - _DOWN))
 
 
-@inner_exact_kernel
-def _stand(
-    ground: Ground, sole: Sole, root: Floats, under: float, x: float, z: float, yaw: float
-) -> tuple[float, float]:
-    """Height and slope of the ground under a foot at a place in the root's frame; minus infinity without any.
-
-    One comes there from the ground `under` the root.
-    """
+@helper
+def in_world(root: Floats, x: float, z: float) -> tuple[float, float]:
+    """A place x, z in the frame of a root, as the world has it."""
     sine, cosine = math.sin(root[2]), math.cos(root[2])
-    wx, wz = root[0] + x * cosine + z * sine, root[1] - x * sine + z * cosine
+    return root[0] + x * cosine + z * sine, root[1] - x * sine + z * cosine
+
+
+@inner_exact_kernel
+def stood_at(ground: Ground, sole: Sole, root: Floats, x: float, z: float, yaw: float) -> tuple[float, float]:
+    """Height and slope of the ground under a foot at a place in a root's frame; minus infinity without any.
+
+    One comes there from the ground under the root.
+    """
+    wx, wz = in_world(root, x, z)
+    under = under_body(ground, root[0], root[HEIGHT], root[1])
     near = height_along(ground, (root[0], under, root[1]), wx, wz)
     if near == _NONE:
         return near, 0.0
@@ -231,22 +239,20 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
 
     It goes from one place to the other as the cycle has it, at rest over the ground at both ends.
     """
-    under = under_body(ground, root[0], root[HEIGHT], root[1])
-    begin, first = _stand(ground, sole, root, under, places[0], places[1], places[2])
-    end, last = _stand(ground, sole, root, under, places[3], places[4], places[5])
+    begin, first = stood_at(ground, sole, root, places[0], places[1], places[2])
+    end, last = stood_at(ground, sole, root, places[3], places[4], places[5])
     if min(begin, end) == _NONE:
         return _NONE, 0.0
-    rise, lacks, overs = end - begin, 0.0, np.empty(_LOOKS)
-    above = max(rise, 0.0)
-    for k in range(1, _LOOKS):
-        u = k / _LOOKS
-        gone = _eased(u)
-        x, z = places[0] + gone * (places[3] - places[0]), places[1] + gone * (places[4] - places[1])
-        over, _ = _stand(ground, sole, root, under, x, z, places[2] + gone * (places[5] - places[2]))
-        overs[k] = over - begin
-        above, lacks = max(above, overs[k]), max(lacks, overs[k] - _climbed(u, rise) * rise)
+    rise, lacks, overs = end - begin, 0.0, np.empty(_TIMES.shape[0])
+    above, (x, z) = max(rise, 0.0), in_world(root, places[0], places[1])
+    to_x, to_z = in_world(root, places[3], places[4])
+    way = (x, z, root[2] + places[2]), (to_x, to_z, root[2] + places[5])
+    set_highest_under(ground, sole, way[0], way[1], begin, _GONE, overs)
+    for k in range(overs.shape[0]):
+        overs[k] -= begin
+        above, lacks = max(above, overs[k]), max(lacks, overs[k] - _climbed(_TIMES[k], rise) * rise)
     part = _climbed(w, rise)
-    height = begin + (_lifted(overs, rise, above + _OVER, w) if lacks > _LEVEL else part * rise)
+    height = begin + (_lifted(overs, rise, above + OVER, w) if lacks > _LEVEL else part * rise)
     return height, first + part * (last - first)
 
 
@@ -254,15 +260,15 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
 def _lifted(overs: Floats, rise: float, top: float, w: float) -> float:
     """How high a foot is lifted that goes over edges: up to the `top`, no sooner and no later than it must, and down.
 
-    `overs` (_LOOKS,) are heights of the ground in its way, `rise` is that of where it comes down; all from where it
+    `overs` are heights of the ground in its way at `_TIMES`, `rise` is that of where it comes down; all from where it
     stood.
     """
-    up, down = _UP, _UP
-    for k in range(1, _LOOKS):
+    up, down, early = _UP, _UP, 0.5 / _LOOKS
+    for k in range(overs.shape[0]):
         if overs[k] > _LEVEL:
-            up = min(up, (k - 0.5) / _LOOKS / _uneased((overs[k] + 0.9 * _OVER) / top))
+            up = min(up, (_TIMES[k] - early) / _uneased((overs[k] + 0.9 * OVER) / top))
         if overs[k] > rise + _LEVEL:
-            down = min(down, (_LOOKS - k - 0.5) / _LOOKS / _uneased((overs[k] + 0.9 * _OVER - rise) / (top - rise)))
+            down = min(down, (1.0 - _TIMES[k] - early) / _uneased((overs[k] + 0.9 * OVER - rise) / (top - rise)))
     risen, sunk = _eased(w / max(up, _QUICKEST)), _eased((1.0 - w) / max(down, _QUICKEST))
     return min(top * risen, rise + (top - rise) * sunk)
 
@@ -281,8 +287,7 @@ def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Flo
             elif w > 0.0:
                 height, slope = _swung(ground, sole, root, places, w)
             else:
-                under = under_body(ground, root[0], root[HEIGHT], root[1])
-                height, slope = _stand(ground, sole, root, under, places[0], places[1], places[2])
+                height, slope = stood_at(ground, sole, root, places[0], places[1], places[2])
             found[n] = found[n] and height > _NONE
             root[at], root[at + 1] = height - root[HEIGHT] if height > _NONE else 0.0, slope
     return found

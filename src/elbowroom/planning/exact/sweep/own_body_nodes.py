@@ -119,8 +119,8 @@ def own_body_costs(own_body_nodes: OwnBodyNodes, task: OwnBodyTask) -> Floats32:
     natural, usual = np.empty(depths, np.bool_), np.empty(depths, np.bool_)
     contents = np.empty((depths, it.known.rows.shape[1]), np.int64)
     for t in range(natural.shape[0]):
-        natural[t] = is_natural(uppers[t], task.walk[t], states[t])
-        usual[t] = natural[t] and is_natural(task.goals[t], task.usual[t], states[t])
+        natural[t] = is_natural(uppers[t], task.walk[t])
+        usual[t] = natural[t] and is_natural(task.goals[t], task.usual[t])
     set_contents(states, uppers, contents)
     rows, fresh = np.empty(depths, np.int64), np.empty(depths, np.int64)
     rows = rows[: _rows_to_check(usual, needed, rows)]

@@ -113,7 +113,7 @@ class OwnMotion:
 def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, walk: Floats) -> tuple[Floats, Indices]:
     """See `OwnMotion.proven`."""
     gaps, groups = np.full(shown.keys.shape[0] - 1, np.inf), np.full(shown.keys.shape[0] - 1, -1)
-    chosen = _beside(shown.keys, walk, shown.states)
+    chosen = _beside(shown.keys, walk)
     if not chosen.shape[0]:
         return gaps, groups
     names = _names(shown, underfoot.ground.plain)
@@ -150,14 +150,11 @@ def _names(shown: Shown, plain_ground: bool) -> Indices:
 
 
 @helper
-def _beside(keys: Floats, walk: Floats, states: Floats) -> Indices:
-    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) does not do as in the `walk` (n+1, LOCAL).
-
-    Or where a foot of root states (n+1, 7 or more) is not on level ground.
-    """
-    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], walk[0], states[0])
+def _beside(keys: Floats, walk: Floats) -> Indices:
+    """The intervals (K,) at whose ends the upper body (n+1, LOCAL) does not do as in the `walk` (n+1, LOCAL)."""
+    chosen, count, natural = np.empty(keys.shape[0] - 1, np.int64), 0, is_natural(keys[0], walk[0])
     for k in range(chosen.shape[0]):
-        before, natural = natural, is_natural(keys[k + 1], walk[k + 1], states[k + 1])
+        before, natural = natural, is_natural(keys[k + 1], walk[k + 1])
         if not (before and natural):
             chosen[count] = k
             count += 1

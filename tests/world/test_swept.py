@@ -1,0 +1,65 @@
+"""What a sole is over on its way: the highest ground under it, whichever way it goes and turns."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.jit import exact_kernel
+from elbowroom.world.ground.ground import Ground, Sole
+from elbowroom.world.ground.swept import Spot, set_highest_under
+from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
+
+SOLE = Sole(0.12, 0.24, 0.05)
+BETWEEN = 0.028  # metres: no place is farther from one that is looked at
+SHARES = np.linspace(0.0, 1.0, 7)
+LOW = [(0.0, 0.2 * n, 3.0, 0.2, 0.08 * n) for n in range(1, 4)]  # x, z, sizes and top of some steps and posts
+LOW += [(-0.3 * n, 0.1 * n, 0.12, 0.12, 0.2) for n in range(1, 4)]
+
+
+@exact_kernel
+def highest(ground: Ground, sole: Sole, begin: Spot, end: Spot, near: float, shares: Floats) -> Floats:
+    """`set_highest_under`, for who is no kernel."""
+    out = np.empty(shares.shape[0])
+    set_highest_under(ground, sole, begin, end, near, shares, out)
+    return out
+
+
+def tops(x: Floats, z: Floats) -> Floats:
+    """How high the ground is at places."""
+    over = np.zeros_like(x)
+    for at_x, at_z, wide, deep, top in LOW:
+        over = np.where((abs(x - at_x) <= 0.5 * wide) & (abs(z - at_z) <= 0.5 * deep), np.maximum(over, top), over)
+    return over
+
+
+def under(spot: Floats, less: float, about: float) -> float:
+    """The highest that is so high all `about` metres round, under a sole that is `less` long and wide at all sides."""
+    x, z, yaw = spot
+    ahead = np.linspace(less - SOLE.back, SOLE.ahead - less, 40)[:, None, None]
+    aside = np.linspace(less - SOLE.aside, SOLE.aside - less, 8)[:, None]
+    around = np.arange(9) * np.pi / 4.0
+    radius = np.where(np.arange(9) < 8, about, 0.0)
+    ahead, aside = ahead + radius * np.cos(around), aside + radius * np.sin(around)
+    there = x + ahead * np.sin(yaw) + aside * np.cos(yaw), z + ahead * np.cos(yaw) - aside * np.sin(yaw)
+    return float(tops(*there).min(axis=2).max())
+
+
+def test_it_is_the_highest_that_the_sole_is_over_but_for_what_lies_between_looks() -> None:
+    boxes = [{"type": "box", "center": [x, 0.5 * top, z], "size": [wide, top, deep]} for x, z, wide, deep, top in LOW]
+    ground = Scene.of("low things", boxes, finish=(0.0, 3.0)).ground
+    rng, over = np.random.default_rng(2), 0
+    for _ in range(50):
+        begin = rng.uniform((-0.8, -0.4, -3.0), (0.8, 0.8, 3.0))
+        end = begin + rng.uniform((-0.5, -0.5, -0.6), (0.5, 0.5, 0.6))
+        found = highest(ground, SOLE, tuple(begin.tolist()), tuple(end.tolist()), 0.1, SHARES)
+        for share, height in zip(SHARES.tolist(), found.tolist(), strict=True):
+            spot = begin + share * (end - begin)
+            assert under(spot, BETWEEN, BETWEEN) - 1e-6 <= height <= under(spot, -BETWEEN, 0.0) + 1e-6
+            over += height > 0.05
+    assert over > 25
+
+
+def test_there_is_none_where_no_foot_stands() -> None:
+    ground = Scene.of("step", [{"type": "box", "center": [0, 0.05, 2], "size": [1, 0.1, 1]}], finish=(0.0, 3.0)).ground
+    assert np.all(np.isneginf(highest(ground, SOLE, (0.6, 0.0, 0.0), (0.6, 0.1, 0.0), 30.0, SHARES)))
