@@ -29,7 +29,6 @@ _FAR_OFF = 1.2  # seconds until a place that is not asked about yet
 _THOUGHT_THROUGH = 4  # root paths on which all groups are searched together
 _GRIDS, _GRIDS_STANDING = 2, 4  # in which evasions are looked for, by who walks and who stands
 _STANDING = 0.02  # metres: a path that is shorter stands
-_WELL_ON = 0.6  # metres to what is in the way, from where on one walks on towards it, and looks for no other place yet
 
 
 class _Tried(NamedTuple):
@@ -62,7 +61,7 @@ class NewPlan:
         found = self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
-        if found is None and self._stands and not (self._attempts.spent or _leads_well_on(tried[0])):
+        if found is None and self._stands and not self._attempts.spent:
             found = self._way_out()
         return found or self._stop(tried)
 
@@ -235,11 +234,6 @@ class NewPlan:
         """Whether a path along the same line is shorter than `least` metres, among things that stand still."""
         aside = root.kind is RootPlanKind.EVASION or len(self.root_planner.moving) > 0
         return not aside and _walked(root.path, root.path.horizon) < least
-
-
-def _leads_well_on(one: _Tried) -> bool:
-    """Whether it is far to where a path is blocked."""
-    return _walked(one.root.path, one.upper.reached) > _WELL_ON
 
 
 def _place(upper: UpperPlan) -> tuple[float, float]:
