@@ -19,7 +19,7 @@ X, Z, YAW, PITCH, LIFT, SWING, VELOCITY = 0, 1, 2, 3, 4, 5, 6
 
 FLAT = 1e-9  # radians, metres
 LIFT_RATE = 1.5  # m/s: no foot is lifted or lowered faster; a recorded one is
-_ROLL_RATE = 16.0  # rad/s: nor tilted
+_ROLL_RATE, _SLAP = 14.0, 6.0  # rad/s: nor tilted; nor do the toes of one that stands on its heel come down
 _STILL = 1e-3  # m/s: below, the root rests
 
 
@@ -72,7 +72,7 @@ def land(foot: Floats) -> None:
 @inner_exact_kernel
 def tilt(foot: Floats, pitch: float, dt: float) -> None:
     """Pitch a foot towards what it should be, no faster than feet roll."""
-    most = _ROLL_RATE * dt
+    most = dt * (_SLAP if foot[PITCH] < 0.0 and foot[SWING] <= 0.0 else _ROLL_RATE)
     foot[PITCH] += min(max(pitch - foot[PITCH], -most), most)
 
 

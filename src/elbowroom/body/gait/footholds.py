@@ -17,6 +17,7 @@ from elbowroom.body.gait.cycle import GaitShape, Stride, home_of, stride_of
 from elbowroom.body.gait.foot_state import (
     LIFT,
     LIFT_RATE,
+    PITCH,
     SWING,
     VELOCITY,
     YAW,
@@ -46,7 +47,7 @@ _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so nea
 _FAR, _TWISTED = 0.75, 0.9  # of a leg, radians: a standing foot farther off has to follow soon
 _SWINGS = (0.20, 0.36, 0.80)  # seconds of a standard leg's swing: at least, to come to rest, at most
 _TURNING = 0.25  # metres of a standard leg: so much way over the ground is a radian
-_OVER = 0.04  # of the cycle, by which a foot may stand longer than in an even walk
+_OVER = 0.005  # of the cycle, by which a foot may stand longer than in an even walk
 _LATE = 0.75  # of the cycle's swing: who has not lifted a foot by then leaves it
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
@@ -54,6 +55,9 @@ _HASTE = 2.0  # times as fast as else a foot of a recorded walk is lifted
 _FASTEST = 5.0  # m/s of a foot on a standard leg over the ground, where the root stands
 _NEARLY = 0.12  # metres: so near it lands
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
+_SLOWLY, _RISEN = 0.1, 0.15  # of how fast a foot is lifted, as it leaves the ground; of its swing until all of it
+_ALMOST = 0.999  # of a swing is all of it
+_BOUND, _BINDING = 0.75, 0.1  # of a swing: from then on a foot goes on to where it goes, more and more
 _THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
 
@@ -141,7 +145,7 @@ def _time_left(
         left = min(left, 0.5 * stride.duty * stride.period - _passed(own, legs, stride, 1 - side, twin))
         if _overtaken(legs, 1 - side, twin):
             left = 0.0
-    return float(min(max(left, least - dt), most))
+    return float(min(max(left, least - dt), most - dt))
 
 
 @inner_exact_kernel
@@ -220,6 +224,35 @@ def _farther(goal: tuple[float, float, float], ahead: float) -> tuple[float, flo
 
 
 @helper
+def _way_over(stride: Stride) -> float:
+    """The part of a swing in which a foot goes over the ground: in steps aside and round it only comes down then."""
+    return 1.0 - _DOWN * (1.0 - straight_part(stride))
+
+
+@helper
+def _bound_for(
+    own: OwnSteps, stride: Stride, side: int, foot: Floats, goal: tuple[float, float, float], left: float
+) -> tuple[float, float, float]:
+    """Where a swinging foot lands in `left` seconds that should at a place (x, z, yaw): one that nearly has, where it
+    was going to, but for hardly a step's worth."""
+    share = min(max((foot[SWING] - _BOUND) / _BINDING, 0.0), 1.0)
+    if share <= 0.0:
+        return goal
+    way = _way_over(stride)
+    part, left = min(foot[SWING] / way, 1.0), left * max(way - foot[SWING], 0.0) / max(1.0 - foot[SWING], 1.0 - _ALMOST)
+    ahead = left * (1.0 + 2.0 * part) / (6.0 * part)  # what is left of an even swing, at the speed that it has by then
+    aside = own_detour(own, stride, side, part)
+    x, z, yaw = (
+        foot[X] - aside[0] + ahead * foot[VELOCITY] - goal[0],
+        foot[Z] - aside[1] + ahead * foot[VELOCITY + 1] - goal[1],
+        foot[YAW] - aside[2] + ahead * foot[VELOCITY + 2] - goal[2],
+    )
+    beside = max(np.hypot(x, z) / (_CLOSED * stride.scale), abs(yaw) / _TURNED)
+    share *= min(max(beside - 1.0, 0.0), 1.0) if part < 1.0 else 1.0
+    return goal[0] + share * x, goal[1] + share * z, goal[2] + share * yaw
+
+
+@helper
 def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
     """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
     rest, start, slope = 1.0 - part, foot[i], foot[VELOCITY + i] * time
@@ -254,6 +287,12 @@ def _time_over_ground(
 
 
 @helper
+def _kept(w: float) -> float:
+    """How much is left, when `w` of its swing is over, of what a foot was pitched otherwise than in an even walk."""
+    return float((1.0 - w) * (1.0 - w) * (1.0 + 2.0 * w))
+
+
+@helper
 def _swing(
     own: OwnSteps,
     stride: Stride,
@@ -269,7 +308,7 @@ def _swing(
     """
     (dt, left), done = times, foot[SWING]
     after = done + (1.0 - done) * dt / (left + dt)
-    way = 1.0 - _DOWN * (1.0 - straight_part(stride))  # of the swing, in which it goes over the ground
+    way = _way_over(stride)
     over, there = min(done / way, 1.0), min(after / way, 1.0)
     before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
     for i in range(3):
@@ -286,13 +325,16 @@ def _swing(
     foot[X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
     x, z = _beside_twin(side, foot[X] - twin[X], foot[Z] - twin[Z], 0.0, stride.scale)
     foot[X], foot[Z], foot[SWING] = twin[X] + x, twin[Z] + z, after
-    pitch, lift = own_roll(own, stride, side, stride.duty + (1.0 - stride.duty) * after)
+    rest = 1.0 - stride.duty
+    left_off, _ = own_roll(own, stride, side, stride.duty + rest * done)
+    pitch, lift = own_roll(own, stride, side, stride.duty + rest * after)
+    pitch += (foot[PITCH] - left_off) * _kept(after) / max(_kept(done), _kept(_ALMOST))
     low = least_lift(stride, after)
-    most = LIFT_RATE * dt if own.speed <= 0.0 else _HASTE * LIFT_RATE * dt
+    most = LIFT_RATE * dt * min(_SLOWLY + after / _RISEN, 1.0) * (1.0 if own.speed <= 0.0 else _HASTE)
     foot[LIFT] += min(max(max(lift, low) - foot[LIFT], -most), most)
     if left <= 0.0:
         land(foot)
-    return pitch
+    return float(pitch)
 
 
 @helper
@@ -341,13 +383,17 @@ def step_feet(
         if max(left, right) > 0.0:
             lifted = 0 if left >= right else 1
     for side in range(2):
-        foot, twin = (one, other) if side == 0 else (other, one)
+        (foot, twin), pitch = (one, other) if side == 0 else (other, one), 0.0
         if foot[SWING] > 0.0 or lifted == side:
-            since = _lifted_since(stride, side, root, dt) if lifted == side else dt
+            since = dt
+            if lifted == side:
+                since = _lifted_since(stride, side, root, dt)
+                tilt(foot, _pitch_in_stance(own, legs, stride, side, foot), dt - since)
             left = max(_time_left(own, legs, stride, side, root, foot, twin, since), 0.0)
             lands = left if left > 0.0 else -_landed_since(stride, side, root, dt)
             under = _goal(own, legs, scale, side, root, coming, lands, later)
             goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
+            goal = _bound_for(own, stride, side, foot, goal, since + left)
             needed = _time_needed(stride, foot, goal)
             if left < needed and not _overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (_SWINGS[1] * np.sqrt(scale))
@@ -355,7 +401,7 @@ def step_feet(
                 goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
                 foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
             pitch = _swing(own, stride, side, goal, (since, left), foot, twin)
-        else:
+        if foot[SWING] <= 0.0:
             pitch = _pitch_in_stance(own, legs, stride, side, foot)
         tilt(foot, pitch, dt)
 
@@ -374,6 +420,7 @@ def landing(
     left = max(_time_left(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
     under = _goal(own, legs, scale, side, row, coming, left, later)
     goal = _kept_apart(side, _farther(under, farther[side]), twin, scale)
+    goal = _bound_for(own, stride, side, foot, goal, left)
     return goal[0], goal[1], goal[2], max(left, _time_needed(stride, foot, goal))
 
 

@@ -18,6 +18,7 @@ Floats = NDArray[np.float64]
 
 _THIGH, _SHIN = 8, 9  # columns of `GaitShape.legs`
 _STRETCH = 0.9985  # of a leg: no foot is farther from its hip
+_SOFTLY = 0.0075  # of a leg, about the place of the hips from where on a foot is out of reach, in which they come down
 _UNEVEN = 0.02  # metres that ground rises or falls under the feet, from which on legs are bent as in the cycle there
 
 
@@ -29,6 +30,15 @@ def _raised(legs: Floats, side: int, row: Floats, foot: Floats) -> float:
     raise_foot(foot, ahead, rise, slope)
     part = min((abs(row[RISES]) + abs(row[RISES + 2])) / _UNEVEN, 1.0)
     return drop_to(legs, side, foot, _STRETCH + part * (STRETCH - _STRETCH))
+
+
+@helper
+def _pulled(down: float, needed: float, soft: float) -> float:
+    """How far hips come down that are so far `down` and that a foot needs lower: the greater, and no sudden turn."""
+    over = needed - down
+    if over <= -soft:
+        return down
+    return needed if over >= soft else down + (over + soft) * (over + soft) / (4.0 * soft)
 
 
 @kernel
@@ -53,6 +63,6 @@ def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, loweri
             x, y, z = carried_hip(legs, rows[n], lean, side)
             dx, dz = feet[n, side, 0] - x, feet[n, side, 2] - z + back
             reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-            down = max(down, y - feet[n, side, 1] - reach)
+            down = _pulled(down, y - feet[n, side, 1] - reach, _SOFTLY * length)
         sinks[n, 0], sinks[n, 1], sinks[n, 2] = down, back, lean
     return feet, sinks

@@ -10,11 +10,12 @@ where `living` carries them. Aside, backward and in turns on the spot feet roll 
 from elbowroom.body.gait.cycle import Stride, roll_of
 from elbowroom.jit import helper, inner_kernel
 
-_STRIKE, _FLAT = 0.261, 0.095  # radians, toes up, at heel strike; part of the stance at which the foot is flat
-_RISE, _ROLL = 0.692, 3.34  # part of the stance from which the heel rises; how late it does so
+_STRIKE, _FLAT = 0.261, 0.14  # radians, toes up, at heel strike; part of the stance at which the foot is flat
+_RISE, _ROLL = 0.694, 3.34  # part of the stance from which the heel rises; how late it does so
 _TOE_OFF, _ROLLING = 0.966, 3.8  # radians of pitch where the toes leave the ground; how fast it grows there, a swing
 _LESS = 0.485  # radians, by which the pitch is less than that would lead to, in the middle of the swing
 _LEAST = 0.028  # metres that a standard leg's foot is lifted in any step
+_CREEP = 0.03  # m/s: steps that are hardly as quick lead nowhere
 _LIFT, _EARLY, _SOON = 0.078, 0.5, 0.6  # metres of a standard leg; how much of them comes early, and how soon
 
 
@@ -22,7 +23,9 @@ _LIFT, _EARLY, _SOON = 0.078, 0.5, 0.6  # metres of a standard leg; how much of 
 def straight_part(stride: Stride) -> float:
     """The part of the steps that leads ahead or back, 0 to 1; the rest goes aside or turns."""
     along = stride.forward * stride.forward
-    return float(along / (along + stride.lateral * stride.lateral + (0.3 * stride.scale * stride.turn) ** 2 + 1e-9))
+    return float(
+        along / (along + stride.lateral * stride.lateral + (0.3 * stride.scale * stride.turn) ** 2 + _CREEP**2)
+    )
 
 
 @inner_kernel
