@@ -44,6 +44,12 @@ def test_wherever_two_meet_they_share_the_way(width: float, kind: Kind) -> None:
     assert [met.start for seed in range(20) if not (met := meet(drawn(width, kind, seed))).well] == []
 
 
+@pytest.mark.long
+def test_who_stand_in_each_others_way_do_not_touch() -> None:
+    """Both are at a loss at times, and then each shows something else than it said."""
+    assert not meet(drawn(1.0, Kind.WALKS, 18)).touched
+
+
 def seen(x: float, z: float, wanted: tuple[float, float]) -> Neighbour:
     """Somebody at a place who wants to go somewhere."""
     walker = Walker(np.array([x, z]), np.array(wanted))

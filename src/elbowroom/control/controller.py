@@ -98,10 +98,10 @@ class Controller:
 
     def _settle_in(self, standing: Scene) -> None:
         """Check and plan among what stands now: all of the scene, or all but what is loose."""
-        others = self.others
+        others, told = self.others, self._check.told
         self._around = PlanningScene(self.humanoid, standing, self.settings, self._fitted)
         self._showing.go_among(self._around)
-        self.others = others
+        self.others, self._check.told = others, told
 
     @property
     def _check(self) -> BodyCheck:
@@ -200,10 +200,15 @@ class Controller:
         self._check.others = tuple(neighbours)
 
     def prediction(self) -> Neighbour:
-        """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`."""
+        """Where this avatar will be, as far as key frames are known and then straight on: for others' `others`.
+
+        From then on it shows nothing that would touch who goes by that.
+        """
         onward = self._command.forward > 0.0
         model, walker = self._check.model, self._walker()
-        return neighbour(self.humanoid, model, walker, self._shown, self._queue, self._showing.follow, onward=onward)
+        told = neighbour(self.humanoid, model, walker, self._shown, self._queue, self._showing.follow, onward=onward)
+        self._check.told = told
+        return told
 
     def _walker(self, command: Command | None = None) -> Walker:
         """Where this avatar is, and where to it is asked to go, with what was planned for last or with a command."""

@@ -13,6 +13,7 @@ from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.control.others.neighbour import Neighbour
+from elbowroom.control.others.room_left import in_world, leaves_room
 from elbowroom.control.shown.standing_about import (
     HALVINGS,
     capsules_of,
@@ -83,6 +84,7 @@ class BodyCheck:
         self._empty = not len(scene.obstacles)
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
+        self.told: Neighbour | None = None  # what they know of this one
 
     @property
     def footing(self) -> Footing:
@@ -189,6 +191,14 @@ class BodyCheck:
         if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, ends, floors):
             return False
         return not self.accompanied or self._free_of_movers(frames, (before, after))
+
+    def leaves_room(self, frames: Frames) -> bool:
+        """Whether the second frame leaves others the room that they count on; see `others/room_left.py`."""
+        if self.told is None or not self.others:
+            return True
+        ends = [self._pose(root, upper) for root, upper in zip(frames.roots, frames.uppers, strict=True)]
+        was, shown = (in_world(end.axes, end.root) for end in ends)
+        return all(leaves_room(self.told, other, was, shown, frames.times[1]) for other in self.others)
 
     def _free_of_movers(self, frames: Frames, ends: tuple[_Pose, _Pose]) -> bool:
         """Whether the whole body is proven free of all that can move between two frames."""

@@ -190,9 +190,8 @@ class Showing:
             return True  # away from what has come upon it
         if clearance < 0.0:
             return False
-        return check.free_between(
-            Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
-        )
+        frames = Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
+        return check.leaves_room(frames) and check.free_between(frames)
 
     def _show(self, pose: Playback, clearance: float, *, back: bool = False) -> None:
         if clearance < 0.0 or self._clearance < 0.0 or not self.assist:
