@@ -106,7 +106,7 @@ def naive_flows(outcomes: list[bool], steps: int) -> list[Phase]:
     return flows
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(outcomes=st.lists(st.booleans(), max_size=20))
 def test_flows_follow_the_figure(outcomes: list[bool]) -> None:
     with pytest.MonkeyPatch.context() as patch:
