@@ -59,7 +59,7 @@ def test_a_flipped_byte_is_found_before_it_is_read(tmp_path: Path, ending: str) 
     assert kernel.load_overload(b"float", None) == b"float" + b"code" * 99
     flip(tmp_path / f"{NAME}{ending}")
     assert kernel.load_overload(b"float", None) is None
-    assert list(tmp_path.iterdir()) == []
+    assert [file for file in tmp_path.iterdir() if file.suffix != ".lock"] == []  # it is this one's turn to compile it
     kernel.save_overload(b"float", b"anew")
     assert kernel.load_overload(b"float", None) == b"floatanew"
 
@@ -82,7 +82,7 @@ def test_what_is_damaged_before_anybody_knew_it_is_compiled_anew(tmp_path: Path)
     OwnCache(tmp_path).save_overload(b"float", b"code")
     (tmp_path / f"{NAME}.1.nbc").write_bytes(b"")
     assert kept(tmp_path).load_overload(b"float", None) is None
-    assert list(tmp_path.iterdir()) == []
+    assert [file for file in tmp_path.iterdir() if file.suffix != ".lock"] == []  # it is this one's turn to compile it
 
 
 @pytest.mark.parametrize("damage", [b"", b"{", b"[]", b"\xff", b'{"a": "x"}'])

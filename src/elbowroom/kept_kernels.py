@@ -18,6 +18,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from elbowroom.kernel_turns import Turn
+
 _UNREADABLE = (OSError, ValueError, TypeError)
 
 
@@ -27,11 +29,25 @@ class KeptKernel:
     def __init__(self, cache: Any, folder: Path, name: str) -> None:
         """`cache` is Numba's own, which keeps files in `folder` whose names begin with `name`."""
         self._cache, self._folder, self._name = cache, folder, name
+        self._turn = Turn(folder / f"{name}.lock")
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._cache, name)
 
     def load_overload(self, signature: Any, context: Any) -> Any:
+        """The machine code for a signature; None if there is none, or none that is whole: then it is compiled here.
+
+        Where another process is compiling it, that is waited for.
+        """
+        found = self._load(signature, context)
+        if found is None:
+            self._turn.take()
+            found = self._load(signature, context)
+            if found is not None:
+                self._turn.give_up()
+        return found
+
+    def _load(self, signature: Any, context: Any) -> Any:
         """The machine code for a signature; None if there is none, or none that is whole."""
         known = _sum_file(self._folder, self._name).exists()
         if is_whole(self._folder, self._name):
@@ -49,6 +65,7 @@ class KeptKernel:
             _sum_file(self._folder, self._name).unlink(missing_ok=True)
             self._cache.save_overload(signature, code)
             note(self._folder, self._name)
+        self._turn.give_up()
 
 
 def name_of(file: Path, qualified_name: str, line: int) -> str:

@@ -3,6 +3,7 @@
 Some of their parts can be had alone, without a plan: so that another process may compile them meanwhile.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -70,7 +71,13 @@ _SILL = (0.0, 0.05, 1.0), (0.5, 0.05, 0.5)  # the same of one that is stepped on
 
 @lru_cache(maxsize=4)
 def rehearse(humanoid: Humanoid) -> None:
-    """Plan once each way, joint step, added postures and certificate included; once for each humanoid."""
+    """All of `REHEARSALS`, once for each humanoid."""
+    for rehearsal in REHEARSALS.values():
+        rehearsal(humanoid)
+
+
+def rehearse_plans(humanoid: Humanoid) -> None:
+    """Plan once each way, joint step, added postures and certificate included."""
     path = _straight_on()
     for box in (_BESIDE, _WALL):
         body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
@@ -78,17 +85,6 @@ def rehearse(humanoid: Humanoid) -> None:
         search = body.plan(path, StartState(start, np.zeros_like(start))).search
         search.together(1)
         search.blockade()
-    rehearse_own_body(humanoid)
-    rehearse_detour(humanoid)
-    rehearse_crouch(humanoid)
-    rehearse_narrow(humanoid)
-    rehearse_feet(humanoid)
-    rehearse_product()
-    rehearse_mesh()
-    rehearse_place()
-    rehearse_ground(humanoid)
-    rehearse_way(humanoid)
-    rehearse_fit()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
@@ -225,3 +221,21 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     ends = (rest[0], rest[0], rest[0], rest[0])
     moved = MovedLimb(postures, levers_of(model, limb), chain)
     limb_sweep(new_scratch(postures, chain.waist, box), ways, moved, carrier, ends, box, 0.0)
+
+
+# All of them, by names; those that take longest to compile come first.
+REHEARSALS: dict[str, Callable[[Humanoid], object]] = {
+    "plans": rehearse_plans,
+    "proof": rehearse_proof,
+    "detour": rehearse_detour,
+    "own body": rehearse_own_body,
+    "feet": rehearse_feet,
+    "way": rehearse_way,
+    "crouch": rehearse_crouch,
+    "product": lambda _: rehearse_product(),
+    "mesh": lambda _: rehearse_mesh(),
+    "fit": lambda _: rehearse_fit(),
+    "place": lambda _: rehearse_place(),
+    "narrow": rehearse_narrow,
+    "ground": rehearse_ground,
+}

@@ -49,7 +49,7 @@ def compile_(
 
 def measure(*, quiet: bool) -> CompileCost:
     """Compile into a folder of its own, with a progress bar unless `quiet`."""
-    from elbowroom.server.kernels.compiling import PARTS, compile_parts
+    from elbowroom.server.kernels.compiling import compile_all, processes
     from elbowroom.server.kernels.kernel_cache import session_kernels
 
     with (
@@ -58,13 +58,13 @@ def measure(*, quiet: bool) -> CompileCost:
     ):
         began, before = time.perf_counter(), os.times()
         environment = os.environ | {"NUMBA_CACHE_DIR": folder}
-        complete = compile_parts(lambda kernel, number: bar.move(number, kernel), environment)
+        complete = compile_all(lambda kernel, number: bar.move(number, kernel), environment)
         seconds, after = time.perf_counter() - began, os.times()
         kept = compiled_in(Path(folder))
         return CompileCost(
             seconds=seconds,
             cpu_seconds=after.children_user + after.children_system - before.children_user - before.children_system,
-            processes=min(len(PARTS), os.cpu_count() or 1),
+            processes=processes(),
             kernels=len(kept),
             compilations=sum(kept.values()),
             repeated=tuple(sorted(kernel for kernel, count in kept.items() if count > 1)),

@@ -14,7 +14,7 @@ def compile_(
     *,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Compile all kernels now, about a minute; else the first command that needs them does it."""
+    """Compile all kernels now, one to three minutes; else the first command that needs them does it."""
     compile_first(quiet=quiet)
 
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.foot_state import YAW, X, Z
-from elbowroom.body.gait.footholds import Stepper
 from elbowroom.body.gait.gliding import glide_feet
+from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.feet.treading import step_on

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
-from elbowroom.body.gait.footholds import Stepper
 from elbowroom.body.gait.gliding import glide_feet
+from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.living import Body, live
 from elbowroom.body.pose.whole_body import posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.foot_state import standing
-from elbowroom.body.gait.footholds import UNKNOWN, Stepper, beside, settled
+from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
 from elbowroom.body.gait.gliding import gliding
+from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.living import body_of, lively, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body

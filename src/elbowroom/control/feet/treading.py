@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
-from elbowroom.body.gait.footholds import Stepper, landing, step_feet
+from elbowroom.body.gait.footholds import landing, step_feet
+from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.jit import helper, inner_exact_kernel
 from elbowroom.planning.model.footing import OVER, Underfoot, in_world, stood_at

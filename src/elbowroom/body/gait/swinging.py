@@ -1,0 +1,94 @@
+"""How a foot swings to where it lands: over the ground without a jump of its place or velocity, rolled and lifted."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.cycle import Stride
+from elbowroom.body.gait.foot_state import LIFT, LIFT_RATE, PITCH, SWING, VELOCITY, YAW, X, Z, land
+from elbowroom.body.gait.landing_places import ALMOST, beside_twin, way_over
+from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
+from elbowroom.body.gait.roll import least_lift
+from elbowroom.body.gait.stepping_times import TURNING
+from elbowroom.jit import helper, inner_exact_kernel
+
+Floats = NDArray[np.float64]
+
+_HASTE = 2.0  # times as fast as else a foot of a recorded walk is lifted
+_SLOWLY, _RISEN = 0.1, 0.15  # of how fast a foot is lifted, as it leaves the ground; of its swing until all of it
+_THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
+
+
+@helper
+def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> None:
+    """Move one number of a foot the `part` of the way to a goal where it will rest in `time` seconds: a cubic."""
+    rest, start, slope = 1.0 - part, foot[i], foot[VELOCITY + i] * time
+    foot[i] = rest * rest * ((1.0 + 2.0 * part) * start + part * slope) + part * part * (3.0 - 2.0 * part) * goal
+    change = 6.0 * part * rest * (goal - start) + rest * (rest - 2.0 * part) * slope
+    foot[VELOCITY + i] = change / time
+
+
+@helper
+def _time_over_ground(
+    stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], foot: Floats
+) -> float:
+    """Seconds in which a swinging foot goes over its place; none where it is there.
+
+    `times` are the seconds until it lands, and until it should be over that place. It takes more of them where that has
+    changed since.
+    """
+    (lands, over), wide = times, TURNING * stride.scale
+    way = np.hypot(goal[0] - foot[X], goal[1] - foot[Z]) + wide * abs(goal[2] - foot[YAW])
+    if over <= 0.0 and way < _THERE * stride.scale:
+        return 0.0
+    return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale))), lands))
+
+
+@helper
+def _kept(w: float) -> float:
+    """How much is left, when `w` of its swing is over, of what a foot was pitched otherwise than in an even walk."""
+    return float((1.0 - w) * (1.0 - w) * (1.0 + 2.0 * w))
+
+
+@inner_exact_kernel
+def swing_foot(
+    own: OwnSteps,
+    stride: Stride,
+    side: int,
+    goal: tuple[float, float, float],
+    times: tuple[float, float],
+    foot: Floats,
+    twin: Floats,
+) -> float:
+    """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants.
+
+    In steps aside and round it is over its place before it comes down: it would rub over the ground.
+    """
+    (dt, left), done = times, foot[SWING]
+    after = done + (1.0 - done) * dt / (left + dt)
+    way = way_over(stride)
+    over, there = min(done / way, 1.0), min(after / way, 1.0)
+    before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
+    for i in range(3):
+        foot[i] -= before[i]
+    time = _time_over_ground(stride, goal, (left + dt, (left + dt) * (way - done) / (1.0 - done)), foot)
+    for i in range(3):
+        if time > 0.0:
+            _towards(foot, i, goal[i], min(dt / time, 1.0), time)
+        else:
+            foot[VELOCITY + i] = 0.0
+        foot[i] += then[i]
+    half = 0.5 * stride.duty * stride.period
+    sag = min(max(0.5 * stride.forward * stride.turn * half * half, -0.1 * stride.scale), 0.1 * stride.scale)
+    foot[X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
+    x, z = beside_twin(side, foot[X] - twin[X], foot[Z] - twin[Z], 0.0, stride.scale)
+    foot[X], foot[Z], foot[SWING] = twin[X] + x, twin[Z] + z, after
+    rest = 1.0 - stride.duty
+    left_off, _ = own_roll(own, stride, side, stride.duty + rest * done)
+    pitch, lift = own_roll(own, stride, side, stride.duty + rest * after)
+    pitch += (foot[PITCH] - left_off) * _kept(after) / max(_kept(done), _kept(ALMOST))
+    low = least_lift(stride, after)
+    most = LIFT_RATE * dt * min(_SLOWLY + after / _RISEN, 1.0) * (1.0 if own.speed <= 0.0 else _HASTE)
+    foot[LIFT] += min(max(max(lift, low) - foot[LIFT], -most), most)
+    if left <= 0.0:
+        land(foot)
+    return float(pitch)
