@@ -278,6 +278,7 @@ def test_files_that_are_no_text_too_big_or_absent(tmp_path: Path) -> None:
     ("name", "content", "kind"),
     [
         ("room.json", b"glTF\x02\x00\x00\x00\xff\xfe", "a glTF model"),
+        ("alice.vrm", b"glTF\x02\x00\x00\x00", "a VRM avatar, which walks by --avatar"),
         ("room.json", b'{"asset": {"version": "2.0"}}', "a glTF model"),
         ("room.ifc", b"\nISO-10303-21;\nHEADER;", "an IFC or STEP model"),
         ("room.dae", b'<COLLADA version="1.4.1"/>', "a COLLADA model"),

@@ -13,7 +13,7 @@ _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"BLENDER", "a Blender file"),
     (b"#usda", "a USD model"),
     (b"#VRML", "a VRML model"),
-    (b"glTF", "a glTF model (GLB or VRM)"),
+    (b"glTF", "a glTF model that is not called .glb"),
     (b"#X3D", "an X3D model"),
     (b"solid", "an STL model"),
     (b"ply", "a PLY model"),
@@ -38,13 +38,14 @@ _ENDINGS = {
     ".usda": "a USD model",
     ".usdc": "a USD model",
     ".usdz": "a USD model",
-    ".vrm": "a VRM avatar",
+    ".vrm": "a VRM avatar, which walks by --avatar",
     ".vrml": "a VRML model",
     ".wrl": "a VRML model",
     ".x3d": "an X3D model",
     ".x3dv": "an X3D model",
     ".x3dz": "an X3D model",
 }
+_AVATAR = ".vrm"  # begins as other glTF models do
 _LOOKED_AT = 4096  # bytes
 
 
@@ -52,6 +53,8 @@ def foreign_kind(path: Path) -> str | None:
     """What a file is, by how it begins or else by its name; None where it may be JSON. Raises OSError."""
     with path.open("rb") as file:
         head = file.read(_LOOKED_AT).removeprefix(b"\xef\xbb\xbf").lstrip()
+    if path.suffix.lower() == _AVATAR:
+        return _ENDINGS[_AVATAR]
     for beginning, kind in _BEGINNINGS:
         if head.startswith(beginning):
             return kind
