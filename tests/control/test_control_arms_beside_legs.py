@@ -47,3 +47,15 @@ def test_no_arm_is_spread_beyond_its_limits() -> None:
         upper[columns_of(arm)] = 1.2, limits(arm)[1, 1], 0.0, 0.0  # it is as far out as it goes
     root = beside(MODEL.gait, np.zeros(ROOT_STATE))
     np.testing.assert_array_equal(ARMS_BESIDE.apart(root, upper), upper)
+
+
+def test_arms_that_have_no_room_for_more_leave_legs_just_what_they_need() -> None:
+    moved = 0
+    for aside in np.linspace(0.0, 0.35, 15):
+        root = beside(MODEL.gait, np.zeros(ROOT_STATE))
+        root[ROOT_STATE] += aside
+        barely, spread = ARMS_BESIDE.barely_apart(root, HANGING), ARMS_BESIDE.apart(root, HANGING)
+        assert ARMS_BESIDE.are_clear(root, barely)
+        assert np.all(np.abs(barely - HANGING) <= np.abs(spread - HANGING) + 1e-9)
+        moved += barely is not HANGING
+    assert moved > 2

@@ -1,17 +1,29 @@
 """Who is held in mid-stride by a stop that came late gets away again: lower, or with arms beside the legs."""
 
 import random
+from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import ROOT_STATE
+from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.controller import Controller
+from elbowroom.control.key_frame_queue import Playback
+from elbowroom.control.plans.canned import standing_posture
+from elbowroom.control.plans.planning_scene import PlanningScene
+from elbowroom.control.settings import ControlSettings
+from elbowroom.control.shown.body_check import BodyCheck
+from elbowroom.control.shown.showing import Showing
 from elbowroom.experiment.gauntlet.scenes import course_scene
 from elbowroom.planning.command import Command
+from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root.pace import at_speed
 from elbowroom.world.scene import Scene
 
 ONE_TURN = 1 / 60  # seconds
+LOW = 1.75  # metres: so near that it is measured
 IMPATIENT, PATIENCE = 1.0, 10.0  # seconds
 
 
@@ -36,6 +48,48 @@ def longest_wait(scene: Scene, seed: int, seconds: float) -> float:
         if longest >= PATIENCE:
             break
     return longest
+
+
+def standing_under(slab: float) -> Showing:
+    """One who stands so many metres under a slab."""
+    humanoid, root = Humanoid.default(), np.zeros(ROOT_STATE)
+    crown = BodyCheck(humanoid, Scene.of("sky", [ceiling(LOW)], finish=(0.0, 5.0)))
+    height = LOW - crown.clearance(root, standing_posture(root), 0.0)
+    scene = Scene.of("slab", [ceiling(height + slab)], finish=(0.0, 5.0))
+    around = PlanningScene(humanoid, scene, ControlSettings(DEFAULT_PLANNER, 5, 0.15, 0, True), STOCK)
+    return Showing(around, root, assist=True)
+
+
+def ceiling(height: float) -> dict[str, object]:
+    return {"type": "box", "center": [0.0, height + 0.1, 0.0], "size": [2.0, 0.2, 2.0]}
+
+
+def test_where_nothing_else_is_free_one_is_held_to_the_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who has no room to stand in would go into the knees: not unless that is free."""
+    showing = standing_under(0.005)
+    shown = showing.pose
+    monkeypatch.setattr(Showing, "_is_free", lambda *_: False)
+    showing.hold(ONE_TURN, ONE_TURN)
+    assert np.array_equal(showing.pose.root, shown.root)
+    assert np.array_equal(showing.pose.upper, shown.upper)
+
+
+@pytest.mark.parametrize(("has", "offered", "keeps"), [(9.0, 1.9, False), (9.0, 2.1, True), (1.0, 0.9, False)])
+def test_legs_come_to_a_stand_where_that_leaves_a_motion_room_to_begin(
+    monkeypatch: pytest.MonkeyPatch, has: float, offered: float, keeps: bool
+) -> None:
+    """Millimetres that one who is held has about the body, and that it would have with its legs nearer to a stand."""
+    showing = standing_under(0.001 * has)
+    nearer = showing.pose._replace(upper=showing.pose.upper + 1e-3)
+
+    def settling(_: Showing, dt: float) -> Iterator[Playback]:
+        yield nearer
+
+    monkeypatch.setattr(Showing, "_settling", settling)
+    monkeypatch.setattr(Showing, "_is_free", lambda *_: True)
+    monkeypatch.setattr(Showing, "_clearance_of", lambda *_: 0.001 * offered)
+    showing.hold(ONE_TURN, ONE_TURN)
+    assert np.array_equal(showing.pose.upper, nearer.upper) == keeps
 
 
 @pytest.mark.long

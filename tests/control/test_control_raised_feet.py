@@ -1,6 +1,7 @@
 """Feet that glide on ground that is not a plane: where they have no room at once they take another way."""
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
@@ -11,7 +12,7 @@ from elbowroom.body.root import RISES, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
-from elbowroom.control.feet.feet import Around, Look, Moment
+from elbowroom.control.feet.feet import Around, Look, Moment, RoomAbove
 from elbowroom.control.feet.raised import raised
 from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.key_frame_queue import Playback
@@ -36,7 +37,9 @@ def settling(rise: float, look: Look) -> list[Playback]:
     """How a pose with a raised foot is held where legs are not clear enough to step."""
     shown = FEET.standing(before(0.0))
     shown[RISES + 2] = rise
-    moment = Moment(Playback(shown, UPPER, UPPER), DT, UNKNOWN, -1.0, look, lambda roots, upper: 0.0)
+    moment = Moment(
+        Playback(shown, UPPER, UPPER), DT, UNKNOWN, -1.0, look, lambda roots, upper: 0.0, lambda root, upper: 0.0
+    )
     return list(FEET.settling(moment, Playback(shown, UPPER, UPPER)))
 
 
@@ -70,3 +73,33 @@ def test_arms_make_way_for_raised_legs_and_if_that_touches_they_are_as_planned()
     assert spread[0] is ways[0]
     assert np.allclose(spread[0].upper, arms.apart(spread[0].root, UPPER))
     assert any(np.allclose(way.root, spread[0].root) for way in ways if way.upper is UPPER)
+
+
+def ways_under(rise: float, room_above: RoomAbove) -> list[Playback]:
+    """How a pose is shown next whose right foot was raised and is planned on the ground."""
+    shown = FEET.standing(before(0.0))
+    shown[RISES + 2] = rise
+    look = Around(0.5, lasts=True)
+    moment = Moment(
+        Playback(shown, UPPER, UPPER), DT, UNKNOWN, -1.0, lambda *_: look, lambda roots, upper: 0.0, room_above
+    )
+    return [way for way, _ in FEET.under(moment, [(Playback(before(0.0), UPPER, UPPER), np.zeros(3))])]
+
+
+def test_whatever_feet_do_arms_make_way_and_ways_with_a_hand_in_a_thigh_come_last() -> None:
+    arms, ways = arms_beside_legs(HUMANOID, STOCK), ways_under(0.3, lambda root, upper: 1.0)
+    clear = [arms.are_clear(way.root, way.upper) for way in ways]
+    first_touching = clear.index(False)
+    assert not any(clear[first_touching:])
+    made = {way.root.tobytes() for way in ways[:first_touching]}
+    assert {way.root.tobytes() for way in ways[first_touching:]} <= made, "each leg has a way with arms beside it"
+
+
+@pytest.mark.parametrize(("near", "farther", "others_first"), [(0.004, 0.02, True), (0.004, 0.005, False)])
+def test_what_comes_nearer_than_skin_gives_way_to_what_keeps_off(
+    near: float, farther: float, others_first: bool
+) -> None:
+    stepping = ways_under(0.2, lambda root, upper: 1.0)[0].root
+    ways = ways_under(0.2, lambda root, upper: near if np.allclose(root, stepping) else farther)
+    assert (not np.allclose(ways[0].root, stepping)) == others_first
+    assert any(np.allclose(way.root, stepping) for way in ways), "it is shown where no other is free"

@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 _NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
+_BARELY = 0.0005  # metres that it keeps where it has no room for more
 _ROUNDS, _LEAST = 3, 0.3  # of the way to the hand: what spreading an arm opens at least
 _ABDUCTION = 1  # its place in an arm's components
 
@@ -54,7 +55,16 @@ class ArmsBesideLegs:
         if both[0, 0] >= _NEAR and both[1, 0] >= _NEAR:
             return upper
         gaps = both[:, 0].astype(np.float64)
-        wanted, angles, slopes = _widened(gaps), np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
+        return self._spread(root, upper, gaps, _widened(gaps))
+
+    def barely_apart(self, root: Floats, upper: Floats) -> Floats:
+        """The same, no farther than needed: for where something else is in the arms' way."""
+        gaps = self._gaps(root, upper)[:, 0].astype(np.float64)
+        return upper if gaps.min() >= 0.0 else self._spread(root, upper, gaps, np.maximum(gaps, _BARELY))
+
+    def _spread(self, root: Floats, upper: Floats, gaps: Floats, wanted: Floats) -> Floats:
+        """The upper body with arms spread until the gaps of both to the legs, (2,) metres, are as wide as `wanted`."""
+        angles, slopes = np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
         spread, found = upper, gaps
         for _ in range(_ROUNDS):
             angles = np.clip(angles + (wanted - found) / slopes, 0.0, np.inf)
@@ -66,6 +76,10 @@ class ArmsBesideLegs:
             opened = np.divide(found - gaps, angles, out=np.full(len(ARMS), self._reach), where=angles > 0.0)
             slopes = np.clip(opened, _LEAST * self._reach, self._reach)
         return spread
+
+    def are_clear(self, root: Floats, upper: Floats) -> bool:
+        """Whether no arm of an upper body (LOCAL,) is deeper in the legs under `root` than it may be."""
+        return float(self._gaps(root, upper).min()) >= 0.0
 
     def _gaps(self, root: Floats, upper: Floats) -> Floats32:
         here, q = root[None].copy(), np.zeros((1, DOF))

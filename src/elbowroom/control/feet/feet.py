@@ -28,6 +28,7 @@ class Look(Protocol):
 
 
 RoomAlong = Callable[[Floats, Floats], float]  # metres from legs to what stands: roots with feet (N, WITH_FEET), upper
+RoomAbove = Callable[[Floats, Floats], float]  # metres from all that legs carry to what stands: a root with feet, upper
 
 
 class Moment(NamedTuple):
@@ -39,3 +40,4 @@ class Moment(NamedTuple):
     room: float  # metres about the whole body as it is shown; negative where that is not looked at
     look: Look
     room_along: RoomAlong
+    room_above: RoomAbove

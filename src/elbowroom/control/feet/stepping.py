@@ -37,7 +37,8 @@ _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
-_SKIN = 0.01  # metres: nearly all of a foot's surface is within so much of its capsules (`body/fitting/coverage.py`)
+_SKIN = 0.01  # metres: nearly all of the surface is within so much of the capsules (`body/fitting/coverage.py`)
+_FARTHER = 0.002  # metres that another way has to keep off more, to be taken for it
 _LONG = 60.0  # seconds in which feet have glided wherever they were planned
 
 
@@ -103,22 +104,69 @@ class Stepping:
 
         Where legs have room, and will have some, feet step to where the root is to come, else they glide to where they
         were planned, and arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go
-        as planned; or feet step, or wait.
+        as planned; or feet step, or wait. Last come those with an arm too deep in a leg.
         """
+        in_legs = list[tuple[Playback, Floats]]()
+        for way, stance, clear in self._ways_under(moment, played):
+            if clear:
+                yield way, stance
+            else:
+                in_legs.append((way, stance))
+        yield from in_legs
+
+    def _ways_under(
+        self, moment: Moment, played: Sequence[tuple[Playback, Floats]]
+    ) -> Iterator[tuple[Playback, Floats, bool]]:
+        """The same, and whether arms are clear of the legs."""
         still = moment._replace(room=_NOT_AT_ALL)
         for posed, stance in played:
-            alive = self.next(moment, posed)
-            yield alive, stance
-            if lively(moment.shown.root) or lively(alive.root):
-                yield self.next(still, posed), stance
+            for way in self._off_things(moment, self._made_way(moment, posed)):
+                yield way, stance, way.upper is posed.upper or self._arms.are_clear(way.root, way.upper)
         for how in (GLIDES, STEPS):
             for posed, stance in played:
                 for way in self._ways(still, posed, how):
-                    yield way, stance
+                    yield way, stance, self._arms.are_clear(way.root, way.upper)
         for posed, stance in played:
             waits = self._made(still._replace(dt=0.0), posed, STEPS).root
             if not self._is_strained(waits, posed.upper):
-                yield posed._replace(root=waits), stance
+                waiting = posed._replace(root=waits)
+                apart = waiting._replace(upper=self._arms.apart(waits, posed.upper))
+                for way in (apart, *self._less_apart(waiting)):
+                    yield way, stance, self._arms.are_clear(way.root, way.upper)
+
+    def _made_way(self, moment: Moment, posed: Playback) -> Iterator[Playback]:
+        """How a pose is shown where arms make way for legs: best first."""
+        still = moment._replace(room=_NOT_AT_ALL)
+        yield (alive := self.next(moment, posed))
+        if lively(moment.shown.root) or lively(alive.root):
+            yield self.next(still, posed)
+        glides = self._followed(still, posed, GLIDES)
+        yield posed._replace(root=glides.root, upper=self._arms.apart(glides.root, posed.upper, glides.gaps))
+
+    def _off_things(self, moment: Moment, ways: Iterator[Playback]) -> Iterator[Playback]:
+        """The same ways: where one comes so near to what stands that its skin could touch, others that do not first.
+
+        Plans keep off what stands; hips that come down to feet, or live, are not where these have them.
+        """
+        near = list[tuple[float, Playback]]()
+        for way in ways:
+            room = moment.room_above(way.root, way.upper)
+            if room >= _SKIN and not near:
+                yield way
+            else:
+                near.append((min(room, _SKIN), way))
+        while near:
+            best = 0
+            for n, (room, _) in enumerate(near):
+                best = n if room > near[best][0] + _FARTHER else best
+            yield near.pop(best)[1]
+
+    def _less_apart(self, pose: Playback) -> Iterator[Playback]:
+        """A pose whose arms leave the legs no more room than they must, if they are in them; and as it is."""
+        upper = self._arms.barely_apart(pose.root, pose.upper)
+        if upper is not pose.upper:
+            yield pose._replace(upper=upper)
+        yield pose
 
     def _ways(self, moment: Moment, posed: Playback, how: int) -> Iterator[Playback]:
         """How a pose can be shown on feet that follow in one of the ways: best first.
@@ -128,13 +176,13 @@ class Stepping:
         capsules, so legs that have less room than that come last.
         """
         if self._footing.plain:
-            yield posed._replace(root=self._followed(moment, posed, how).root)
+            yield from self._less_apart(posed._replace(root=self._followed(moment, posed, how).root))
             return
         close, as_planned = list[Playback](), list[Playback]()
         for root in [self._followed(moment, posed, how).root] if how != GLIDES else self._glides(moment, posed):
             upper = self._arms.apart(root, posed.upper)
             if upper is not posed.upper:
-                as_planned.append(posed._replace(root=root))
+                as_planned += self._less_apart(posed._replace(root=root))
             pose = posed._replace(root=root, upper=upper)
             if moment.look(root, upper).room < _SKIN:
                 close.append(pose)

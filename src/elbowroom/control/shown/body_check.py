@@ -82,6 +82,7 @@ class BodyCheck:
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
         self._around = self._that_can_move()
         self._empty = not len(scene.obstacles)
+        self._above = np.setdiff1d(np.arange(len(self._radii)), self.model.roots.indices)
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
         self.told: Neighbour | None = None  # what they know of this one
@@ -151,6 +152,10 @@ class BodyCheck:
         radii, floors = np.tile(legs.radii, len(roots)), np.tile(self.soles.floors_of_legs(roots), len(roots))
         found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors)
         return float(found.min(initial=np.inf))
+
+    def room_above(self, root: Floats, upper: Floats) -> float:
+        """Metres from all that is carried by pelvis and legs to what stands."""
+        return np.inf if self._empty else float(self._pose(root, upper).gaps[self._above].min())
 
     def room_of_trunk(self, root: Floats, upper: Floats, time: float) -> float:
         """The same of all that is carried by the shins: what feet stand on, and go over, is no nearer for them."""

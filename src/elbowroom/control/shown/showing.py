@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
+_TO_BEGIN = 0.002  # metres that a plan needs about the pose in which it begins: of what it has it may lose the half
 _BREATHES = 1 / 31  # seconds: who rests need not move in every frame
 
 
@@ -107,14 +108,15 @@ class Showing:
         self._show(posed, clearance, back=True)
 
     def _settle(self, dt: float) -> None:
-        """Stay, as the legs come to a stand where they can."""
+        """Stay, as the legs come to a stand where they can, and leave the room that a motion needs to begin."""
+        restless = self._around.check.restless
+        least = 0.0 if restless else min(self._clearance, _TO_BEGIN)
         for still in self._settling(dt):
             clearance = self._clearance_of(still.root, still.upper)
-            if not self.assist or self._is_free(still, clearance):
+            if not self.assist or (clearance >= least and self._is_free(still, clearance)):
                 break
         else:
-            still = still._replace(root=self._pose.root)
-            restless = self._around.check.restless
+            still = self._pose._replace(upper_velocity=np.zeros_like(self._pose.upper))
             clearance = self._clearance_of(still.root, still.upper) if restless else self._clearance
         self._show(still, clearance)
 
@@ -161,7 +163,8 @@ class Showing:
 
     def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
-        return Moment(self._pose, dt, ahead, self._room(), self._look, self._around.check.room_along)
+        check = self._around.check
+        return Moment(self._pose, dt, ahead, self._room(), self._look, check.room_along, check.room_above)
 
     def _room(self) -> float:
         """Metres about the body as it is shown; where ground is not plain, about what the shins carry."""
