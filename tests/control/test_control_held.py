@@ -20,6 +20,7 @@ from elbowroom.experiment.gauntlet.scenes import course_scene
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.root.pace import at_speed
+from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
 ONE_TURN = 1 / 60  # seconds
@@ -103,3 +104,17 @@ def test_who_is_held_in_a_stride_gets_away(course: int, seed: int, seconds: floa
 @pytest.mark.parametrize("seed", range(3))
 def test_nobody_who_stops_and_goes_is_stuck_for_good(course: int, seed: int) -> None:
     assert longest_wait(course_scene(f"gauntlet:5:{course}"), seed, 40.0) < PATIENCE
+
+
+@pytest.mark.long
+def test_who_finds_no_way_on_past_a_beam_comes_to_a_stand_as_gently_as_ever() -> None:
+    """A way round ends in the walk: where it is not made longer in time, it is braked, not broken off."""
+    controller, places = (
+        Controller(Humanoid.default(), course_scene("gauntlet:4:91057"), seed=0),
+        list[tuple[float, float]](),
+    )
+    while len(places) < 60 * 9.2:
+        root = controller.step(at_speed(Command(forward=1.0, direction=0.0), 1.1), ONE_TURN).root
+        places.append((float(root[0]), float(root[1])))
+    changes = np.linalg.norm(np.diff(np.array(places), 2, axis=0), axis=1) / ONE_TURN**2
+    assert changes.max() <= 1.01 * RootMotionSettings().braking

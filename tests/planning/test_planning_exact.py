@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
@@ -15,6 +15,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.control.plans.lookahead import Lookahead
+from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -144,3 +145,23 @@ def test_scene_d_is_crossed_straight_with_any_queue(humanoid: Humanoid, queue_si
     assert not any(frame.stuck for frame in frames)
     assert min(frame.clearance for frame in frames) > 0.0
     assert max(len(frame.key_frames.times) for frame in frames) <= queue_size + 1
+
+
+@pytest.mark.parametrize("aside", [-0.1, 0.0, 0.1])
+def test_who_stands_bent_where_the_head_has_no_room_to_rise_or_turn_can_stay(aside: float) -> None:
+    """The waist does not see what is about the head, and a head that follows it would touch: both stay as they are."""
+    stock, root = Humanoid.default(), np.zeros(ROOT_STATE)
+    start = hanging()
+    start[columns_of(DofGroup.WAIST)], start[columns_of(DofGroup.HEAD)] = (-0.06, 0.0, 0.13), (-0.04, 1.0)
+
+    def scene(above: float, ahead: float) -> Scene:
+        centers = np.array([[0.0, above + 0.1, 0.0], [aside, 1.6, ahead + 0.1]])
+        return scene_of(centers, np.array([[0.15, 0.1, 0.15], [0.05, 0.1, 0.1]]))
+
+    above, ahead, gaps = 1.7, 0.2, (0.0018, 0.003)
+    for _ in range(4):  # to as many metres over the crown and before the face
+        above += gaps[0] - BodyCheck(stock, scene(above, 1.0)).clearance(root, start, 0.0)
+        ahead += gaps[1] - BodyCheck(stock, scene(2.2, ahead)).clearance(root, start, 0.0)
+    path = RootPath(0.0, 0.15, np.tile(root, (17, 1)))
+    plan = ExactPlanner(stock, scene(above, ahead)).plan(path, start, np.random.default_rng(0))
+    assert plan.status is PlanStatus.FOUND

@@ -169,10 +169,18 @@ class NewPlan:
         self.root_planner.follow(root)
         why = None if self.hurry else self._why(upper)
         plan, previous = self._braked(root, upper.reached), self.body.memory.recent.continued(self.query)
+        if plan is None and previous is not None and not among_moving:
+            plan = self._ended(previous)
         if plan is None and (previous is None or among_moving):
             plan = self._braked(root, upper.reached, harsh=True)
         plan = plan or previous or FullPlan(root, upper.plan)
         return plan._replace(local=plan.local._replace(blockade=why))
+
+    def _ended(self, previous: FullPlan) -> FullPlan | None:
+        """What is left of the last plan, braked on its own way as late as possible, if that ends in the walk."""
+        path = previous.root.path
+        ends = is_still(path.states[-1, 3:6])
+        return None if ends else self._braked(previous.root, path.horizon)
 
     def _braked(self, root: RootPlan, reached: int, *, harsh: bool = False) -> FullPlan | None:
         """A plan on a root path that is braked as late as possible; the upper body came as far as `reached` on it."""

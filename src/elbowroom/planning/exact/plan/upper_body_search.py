@@ -110,6 +110,9 @@ class UpperBodySearch:
                 previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
             ):
                 found = previous
+        if found.failed is not None and last is None and waist_has_way:
+            held = self.with_waist_held()
+            found = held if held.failed is None else found
         if found.failed is not None and rounds > 0:
             found = self.together(rounds)
         if found.failed is not None:
@@ -218,6 +221,17 @@ class UpperBodySearch:
         costs[np.arange(len(costs)), previous] = 0.0
         waist = self._waist_path(costs + self._crouching)
         return self._under(waist)
+
+    def with_waist_held(self) -> GroupPaths:
+        """The waist held as it is, while it can be.
+
+        Where there is no last plan, who has stopped bent stays so until there is a way out from there.
+        """
+        waist, shape = columns_of(DofGroup.WAIST), self._crouching.shape
+        keys, added = np.tile(self.problem.begins.upper[waist], (shape[0], 1)), np.full(shape, _DEARER, np.float32)
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots, follow=Guide(keys, added))
+        added[np.arange(len(added)), extras_of(self.caches.group(DofGroup.WAIST), task).previous] = 0.0
+        return self._under(self._waist_path(self._crouching, Guide(keys, added)))
 
     def together(self, rounds: int) -> GroupPaths:
         """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
