@@ -4,11 +4,17 @@ import math
 from dataclasses import replace
 from enum import Enum
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.navigation.backwards import Stretch, stretch_from
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way, apart, said
 from elbowroom.planning.root.line.way_ahead import Corners, away_from, leg_at
+
+Floats = NDArray[np.float64]
 
 _FAR = 6.0  # metres along the way that are looked ahead
 _ON_IT = 0.15  # metres from a leg of the way: one is on it
@@ -41,6 +47,7 @@ class Journey:
         self._navigator, self._pace = navigator, pace
         self._closed: list[tuple[Spot, float]] = []
         self._corners: list[Place] = []  # of the way that is walked along
+        self._stretch = Stretch(False, way)  # of the way, that they lead along
         self._along: Corners = ()  # the same without heights
         self._leg = 0  # the number of the leg that was reached
         self._nearest, self._waited, self._back = math.inf, 0.0, 0.0
@@ -69,7 +76,7 @@ class Journey:
             self.state = JourneyState.ARRIVED
         elif self._back > 0.0:
             self._back -= dt
-            return Command(forward=-abs(self._pace.forward))
+            return Command(forward=-self._forward)
         else:
             self._watch(here, away, dt, stuck)
         if not self.walking:
@@ -84,10 +91,19 @@ class Journey:
         if len(self._corners) < 2:
             return Command()
         (x, z), (next_x, next_z) = self._along[:2]
-        return replace(self._pace, direction=math.atan2(next_x - x, next_z - z), way=self._along)
+        direction = math.atan2(next_x - x, next_z - z)
+        return replace(self._pace, forward=self._forward, direction=direction, way=self._along)
+
+    @property
+    def _forward(self) -> float:
+        """The share of full speed, negative where one goes backwards."""
+        share = abs(self._pace.forward)
+        return -share if self._stretch.backwards else share
 
     def _keeps_to_it(self, here: Place) -> bool:
         if len(self._corners) < 2:
+            return False
+        if self._stretch.way is not self.way and apart(here, self._corners[-1]) < _THERE:
             return False
         x, _, z = here
         self._leg = leg_at(self._along, x, z, self._leg)
@@ -96,11 +112,16 @@ class Journey:
 
     def _found(self, here: Place) -> list[Place]:
         """The corners of the way from here, which is searched for where it is not known."""
-        corners = self.way.corners(here, _FAR)
+        corners = self._next_corners(here)
         if len(corners) < 2:
             self._search(here)
-            corners = self.way.corners(here, _FAR) if self.walking else corners
+            corners = self._next_corners(here) if self.walking else corners
         return [(x, height, z) for x, height, z in corners.tolist()]
+
+    def _next_corners(self, here: Place) -> Floats:
+        """The corners (m, 3) of the next stretch of the way."""
+        self._stretch = stretch_from(self.way, here, backwards=self._stretch.backwards)
+        return self._stretch.way.corners(here, _FAR)
 
     def _watch(self, here: Place, away: float, dt: float, stuck: bool) -> None:
         """Notice progress, or that there is none for long."""

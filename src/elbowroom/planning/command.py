@@ -15,8 +15,9 @@ _UNSTEADY = 0.02  # the same of shares of full speed and of full turning
 class Command:
     """What the user asks for, in the avatar's own axes; each component lies in [-1, 1].
 
-    With `direction` given (a heading in radians, world axes), the avatar walks towards it and turns to face it: this
-    is how camera-relative steering arrives. Otherwise `forward`, `strafe` and `turn` are taken as they are.
+    With `direction` given (a heading in radians, world axes), the avatar walks towards it and turns to face it, or
+    walks there backwards: this is how camera-relative steering arrives. Otherwise `forward`, `strafe` and `turn` are
+    taken as they are.
 
     With a `way` too it walks along that, round its corners, and stands at its end; `direction` is where it begins.
     """
@@ -24,7 +25,7 @@ class Command:
     forward: float = 0.0  # 1 walks at full speed, negative walks backwards
     strafe: float = 0.0  # positive to the avatar's left
     turn: float = 0.0  # positive turns left
-    direction: float | None = None  # desired heading in the world; then `forward` is the wanted share of full speed
+    direction: float | None = None  # where to in the world; then `forward` is the wanted share of full speed
     run: bool = False  # faster
     way: tuple[tuple[float, float], ...] = ()  # the corners (x, z) of a way, both ends included
 
@@ -54,7 +55,7 @@ def changed(planned: Command, command: Command) -> bool:
         return False
     if (planned.idle, planned.run, planned.direction is None) != (command.idle, command.run, command.direction is None):
         return True
-    if planned.way != command.way:
+    if planned.way != command.way or (planned.direction is not None and planned.forward * command.forward < 0.0):
         return True
     share = abs(planned.speed - command.speed) > _SHARE or abs(planned.turn - command.turn) > _SHARE
     return share or angle_between(planned, command) > BENT

@@ -63,7 +63,7 @@ class Costly(NamedTuple):
 def price_at(costly: Costly, n: int) -> float:
     """What a metre costs at a place; infinite where there is no way."""
     here, prices = costly.room[n], costly.prices
-    if here < prices.slim or (costly.above[n] < prices.headroom and costly.steep[n] > prices.stair):
+    if here < prices.slim:
         return np.inf
     narrow = min(max((prices.roomy - here) / (prices.roomy - prices.slim), 0.0), 1.0)
     ducked = prices.ducked if costly.above[n] < prices.headroom else 0.0

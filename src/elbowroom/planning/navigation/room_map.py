@@ -26,6 +26,7 @@ FARTHEST = 0.6  # metres: more room is not told apart
 _LOW = 0.03  # metres above a plane: what is lower is stood on
 _LESS = 0.02  # metres less than a slim body above what can be stepped onto: from there on things are in the way
 _OVER = np.float32(0.06)  # metres by which a body may be over an edge: ankles stay on the ground
+_IN_IT = 0.01  # metres: what is nearer than this to the middle of a place hangs over it
 _MANY = 100  # obstacles: among fewer a map is made at once
 _MOST_POINTS = 2_000_000  # of a map: where it needs more its points lie farther apart
 
@@ -111,6 +112,12 @@ class RoomMap:
         x, z = self.area.low_x + self.cell * columns, self.area.low_z + self.cell * rows
         return np.stack([x, self.surfaces.heights, z], axis=1)
 
+    def lengths(self, nodes: NDArray[np.int64]) -> Floats:
+        """Metres over the ground (N - 1,) from each of some places (N,) to the next."""
+        rows, columns = np.divmod(self.surfaces.points[nodes], self.surfaces.columns)
+        apart: Floats = self.cell * np.hypot(np.diff(rows), np.diff(columns))
+        return apart
+
     def place(self, n: int) -> tuple[float, float, float]:
         """One of the places: x, height, z."""
         row, column = divmod(int(self.surfaces.points[n]), self.surfaces.columns)
@@ -148,10 +155,17 @@ def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     low = _LOW if plain else scene.ground.step + girth.slim - _LESS
     rises, steep = _climbs(scene.ground, surfaces, corner, girth.slim)
     near = scene.obstacles.near(np.array(area[:2]) - FARTHEST, np.array(area[2:]) + FARTHEST)
-    spans = (low, girth.stooped - girth.slim), (girth.stooped, girth.tall)
-    below, above = (np.full(len(surfaces.points), FARTHEST, np.float32) for _ in spans)
-    for (least, most), out, more in zip(spans, (below, above), (rises, np.zeros_like(rises)), strict=True):
-        _lower(near, surfaces, corner, (least, max(least, most)), more, out)
+    climbed = steep > EVEN_STAIR
+    ducked, top = (
+        np.where(climbed, girth.bowed, girth.stooped),
+        np.full(len(steep), max(girth.stooped - girth.slim, low)),
+    )
+    below, above, over = (np.full(len(steep), FARTHEST, np.float32) for _ in range(3))
+    _lower(near, surfaces, corner, (np.minimum(low + rises, top), top), below)
+    _lower(near, surfaces, corner, (ducked, np.full_like(ducked, girth.tall)), above)
+    if climbed.any():
+        _lower(near, surfaces, corner, (np.where(climbed, top, np.inf), ducked), over)
+        below[over < _IN_IT] = 0.0
     edges = _to_edge(scene, area, shape, cell) if plain else to_edges(surfaces, FARTHEST)
     room = below if edges is None else np.minimum(below, edges + _OVER)
     return RoomMap(area, surfaces, room, above, steep)
@@ -178,13 +192,11 @@ def _climbs(ground: Ground, surfaces: Surfaces, corner: tuple[float, float], rad
 
 @kernel
 def _lower(
-    near: Nearby, surfaces: Surfaces, corner: tuple[float, float], span: tuple[float, float], rises: Floats,
-    out: Floats32,
-) -> None:  # fmt: skip
-    """Lower `out` (N,) to the distance of upright lines over the places, between two heights above each, from things.
+    near: Nearby, surfaces: Surfaces, corner: tuple[float, float], span: tuple[Floats, Floats], out: Floats32
+) -> None:
+    """Lower `out` (N,) to the distance of upright lines over the places, from one height (N,) to another, from things.
 
-    Lines begin so much higher as `rises` (N,) say, but no higher than they end. The places around one thing are one
-    batch of the clearance kernel.
+    The places around one thing are one batch of the clearance kernel.
     """
     columns, cell = surfaces.columns, surfaces.cell
     rows, thin = (surfaces.starts.shape[0] - 1) // columns, np.zeros(1, np.float32)
@@ -204,11 +216,11 @@ def _lower(
         for i in range(first_i, last_i):
             for n in range(surfaces.starts[i * columns + first_j], surfaces.starts[i * columns + last_j]):
                 height = surfaces.heights[n]
-                low = height + min(span[0] + rises[n], span[1])
-                if low > top + FARTHEST or height + span[1] < bottom - FARTHEST:
+                low, high = height + span[0][n], height + span[1][n]
+                if low > top + FARTHEST or high < bottom - FARTHEST:
                     continue
                 segments[0, 0, count] = segments[0, 3, count] = corner[0] + cell * (surfaces.points[n] % columns)
-                segments[0, 1, count], segments[0, 4, count] = low, height + span[1]
+                segments[0, 1, count], segments[0, 4, count] = low, high
                 segments[0, 2, count] = segments[0, 5, count] = corner[1] + cell * i
                 owners[count] = n
                 count += 1

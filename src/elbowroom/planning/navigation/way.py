@@ -99,6 +99,20 @@ class Way:
             after = self.aim(after, far)
         return np.array(places)
 
+    def onward(self, start: Place | Spot) -> NDArray[np.int64]:
+        """The numbers (N,) of the places on the way from a start to the goal; none where no way is known."""
+        at, found = self._on_the_way(placed(start)), list[int]()
+        while at is not None and at >= 0:
+            found.append(at)
+            at = int(self.field.onward[at])
+        return np.array(found, np.int64)
+
+    def until(self, node: int) -> "Way":
+        """The same way as far as one of its places."""
+        onward = self.field.onward.copy()
+        onward[node] = -1
+        return replace(self, goal=self.room.place(node), field=self.field._replace(onward=onward))
+
     @property
     def _costly(self) -> Costly:
         return Costly(self.room.surfaces, self.room.room, self.room.above, self.room.steep, self.prices)

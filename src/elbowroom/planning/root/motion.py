@@ -28,7 +28,7 @@ _SIDLE = 0.55  # radians: the greatest angle between the path and the body's fro
 _ASIDE = 0.5 * math.pi  # radians: and where the path leads so far aside one goes on as one faces
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
-_NARROW = 0.6  # of the speed: who has less is on a steep stair, and aims nearer
+_NARROW = 0.6  # of the speed: who has less is on a steep stair, and aims nearer; still nearer who goes backwards there
 _GRADE_OVER = 0.12  # metres to either side between which the grade is taken
 SLOWED, SLOWED_FROM = 0.15, 0.75  # metres to a slow place: slowed down; and where that begins
 NONE_SLOW = np.empty((0, 3))  # slow places where none is
@@ -50,8 +50,8 @@ class Travel(NamedTuple):
     """How a route is walked."""
 
     speed: float  # wanted speed along the route, m/s
-    facing: float  # heading to hold; used unless `turns`
-    turns: bool  # whether the body turns to where it goes
+    facing: float  # heading to hold; of a body that `turns`, how far its front is from where it goes: backwards pi
+    turns: bool  # whether the body turns to where it goes, or its back
     stops: bool  # whether it must stand at the route's end
     slow: Floats  # (K, 3) places x, z on which it is walked at a share of the speed
 
@@ -204,7 +204,10 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
     for k in range(states.shape[0] - 1):
         x, z, heading = states[k, 0], states[k, 1], states[k, 2]
         share = _share_at(travel.slow, states[k], interval)
-        aim_x, aim_z, left = _aim(route, x, z, _AIM + _AIM_LATER * travel.speed * min(share / _NARROW, 1.0))
+        slowed, backwards = min(share / _NARROW, 1.0), travel.turns and np.cos(travel.facing) < 0.0
+        aim_x, aim_z, left = _aim(
+            route, x, z, _AIM * (slowed if backwards else 1.0) + _AIM_LATER * travel.speed * slowed
+        )
         speed = travel.speed * share
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
@@ -212,12 +215,12 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
         course = heading
         if (aim_x - x) ** 2 + (aim_z - z) ** 2 > 1e-6:
             course = np.arctan2(aim_x - x, aim_z - z)
-        turn = turn_towards(states[k], course if travel.turns else travel.facing, interval, bounds)
+        turn = turn_towards(states[k], course + travel.facing if travel.turns else travel.facing, interval, bounds)
         if travel.turns:
-            front = heading + 0.5 * interval * (states[k, 5] + turn)
-            error = wrapped(course - front)
+            leading = heading + 0.5 * interval * (states[k, 5] + turn) - travel.facing
+            error = wrapped(course - leading)
             speed *= min(max(1.25 * np.cos(error), 0.0), 1.0)
-            course = front + _sidled(error)
+            course = leading + _sidled(error)
         limited_step(states, k, speed * np.sin(course), speed * np.cos(course), turn, interval, bounds)
 
 

@@ -148,16 +148,17 @@ class RootPaths:
     def along(self, asked: Asked, leg: int, pace: float) -> RootPlan:
         """Along the way that the command names, from its leg of this number on."""
         began, way, speed = perf_counter_ns(), asked.command.way, wanted_speed(asked.command, self.settings.motion)
+        line = line_of(way, leg, asked.command)
         ahead = way_ahead(way, leg, asked.start.x, asked.start.z, self._sight(asked, speed) + _AIMED)
         slow = np.concatenate([self._slow_on(way, number, asked.start.height) for number in ahead.legs])
         slow = self._with_steep(slow, asked, places_along(way, ahead.legs), speed)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line_of(way, leg), pace * speed, self._sight(asked, speed), slow, ahead)
-        lost = self._lost(asked, line_of(way, leg), speed, answer)
+        answer = query.travelled(line, pace * speed, self._sight(asked, speed), slow, ahead)
+        lost = self._lost(asked, line, speed, answer)
         if answer.likewise is not None:
             lost = max(_walked(answer.likewise) - _walked(answer.states), 0.0) / max(speed, SLOW)
-            lost = crowded(self.settings, lost, line_of(way, leg), answer.states, query.around, self._figure)
+            lost = crowded(self.settings, lost, line, answer.states, query.around, self._figure)
         return _plan(asked, answer, query.checks - before, began, lost)
 
     def _with_steep(self, slow: Floats, asked: Asked, places: Floats, speed: float) -> Floats:

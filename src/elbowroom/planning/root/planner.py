@@ -186,7 +186,7 @@ class _OfferMaker:
         elif _turns(command):
             plan, evading = self._paths.steered(asked, pace), None
         elif command.way:
-            line, plan = line_of(command.way, leg), self._paths.along(asked, leg, pace)
+            line, plan = line_of(command.way, leg, command), self._paths.along(asked, leg, pace)
         else:
             line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
             plan = self._paths.travelled(asked, line, pace)

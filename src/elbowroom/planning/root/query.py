@@ -208,8 +208,10 @@ class RootQuery:
         if way is not None and not (route.ends or route.detour):
             stops, corners = way.ends, way.walked
 
+        facing = line.facing - line.heading if line.turns else line.facing
+
         def candidate(share: float, slow: Floats = slow) -> Floats:
-            return walked(Travel(share * speed, line.facing, line.turns, stops, slow))
+            return walked(Travel(share * speed, facing, line.turns, stops, slow))
 
         def creeping(share: float) -> Floats:
             return walked(Travel(share * speed, self.start.heading, False, stops, slow))

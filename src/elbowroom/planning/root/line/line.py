@@ -28,11 +28,12 @@ class TravelLine(NamedTuple):
     z: float
     heading: float  # direction of travel
     facing: float  # heading of the body
-    turns: bool  # whether the body turns to where it goes
+    turns: bool  # whether the body turns to where it goes, or its back, as it faces on the line
 
     def is_like(self, other: "TravelLine") -> bool:
         """Whether another leads in much the same direction, from much the same place."""
         bent = abs(math.remainder(other.heading - self.heading, math.tau))
+        bent = max(bent, abs(math.remainder(other.facing - self.facing, math.tau))) if self.turns else bent
         return self.turns == other.turns and bent < BENT and math.dist((self.x, self.z), (other.x, other.z)) < _BESIDE
 
     def is_parallel(self, other: "TravelLine") -> bool:
@@ -56,16 +57,24 @@ def new_line(start: RootState, command: Command, motion: RootMotionSettings) -> 
     asked, x, z = asked_direction(command), float(start.x), float(start.z)
     if command.direction is not None:
         heading = float(command.direction)
-        return TravelLine(asked, x, z, heading, heading, True)
+        return TravelLine(asked, x, z, heading, faced(heading, command), True)
     facing = start.heading + 0.5 * start.turn * abs(start.turn) / motion.turn_acceleration  # where a turn comes to rest
     going = facing + math.atan2(command.strafe, command.forward)
     return TravelLine(asked, x, z, going, facing, command.forward > 0.0 and command.strafe == 0.0)
 
 
+def faced(heading: float, command: Command) -> float:
+    """Where one faces who walks in a direction in the world as a command says: there, or backwards."""
+    return heading + math.pi if command.forward < 0.0 else heading
+
+
 def asked_direction(command: Command) -> tuple[float, float]:
-    """What a command says about the direction, speed aside: radians in the world and 1, or milliradians aside and 0."""
+    """What a command says about the direction, speed aside: radians in the world and 1, or milliradians aside and 0.
+
+    Backwards in the world it is -1.
+    """
     if command.direction is not None:
-        return float(command.direction), 1.0
+        return float(command.direction), -1.0 if command.forward < 0.0 else 1.0
     return float(round(1e3 * math.atan2(command.strafe, command.forward))), 0.0
 
 
@@ -96,9 +105,9 @@ def straight_route(x: float, z: float, line: TravelLine, sight: float) -> Floats
 def wanted_speed(command: Command, motion: RootMotionSettings) -> float:
     """The wanted speed along the line of travel: the ellipse through forward, backward and sideways speeds."""
     ahead = motion.run_speed if command.run else motion.walk_speed
-    if command.direction is not None:
-        return ahead * min(max(command.forward, 0.0), 1.0)
     along = (ahead if command.forward > 0.0 else motion.back_speed) * min(max(command.forward, -1.0), 1.0)
+    if command.direction is not None:
+        return abs(along)
     return math.hypot(along, motion.strafe_speed * min(max(command.strafe, -1.0), 1.0))
 
 

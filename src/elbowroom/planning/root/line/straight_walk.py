@@ -58,11 +58,12 @@ def straight_walk(
         return False, states, False, 0.0, 0.0, 0.0
     for c in range(start.shape[0]):
         states[0, c] = start[c]
-    travel = Travel(pace * speed, line.facing, line.turns, ends, slow[:0])
+    facing = line.facing - line.heading if line.turns else line.facing
+    travel = Travel(pace * speed, facing, line.turns, ends, slow[:0])
     follow(states, route, travel, stretch.interval, who.bounds)
     lost = lost_on_line(who.prices, line, speed, states, stretch.horizon * stretch.interval, ends)
     if slow.shape[0] > 0:
-        follow(states, route, Travel(pace * speed, line.facing, line.turns, ends, slow), stretch.interval, who.bounds)
+        follow(states, route, Travel(pace * speed, facing, line.turns, ends, slow), stretch.interval, who.bounds)
     braking, swinging = who.bounds.braking, who.bounds.turn_acceleration
     moving, stopping = to_check(states, stretch.interval, braking, swinging, who.skin, who.hull, ground)
     free = not (moving.any() or stopping.any())

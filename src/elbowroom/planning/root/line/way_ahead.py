@@ -2,17 +2,20 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.root.line.line import ON_THE_LINE, TravelLine, joining
+from elbowroom.planning.command import Command
+from elbowroom.planning.root.line.line import ON_THE_LINE, TravelLine, asked_direction, faced, joining
 
 Floats = NDArray[np.float64]
 Corners = tuple[tuple[float, float], ...]  # x, z
 
 _SAME = 1e-6  # metres
+_FORWARD = Command(forward=1.0)
 
 
 class WayAhead(NamedTuple):
@@ -34,11 +37,12 @@ def leg_at(way: Corners, x: float, z: float, leg: int) -> int:
     return leg
 
 
-def line_of(way: Corners, leg: int) -> TravelLine:
-    """The line of travel along a leg."""
+def line_of(way: Corners, leg: int, command: Command = _FORWARD) -> TravelLine:
+    """The line of travel along a leg, forward or as a command says."""
     (x, z), (next_x, next_z) = way[leg], way[leg + 1]
     heading = math.atan2(next_x - x, next_z - z)
-    return TravelLine((heading, 1.0), x, z, heading, heading, True)
+    asked = asked_direction(replace(command, direction=heading))
+    return TravelLine(asked, x, z, heading, faced(heading, command), True)
 
 
 def way_ahead(way: Corners, leg: int, x: float, z: float, sight: float) -> WayAhead:
