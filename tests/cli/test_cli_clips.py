@@ -73,6 +73,7 @@ def test_walk_refuses_a_swing_without_a_stride(folder: Path) -> None:
     assert "nobody walks" in result.stderr
 
 
+@pytest.mark.long
 @needs_shared
 def test_walk_with_a_recorded_swing_passes_and_replays(tmp_path: Path) -> None:
     assert SHARED is not None

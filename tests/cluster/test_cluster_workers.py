@@ -1,6 +1,7 @@
 """A cluster of two nodes on this machine: the same results as in processes, each once, whatever is lost on the way."""
 
 import os
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -47,11 +48,14 @@ def workers(cluster: Any, told: list[str]) -> Iterator[RayWorkers]:
 
 
 def test_every_task_is_done_once_on_all_nodes(workers: RayWorkers, told: list[str]) -> None:
-    results = list(workers.run([Square(number, 0.2) for number in range(16)]))
-    assert sorted(place for place, _ in results) == list(range(16))
-    assert {place: answer.value for place, answer in results} == {n: n * n for n in range(16)}
-    assert len({answer.node for _, answer in results}) == 2
-    assert os.getpid() not in {answer.process for _, answer in results}
+    nodes, until = set[str](), time.monotonic() + 60.0
+    while len(nodes) < 2 and time.monotonic() < until:  # the workers of one may take longer to come than all of that
+        results = list(workers.run([Square(number, 0.2) for number in range(16)]))
+        assert sorted(place for place, _ in results) == list(range(16))
+        assert {place: answer.value for place, answer in results} == {n: n * n for n in range(16)}
+        assert os.getpid() not in {answer.process for _, answer in results}
+        nodes |= {answer.node for _, answer in results}
+    assert len(nodes) == 2
     assert told == []
 
 

@@ -46,6 +46,7 @@ def walked(controller: Controller, humanoid: Humanoid, course: Course) -> tuple[
     return result, verdict
 
 
+@pytest.mark.long
 def test_past_the_first_obstacles_the_mesh_stays_free_and_without_planning_it_touches() -> None:
     humanoid, course = opened("hanim_x3d/JoeKick.x3d", 1)
     piece = replace(course, limit=5.0)

@@ -118,6 +118,7 @@ def test_a_course_is_a_scene_that_stands_for_itself(maker: PlaceCourseMaker, tmp
     assert saved.obstacles.names == wanted.obstacles.names
 
 
+@pytest.mark.long
 @needs_shared
 def test_a_house_is_walked_through_between_its_furniture() -> None:
     file = Path(f"{SHARED}/scenes/AC14-FZK-Haus/AC14-FZK-Haus.glb")

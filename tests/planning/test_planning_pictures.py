@@ -24,6 +24,7 @@ def parts(picture: Path) -> Counter[str]:
     return Counter(element.tag for element in ElementTree.parse(picture).iter())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_has_what_the_kept_one_has(drawn: Path, name: str) -> None:
     now, previous = parts(drawn / name), parts(ROOT / "docs/images" / name)
