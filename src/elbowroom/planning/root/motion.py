@@ -28,7 +28,7 @@ _SIDLE = 0.55  # radians: the greatest angle between the path and the body's fro
 _ASIDE = 0.5 * math.pi  # radians: and where the path leads so far aside one goes on as one faces
 _RESPONSE = 4.0  # 1/s: how fast a heading error is turned away
 _AIM, _AIM_LATER = 0.3, 0.3  # metres along a route to the point that is aimed at, and seconds
-_NARROW = 0.6  # of the speed: who has less is on a steep stair, and aims nearer; still nearer who goes backwards there
+_NARROW = 0.6  # of the speed: who has less is on a steep stair, and aims nearer
 _GRADE_OVER = 0.12  # metres to either side between which the grade is taken
 SLOWED, SLOWED_FROM = 0.15, 0.75  # metres to a slow place: slowed down; and where that begins
 NONE_SLOW = np.empty((0, 3))  # slow places where none is
@@ -204,10 +204,8 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
     for k in range(states.shape[0] - 1):
         x, z, heading = states[k, 0], states[k, 1], states[k, 2]
         share = _share_at(travel.slow, states[k], interval)
-        slowed, backwards = min(share / _NARROW, 1.0), travel.turns and np.cos(travel.facing) < 0.0
-        aim_x, aim_z, left = _aim(
-            route, x, z, _AIM * (slowed if backwards else 1.0) + _AIM_LATER * travel.speed * slowed
-        )
+        slowed = min(share / _NARROW, 1.0)
+        aim_x, aim_z, left = _aim(route, x, z, slowed * (_AIM + _AIM_LATER * travel.speed))
         speed = travel.speed * share
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)
