@@ -131,6 +131,7 @@ def test_a_scene_is_built_by_the_pad(open_page: Open) -> None:
     live.wait("s.build === null")
 
 
+@pytest.mark.long
 def test_a_thing_is_pushed_by_the_pad(open_page: Open) -> None:
     live = open_page("scene=d", viewport=(640, 480), script=PAD, sparing=False)
     live.wait("s.scene === 'd'")

@@ -20,7 +20,9 @@ if SHARED is not None:
         pytest.param(SHARED / "avatars" / "glb" / "VALID_AIAN_M_1_Casual.glb", id="meshopt", marks=pytest.mark.long)
     )
     FILES.append(pytest.param(SHARED / "avatars" / "glb" / "boxman.glb", id="repaired", marks=pytest.mark.long))
-    FILES.append(pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D"))
+    FILES.append(
+        pytest.param(SHARED / "avatars" / "hanim_x3d" / "JoeKick.x3d", id="skinned X3D", marks=pytest.mark.long)
+    )
     FILES.append(
         pytest.param(
             SHARED / "avatars" / "hanim_vrml97" / "sample1.wrl", id="VRML97 in segments", marks=pytest.mark.long

@@ -7,6 +7,7 @@ from elbowroom.experiment.bench.crowd import amount, run
 from elbowroom.experiment.bench.settings import CrowdSettings
 
 
+@pytest.mark.long
 def test_each_crowd_walks_and_stands_and_is_counted() -> None:
     settings, done = CrowdSettings((1, 2), seconds=0.5, settle=0.1), list[int]()
     report = run(settings, done.append)

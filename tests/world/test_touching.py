@@ -31,7 +31,9 @@ MESHES = {
 }
 
 
-@pytest.mark.parametrize(("name", "far"), [*((name, 0.0) for name in MESHES), ("soup", 5000.0)])
+@pytest.mark.parametrize(
+    ("name", "far"), [*((name, 0.0) for name in MESHES), pytest.param("soup", 5000.0, marks=pytest.mark.long)]
+)
 def test_what_touches_is_what_the_clearance_kernel_says(name: str, far: float) -> None:
     mesh, rng, radius = MESHES[name], np.random.default_rng(4), 0.06
     begins = rng.uniform(mesh.middle - mesh.half - 0.6, mesh.middle + mesh.half + 0.6, (1000, 3)).T
