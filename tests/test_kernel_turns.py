@@ -84,3 +84,15 @@ def test_a_folder_that_cannot_be_written_to_is_no_fault(tmp_path: Path) -> None:
     turn.take()
     turn.give_up()
     assert not list(tmp_path.iterdir())
+
+
+def test_where_files_cannot_be_locked_nobody_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object) -> None:
+        raise OSError(37, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", none)
+    began = time.monotonic()
+    turn = Turn(tmp_path / "k.lock")
+    turn.take()
+    turn.give_up()
+    assert time.monotonic() - began < 5.0

@@ -61,11 +61,13 @@ class KeptKernel:
 
     def save_overload(self, signature: Any, code: Any) -> None:
         """Keep machine code, if there is room for it."""
-        with contextlib.suppress(OSError):
-            _sum_file(self._folder, self._name).unlink(missing_ok=True)
-            self._cache.save_overload(signature, code)
-            note(self._folder, self._name)
-        self._turn.give_up()
+        try:
+            with contextlib.suppress(OSError):
+                _sum_file(self._folder, self._name).unlink(missing_ok=True)
+                self._cache.save_overload(signature, code)
+                note(self._folder, self._name)
+        finally:
+            self._turn.give_up()
 
 
 def name_of(file: Path, qualified_name: str, line: int) -> str:

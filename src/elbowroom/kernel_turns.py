@@ -48,10 +48,15 @@ def _locked(path: Path) -> int | None:
     until = time.monotonic() + _LONG
     while time.monotonic() < until:
         file = os.open(path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
-        with contextlib.suppress(OSError):
+        try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.fstat(file).st_ino == path.stat().st_ino:
                 return file  # and not one that who had it locked has taken away since
+        except (BlockingIOError, FileNotFoundError):
+            pass  # somebody has it, or has just taken it away
+        except OSError:
+            os.close(file)
+            raise  # files cannot be locked here
         os.close(file)
         time.sleep(_OFTEN)
     return None
