@@ -3,6 +3,7 @@
 import asyncio
 import os
 import pickle
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -90,6 +91,13 @@ def test_too_much_processor_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_reader_that_crashes_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "SIGSEGV" in asyncio.run(_ended_by("os.kill(os.getpid(), 11)", Bounds(), monkeypatch))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+def test_a_reader_stands_behind_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Linux shares time among sessions first: one of its own would have as much of it as the server, however nice."""
+    seen = f"(os.getsid(0) == {os.getsid(0)}) + 2 * (os.getpgid(0) != {os.getpgid(0)}) + 4 * (os.nice(0) >= 10)"
+    assert "exit code 7" in asyncio.run(_ended_by(f"os._exit({seen})", Bounds(), monkeypatch))
 
 
 async def _ended_by(code: str, bounds: Bounds, monkeypatch: pytest.MonkeyPatch) -> str:

@@ -45,7 +45,7 @@ async def run_apart(job: str, name: str, *arguments: str, bounds: Bounds = _BOUN
         stdin=asyncio.subprocess.PIPE,
         stdout=asyncio.subprocess.PIPE,
         stderr=asyncio.subprocess.DEVNULL,
-        start_new_session=True,  # Ctrl-C at a terminal is for the server alone
+        process_group=0,  # Ctrl-C is for the server alone; a session of its own would have a share of time of its own
         env=os.environ | _NO_THREADS,
     )
     try:
