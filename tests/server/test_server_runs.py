@@ -19,12 +19,15 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.control.recordings.recording import Recorder, Recording, RecordingHeader
 from elbowroom.planning.command import Command
+from elbowroom.server.sessions.reports import scene_message
 from elbowroom.server.standalone.frames import posed_run
 from elbowroom.server.stores.library import Library
 from elbowroom.server.wire.pose import Poser
 from elbowroom.server.wire.pose_frame import PoseFrame, parse
+from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
 from live_session import running
+from place_builder import TWO_ROOMS, glb, write_place
 
 STEP = 1.0 / 60.0
 RESTART_AT = 40
@@ -119,3 +122,24 @@ def test_a_recording_named_on_the_command_line_is_what_the_page_opens_with(walk:
         head, frames = unpack(ask(f"{url}/api/run"))
     assert head["name"] == "walk.elbow"
     assert frames[-1].z == pytest.approx(shown[-1].root[1], abs=1e-6)
+
+
+def test_a_run_in_a_place_is_shown_by_its_model(tmp_path: Path) -> None:
+    """By the one that this server shows, or the one that lies beside the recording; else by its triangles."""
+    model = write_place(tmp_path / "rooms.glb")
+    scene, file = Scene.load(model, PlaceOptions(drop=("Door_*",))), tmp_path / "walk.elbow"
+    controller = Controller(Humanoid.default(), scene, assist=False)
+    with Recorder(file, controller) as recorder:
+        recorder.append(Command(), STEP, controller.step(Command(), STEP), assist=False)
+    with closing(Library.open(scene)) as library, running(library) as url:
+        told, _ = unpack(ask(f"{url}/api/runs?name=walk.elbow", file.read_bytes()))
+        live = json.loads(ask(f"{url}/api/scenes/{scene.name}"))
+    assert told["scene"]["model"] == live["model"]
+    assert told["scene"]["obstacles"] == []
+    with closing(library_of(Recording(file), None)) as library:
+        assert scene_message(library.scenes[library.scene]).model is not None
+    model.write_bytes(glb({name: TWO_ROOMS[name] for name in list(TWO_ROOMS)[:-1]}))
+    with closing(library_of(Recording(file), None)) as library:
+        shown = scene_message(library.scenes[library.scene])
+    assert shown.model is None
+    assert {one.form.shape for one in shown.obstacles} == {"mesh"}

@@ -61,14 +61,15 @@ def library_of(recorded: "Recording", avatar: Path | None) -> "Library":
     """The scene and the avatar of a recording, and the recording to begin with."""
     from elbowroom.body.loading.settings import LoadSettings
     from elbowroom.server.stores.library import Library
+    from elbowroom.world.places.same_model import with_model_beside
     from elbowroom.world.scene import Scene
 
     header, path = recorded.header, str(recorded.path)
     told = header.avatar
     read = LoadSettings(told.bones or None, told.include_hair, told.height)
-    library = Library.open(avatar=avatar, read=None if avatar is None else read, motions=header.motions)
-    scene = Scene.from_dict(header.scene, path)
-    return replace(library, scenes=library.scenes | {scene.name: scene}, scene=scene.name, run=recorded.path)
+    scene = with_model_beside(Scene.from_dict(header.scene, path), recorded.path.parent)
+    library = Library.open(scene, avatar, read=None if avatar is None else read, motions=header.motions)
+    return replace(library, run=recorded.path)
 
 
 def _report(recorded: "Recording", result: "ReplayResult", json: bool) -> None:

@@ -14,7 +14,7 @@ export function convexBody(form: Form): ConvexBody | undefined {
   const radius = form.size[0] / 2, half = form.size[1] / 2;
   switch (form.shape) {
     case "box":
-    case "mesh": // not convex: the camera keeps off the box round it
+    case "mesh": // told by its triangles
       return undefined;
     case "sphere":
       return roundLine(radius, 0);

@@ -15,6 +15,8 @@ export interface OrientedBox {
   readonly halfSize: Vec3;
   /** What is in the box; it is full where this is absent. */
   readonly body?: ConvexBody;
+  /** What is in it is told by its triangles, all round which there is room: it is no body, and far from everything. */
+  readonly hollow?: boolean;
 }
 
 /** The same with its world-to-box rotation as a row-major matrix, ready for many distance queries. */
@@ -23,6 +25,7 @@ export interface PreparedBox {
   readonly toBox: readonly [number, number, number, number, number, number, number, number, number];
   readonly halfSize: Vec3;
   readonly body?: ConvexBody;
+  readonly hollow?: boolean;
 }
 
 const CONTACT_TOLERANCE = 1e-4;
@@ -39,7 +42,8 @@ export function prepareBox(box: OrientedBox): PreparedBox {
   return {
     center: box.center,
     halfSize: box.halfSize,
-    ...(box.body ? { body: box.body } : {}),
+    ...(box.body && { body: box.body }),
+    ...(box.hollow && { hollow: true }),
     toBox: [
       1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
       2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
@@ -48,15 +52,17 @@ export function prepareBox(box: OrientedBox): PreparedBox {
   };
 }
 
-/** Distance in metres from a point to what is in a box; 0 inside. */
+/** Distance in metres from a point to what is in a box; 0 inside, +Infinity where it is hollow. */
 export function distanceToBox(box: PreparedBox, px: number, py: number, pz: number): number {
+  if (box.hollow) return Infinity;
   if (!box.body) return distanceToBounds(box, px, py, pz);
   const [x, y, z] = nearestOnBox(box, px, py, pz);
   return Math.hypot(px - x, py - y, pz - z);
 }
 
-/** Distance in metres from a point to the box itself: no more than that to what is in it. */
+/** Distance in metres from a point to the box itself: no more than that to what is in it; +Infinity where it is hollow. */
 export function distanceToBounds(box: PreparedBox, px: number, py: number, pz: number): number {
+  if (box.hollow) return Infinity;
   const m = box.toBox;
   const dx = px - box.center[0];
   const dy = py - box.center[1];
@@ -125,6 +131,7 @@ export function freeReach(
 
 /** Whether the box is a wall or a floor: at least this large in two directions. What is smaller is furniture. */
 export function isWall(box: PreparedBox, size = 1.8): boolean {
+  if (box.hollow) return false;
   const sizes = box.halfSize.map((half) => 2 * half).sort((a, b) => b - a);
   return (sizes[1] ?? 0) >= size;
 }

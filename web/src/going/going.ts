@@ -64,7 +64,7 @@ export class GoingSomewhere {
       .intersectObjects(picture.world.solid, true)
       .filter(({ object, point }) => object.visible && point.y < picture.world.drawnUpTo);
     const [first] = seen;
-    if (picture.world.hasModel && first && liesLevel(first)) return [first.point.x, first.point.y, first.point.z];
+    if (picture.world.hasFloors && first && liesLevel(first)) return [first.point.x, first.point.y, first.point.z];
     const level = picture.floor;
     const floor = ray.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), -level), new Vector3());
     if (!floor) return null;

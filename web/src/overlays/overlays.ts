@@ -130,7 +130,7 @@ export class OverlayDrawing {
     const pair = shown.has("nearest") ? status?.nearest : null;
     const capsule = pair ? this.capsules.findIndex((c) => c.name === pair.capsule) : -1;
     const box = pair ? this.boxes[this.boxNames.indexOf(pair.obstacle)] : undefined;
-    if (capsule < 0 || !box || pose.capsules.length !== 6 * this.capsules.length) nearest.hide();
+    if (capsule < 0 || !box || box.hollow || pose.capsules.length !== 6 * this.capsules.length) nearest.hide();
     else nearest.show(box, pose.capsules, capsule, this.radius(capsule));
   }
 

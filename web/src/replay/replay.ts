@@ -187,8 +187,10 @@ export class Replay implements PanelListener {
     const { picture } = this.host;
     this.take = take;
     if (this.other && (this.other === take || !samePlace(this.other, take))) this.setOther(null);
+    const failed = (error: unknown): void => this.host.say("error", words(error));
     picture.showScene(take.scene, take.loose);
-    if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch((error: unknown) => this.host.say("error", words(error)));
+    picture.showModel().catch(failed);
+    if (picture.shownAvatar !== take.avatar) picture.showAvatar(take.avatar).catch(failed);
     if (take.file) this.player.seek(setsOff(take) - LEAD);
     this.describe();
   }

@@ -11,13 +11,14 @@ import { NOTHING_LOOSE, type Loose } from "./loose";
 import { boxAt } from "./moving";
 import { Obstacles, type DrawnObstacle } from "./obstacles";
 import { PlaceModel } from "./place_model";
+import { Surfaces } from "./surfaces";
 import { nearestOnSegment } from "../overlays/touching";
 import type { Palette } from "./palette";
 
 const SIGHT_RADIUS = 0.06;
 const BESIDE_THE_BODY = 0.97;
-/** Metres: so the floor of a model, at height 0 too, is what one sees. */
-const BELOW_A_MODEL = -0.02;
+/** Metres: so the floor of a place, at height 0 too, is what one sees. */
+const BELOW_A_PLACE = -0.02;
 
 export class World {
   readonly group = new Group();
@@ -31,14 +32,17 @@ export class World {
   private readonly ground = new Ground();
   private readonly obstacles = new Obstacles();
   private readonly place = new PlaceModel();
+  /** Of the place: its model, and obstacles that are meshes. */
+  private readonly surfaces = new Surfaces();
 
   constructor() {
     this.group.add(this.ground.group, this.obstacles.group, this.gate.group, this.place.group);
   }
 
   /** Fetches the model of the place that is shown, if it has one. @throws Error when it cannot be shown */
-  showModel(): Promise<void> {
-    return this.place.show(this.message?.model?.url ?? null);
+  async showModel(): Promise<void> {
+    await this.place.show(this.message?.model?.url ?? null);
+    this.takeSurfaces();
   }
 
   show(message: SceneMessage, palette: Palette, rich: boolean): void {
@@ -46,9 +50,8 @@ export class World {
     this.loose = NOTHING_LOOSE;
     this.boxes = allObstacles(message).map(({ form, box }) => prepareBox(inBox(form, box)));
     const walls = this.boxes.filter((box) => isWall(box));
-    const sight = message.model ? { sight: this.place.sight } : {};
-    this.cameraObstacles = { all: this.boxes, walls, ...sight };
-    this.ground.group.position.y = message.model ? BELOW_A_MODEL : 0;
+    this.cameraObstacles = { all: this.boxes, walls, sight: this.surfaces.sight };
+    this.ground.group.position.y = this.hasFloors ? BELOW_A_PLACE : 0;
     this.repaint(palette, rich);
   }
 
@@ -57,19 +60,19 @@ export class World {
     return [this.obstacles.group, this.place.group];
   }
 
-  /** The height from which on a model is not drawn: that of the storey above. */
+  /** The height from which on a place is not drawn: that of the storey above. */
   get drawnUpTo(): number {
-    return this.place.drawnUpTo;
+    return this.surfaces.drawnUpTo;
   }
 
-  /** Whether a model is shown, on whose floors one can be at any height. */
-  get hasModel(): boolean {
-    return this.message?.model != null;
+  /** Whether a place is shown, on whose floors one can be at any height. */
+  get hasFloors(): boolean {
+    return this.message?.model != null || this.boxes.some((box) => box.hollow);
   }
 
   /** Finds the storey above who stands at a place, so that the camera may be there. */
   lookUp(x: number, floor: number, z: number): void {
-    this.place.lookUp(x, floor, z);
+    this.surfaces.lookUp(x, floor, z);
   }
 
   /** Lets the obstacles of these names glow: they close the way. */
@@ -111,9 +114,14 @@ export class World {
   }
 
   private put(at: number, box: OrientedBox): void {
-    const body = this.boxes[at]?.body;
+    const { body, hollow } = this.boxes[at] ?? {};
     this.obstacles.place(at, box);
-    this.boxes[at] = prepareBox(body ? { ...box, body } : box);
+    this.boxes[at] = prepareBox({ ...box, ...(body && { body }), ...(hollow && { hollow }) });
+  }
+
+  private takeSurfaces(): void {
+    const meshes = this.obstacles.group.children.filter((_, i) => this.boxes[i]?.hollow);
+    this.surfaces.take([...this.place.group.children, ...meshes]);
   }
 
   /** Brings the open field along with the avatar. */
@@ -123,7 +131,7 @@ export class World {
 
   /** Makes obstacles see-through that stand between the camera and the avatar. */
   clearSight(camera: Vec3, body: readonly Vec3[], dt: number): void {
-    this.place.open(camera);
+    this.surfaces.open(camera);
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
   }
 
@@ -133,7 +141,8 @@ export class World {
     if (!message) return;
     const { ground, start, finish } = message;
     this.obstacles.build(allObstacles(message), palette, rich);
-    const standing = this.boxes.slice(0, message.obstacles.length);
+    this.takeSurfaces();
+    const standing = this.boxes.slice(0, message.obstacles.length).filter((box) => !box.hollow);
     this.ground.lay(ground.size[0], ground.size[1], ground.center, standing, palette, rich);
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
     this.gate.build(gate, [start.x, start.z], palette);
@@ -159,6 +168,7 @@ function orientedBox({ center, rotation, form: { size } }: Obstacle): OrientedBo
 }
 
 function inBox(form: Form, box: OrientedBox): OrientedBox {
+  if (form.shape === "mesh") return { ...box, hollow: true };
   const body = convexBody(form);
   return body ? { ...box, body } : box;
 }

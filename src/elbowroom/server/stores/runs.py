@@ -18,6 +18,7 @@ from elbowroom.server.standalone.frames import PosedRun
 from elbowroom.server.stores.avatar_store import STOCK, StoredAvatar
 from elbowroom.server.stores.library import Library
 from elbowroom.server.wire.codec import plain
+from elbowroom.world.places.same_model import shown_as_known
 from elbowroom.world.scene import Scene
 
 _LENGTH = struct.Struct("<I")
@@ -64,7 +65,7 @@ def _told(library: Library, name: str, posed: PosedRun) -> ShownRun:
     size = len(posed.frames) // max(posed.count, 1)
     run = Run(
         name=name,
-        scene=scene_message(Scene.from_dict(posed.scene, name)),
+        scene=scene_message(shown_as_known(Scene.from_dict(posed.scene, name), library.scenes.values())),
         avatar=avatar_message(avatar, 0),
         planner=posed.planner,
         stand_in=posed.stand_in,
