@@ -86,3 +86,12 @@ def test_letting_go_of_a_stick_and_barely_moving_it_are_heard() -> None:
     barely = Command(forward=0.01)
     assert steady(IDLE, barely) is barely
     assert steady(barely, IDLE) is IDLE
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-9, -1e-9, 5e-324])
+def test_what_no_hand_can_ask_for_is_not_asked_for(noise: float) -> None:
+    assert Command(forward=1.0, strafe=noise, turn=noise).straight
+    assert not Command(forward=1.0, strafe=noise, turn=noise).turns
+    assert not Command(forward=noise).straight
+    assert Command(forward=noise, turn=-0.5).turns
+    assert not Command(forward=1.0, strafe=0.5).straight

@@ -35,6 +35,16 @@ class Command:
         return abs(self.forward) < _NOTHING and abs(self.strafe) < _NOTHING and abs(self.turn) < _NOTHING
 
     @property
+    def turns(self) -> bool:
+        """Whether the user turns the body by hand."""
+        return self.direction is None and abs(self.turn) >= _NOTHING
+
+    @property
+    def straight(self) -> bool:
+        """Whether the user goes where the body faces."""
+        return self.direction is None and self.forward >= _NOTHING and abs(self.strafe) < _NOTHING
+
+    @property
     def speed(self) -> float:
         """The share of full speed, in whatever direction."""
         return abs(self.forward) if self.direction is not None else math.hypot(self.forward, self.strafe)

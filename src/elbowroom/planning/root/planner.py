@@ -183,7 +183,7 @@ class _OfferMaker:
         leg = memory.leg_of(command.way, asked.start)
         if command.idle:
             plan = self._paths.stopped(asked)
-        elif _turns(command):
+        elif command.turns:
             plan, evading = self._paths.steered(asked, pace), None
         elif command.way:
             line, plan = line_of(command.way, leg, command), self._paths.along(asked, leg, pace)
@@ -305,8 +305,3 @@ def _leads_back(plan: RootPlan, line: TravelLine) -> bool:
     """Whether a path ends behind its start, along a line: nobody goes back for what only stands there."""
     (first, _), (last, _) = (line.coordinates(x, z) for x, z in plan.path.states[[0, -1], :2].tolist())
     return bool(last < first - _BACK)
-
-
-def _turns(command: Command) -> bool:
-    """Whether the user turns the body by hand."""
-    return command.turn != 0.0 and command.direction is None

@@ -60,7 +60,7 @@ def new_line(start: RootState, command: Command, motion: RootMotionSettings) -> 
         return TravelLine(asked, x, z, heading, faced(heading, command), True)
     facing = start.heading + 0.5 * start.turn * abs(start.turn) / motion.turn_acceleration  # where a turn comes to rest
     going = facing + math.atan2(command.strafe, command.forward)
-    return TravelLine(asked, x, z, going, facing, command.forward > 0.0 and command.strafe == 0.0)
+    return TravelLine(asked, x, z, going, facing, command.straight)
 
 
 def faced(heading: float, command: Command) -> float:
