@@ -46,8 +46,10 @@ def test_wherever_two_meet_they_share_the_way(width: float, kind: Kind) -> None:
 
 @pytest.mark.long
 def test_who_stand_in_each_others_way_do_not_touch() -> None:
-    """Both are at a loss at times, and then each shows something else than it said."""
-    assert not meet(drawn(1.0, Kind.WALKS, 18)).touched
+    """There is no room for two: both are at a loss, and then each shows something else than it said."""
+    met = meet(drawn(0.86, Kind.WALKS, 3))
+    assert not met.passed
+    assert not met.touched
 
 
 def seen(x: float, z: float, wanted: tuple[float, float]) -> Neighbour:

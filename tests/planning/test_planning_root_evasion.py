@@ -21,7 +21,8 @@ from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
-from elbowroom.world.obstacles.tracks.moving import Moving
+from elbowroom.world.obstacles.shapes import Box
+from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -187,6 +188,30 @@ def test_who_lets_go_while_turned_still_means_the_way_he_went() -> None:
     standing = RootState(*stop.path.states[-1].tolist())
     on = next(iter(planner.candidates(standing, FORWARD, 16, 0.15)))
     assert on.path.states[-1, 1] > standing.z + 0.4
+
+
+def half_of_a_corridor(edge: float, near: float) -> Moving:
+    """What somebody who comes towards one keeps to: all that is left of an edge, from so far ahead on, metres."""
+    box, center = Box((0.5, 2.0, 3.3 - near)), np.array([[edge + 0.25, 1.0, 0.5 * (near + 3.3)]])
+    return Moving((Track("half", box, np.zeros(1), center, np.zeros(1), Repeat.ONCE),))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_goes_past_with_one_shoulder_first_does_not_change_to_the_other(seed: int) -> None:
+    """Both ways cost about the same, and where the other walks is seen a little elsewhere in every plan."""
+    walls: list[tuple[list[float], list[float]]] = [([x, 1.25, 3.0], [0.2, 2.5, 14.0]) for x in (-0.6, 0.6)]
+    planner, rng, state = RootPlanner(AVATAR, with_boxes(*walls)), np.random.default_rng(seed), RootState(x=0.15)
+    firsts = []
+    for i in range(20):
+        planner.others = half_of_a_corridor(-0.01 + rng.uniform(-0.006, 0.006), 1.4 - 0.02 * i)
+        found = planner.candidates(state, Command(forward=0.62), 16, 0.15, 0.15 * i, (0.6, 0.35, 0.2))
+        taken = next(plan for plan in found if plan.kind is RootPlanKind.EVASION)
+        planner.follow(taken)
+        turned = taken.path.states[:, 2]
+        firsts.append(float(turned[np.abs(turned).argmax()]))
+        state = RootState(*taken.path.states[1].tolist())
+    assert min(firsts) * max(firsts) > 0.0
+    assert state.z > 1.2
 
 
 def test_settings_give_turns_to_both_sides() -> None:

@@ -26,6 +26,8 @@ class Evading(NamedTuple):
     profile: Profile
     line: TravelLine  # that it leads from
     along: TravelLine  # that the profile belongs to: the same line, or the axis of a gap
+    share: float  # of the usual speed, sideways
+    whole: bool  # whether it leads past all that was in sight
 
 
 class RootMemory(NamedTuple):

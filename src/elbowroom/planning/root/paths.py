@@ -20,7 +20,7 @@ from elbowroom.planning.narrow.gap import gap_ahead
 from elbowroom.planning.narrow.pace import hanging, slow_places, slow_under
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.cost import SLOW, Figure, crowded, prices_of, seconds_lost
-from elbowroom.planning.root.evasion.evasion import EvasionFinder
+from elbowroom.planning.root.evasion.evasion import Evasion, EvasionFinder
 from elbowroom.planning.root.evasion.profile import Profile
 from elbowroom.planning.root.legs.hull import route_is_open
 from elbowroom.planning.root.legs.leg_check import LegCheck
@@ -211,7 +211,7 @@ class RootPaths:
         finder: EvasionFinder,
         kept: Profile | None,
         share: float = 1.0,
-    ) -> Iterator[tuple[RootPlan, Profile]]:
+    ) -> Iterator[tuple[RootPlan, Evasion]]:
         """Evasions from a line of travel in a grid `along` another or the same, each once; `kept` is followed.
 
         They are walked at the `share` of the speed sideways.
@@ -233,9 +233,22 @@ class RootPaths:
                 profiles.append(found.profile)
                 answer = query.evaded(along, found, speed, sideways)
                 checks, lost = grid.cells + query.checks - before, self._lost(asked, line, speed, answer)
-                yield _plan(asked, answer, checks, began, lost), found.profile
+                yield _plan(asked, answer, checks, began, lost), found
                 if answer.whole:
                     break
+
+    def followed(
+        self, asked: Asked, line: TravelLine, along: TravelLine, profile: Profile, share: float
+    ) -> RootPlan | None:
+        """What is left of an evasion that was found, as for `evaded`; None if it is not free, or ends too soon."""
+        began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(asked.command, self.settings.motion)
+        before, sideways = query.checks, share * min(speed, self.settings.evasion.sideways)
+        answer = query.evaded(along, Evasion(profile, True, 0.0), speed, sideways)
+        end = profile.first + profile.step * (len(profile.rows) - 1)
+        beyond = along.coordinates(*answer.states[-1, :2].tolist())[0] > end
+        if beyond or not answer.whole or answer.kind is RootPlanKind.STOPPED:
+            return None
+        return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
 
     def steps_aside(self, asked: Asked) -> Iterator[RootPlan]:
         """Short steps out of the way of what moves."""

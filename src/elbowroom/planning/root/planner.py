@@ -219,16 +219,19 @@ class _OfferMaker:
         (fine, wide), dear = self._paths.evasions, self.settings.wide_from
         grids = [(0.0, fine, None), (dear, fine, 1.0), (dear, fine, fine.settings.short), (dear, wide, None)]
         grids = [] if line is None else grids
+        kept = self._kept(asked, line, known)
+        offers += [] if kept is None else [kept]
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
             yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
         while offers or (grids and most > 0 and line is not None):
             offers.sort(key=lambda offer: offer.lost)
-            if line is not None and most > 0 and grids and _dearer(offers, grids[0][0]):
+            if kept is None and line is not None and most > 0 and grids and _dearer(offers, grids[0][0]):
                 _, finder, through = grids.pop(0)
                 evaded = self._evaded(asked, line, known, finder, through)
                 offers, most = offers + evaded, most - bool(evaded)
                 continue
-            what = offers.pop(0).what
+            idea = offers.pop(0)
+            what, kept = idea.what, None if idea is kept else kept
             if isinstance(what, float):
                 self.memory = self.memory._replace(evading=direct, way_out=before)
                 yield self._offer(self.commanded(asked, what), direct, before)
@@ -280,6 +283,17 @@ class _OfferMaker:
             return known.along
         return axis
 
+    def _kept(self, asked: Asked, line: TravelLine | None, known: Evading | None) -> _Idea | None:
+        """What is left of the evasion that is being followed, if it leads past all that is in sight and is free.
+
+        As long as it is, no other is looked for: two ways that cost about the same would be taken in turn, and neither
+        be walked.
+        """
+        if line is None or known is None or known.line != line or not known.whole:
+            return None
+        plan = self._paths.followed(asked, line, known.along, known.profile, known.share)
+        return None if plan is None else _Idea(plan.lost, self._offer(plan, known, self.memory.way_out))
+
     def _evaded(
         self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, through: float | None
     ) -> list[_Idea]:
@@ -293,7 +307,10 @@ class _OfferMaker:
             return []
         kept = known.profile if known is not None and known.along == along else None
         found = self._paths.evaded(asked, line, along, finder, kept, share)
-        return [_Idea(plan.lost, self._offer(plan, Evading(profile, line, along), before)) for plan, profile in found]
+        return [
+            _Idea(plan.lost, self._offer(plan, Evading(one.profile, line, along, share, one.whole), before))
+            for plan, one in found
+        ]
 
 
 def _dearer(offers: list[_Idea], lost: float) -> bool:
