@@ -59,3 +59,17 @@ def test_arms_that_have_no_room_for_more_leave_legs_just_what_they_need() -> Non
         assert np.all(np.abs(barely - HANGING) <= np.abs(spread - HANGING) + 1e-9)
         moved += barely is not HANGING
     assert moved > 2
+
+
+def test_arms_that_have_made_way_come_back_softly_and_are_back_soon() -> None:
+    column, made, upper = columns_of(ARMS[1]).start + 1, np.zeros(LOCAL), HANGING
+    made[column], spread = 0.03, [0.0, 0.03]
+    for _ in range(60):
+        upper = ARMS_BESIDE.coming_back(HANGING, HANGING, made, 1 / 60)
+        made = upper - HANGING
+        spread.append(float(made[column]))
+    assert upper is HANGING
+    assert np.abs(np.diff(spread, 2)).max() < 0.036, "less than by both, to and fro"
+    assert np.all(np.diff(spread[1:]) <= 0.0)
+    wide = HANGING + 0.1
+    assert ARMS_BESIDE.coming_back(wide, HANGING, wide - HANGING, 1 / 60) is wide, "who has to make way does so"

@@ -5,6 +5,8 @@ aside, so a thigh may be a few centimetres beside where it was planned, just whe
 by as much.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,8 +23,10 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 _NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
+_BACK = 0.1  # seconds: time constant with which an arm that has made way comes back
 _BARELY = 0.0005  # metres that it keeps where it has no room for more
 _ROUNDS, _LEAST = 3, 0.3  # of the way to the hand: what spreading an arm opens at least
+_UNFELT = 1e-4  # radians
 _ABDUCTION = 1  # its place in an arm's components
 
 
@@ -57,6 +61,21 @@ class ArmsBesideLegs:
         gaps = both[:, 0].astype(np.float64)
         return self._spread(root, upper, gaps, _widened(gaps))
 
+    def coming_back(self, upper: Floats, planned: Floats, made: Floats, dt: float) -> Floats:
+        """An upper body (LOCAL,) with arms that do not at once come back from where they have made way.
+
+        They were spread by what was `made` of what was planned (LOCAL,) `dt` seconds ago, radians, and are now at least
+        by so much less of it as they can come back in that time.
+        """
+        spread = np.maximum(made[self._columns], 0.0) * math.exp(-dt / _BACK)
+        spread[spread < _UNFELT] = 0.0
+        least = np.minimum(planned[self._columns] + spread, self._most)
+        if spread.max() <= 0.0 or (upper[self._columns] - least).min() >= 0.0:
+            return upper
+        back = upper.copy()
+        back[self._columns] = np.maximum(upper[self._columns], least)
+        return back
+
     def barely_apart(self, root: Floats, upper: Floats) -> Floats:
         """The same, no farther than needed: for where something else is in the arms' way."""
         gaps = self._gaps(root, upper)[:, 0].astype(np.float64)
@@ -79,7 +98,11 @@ class ArmsBesideLegs:
 
     def are_clear(self, root: Floats, upper: Floats) -> bool:
         """Whether no arm of an upper body (LOCAL,) is deeper in the legs under `root` than it may be."""
-        return float(self._gaps(root, upper).min()) >= 0.0
+        return self.room(root, upper) >= 0.0
+
+    def room(self, root: Floats, upper: Floats) -> float:
+        """How much nearer arms could come to the legs under `root`, metres; negative where one is too deep in them."""
+        return float(self._gaps(root, upper).min())
 
     def _gaps(self, root: Floats, upper: Floats) -> Floats32:
         here, q = root[None].copy(), np.zeros((1, DOF))

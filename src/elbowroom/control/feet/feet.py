@@ -35,6 +35,7 @@ class Moment(NamedTuple):
     """What is known when feet follow."""
 
     shown: Playback  # what is shown
+    meant: Floats  # (LOCAL,) the upper body that was planned for it
     dt: float  # seconds from that to what comes next
     ahead: Floats  # (m, 8) seconds from now and root states that the root is to come to
     room: float  # metres about the whole body as it is shown; negative where that is not looked at

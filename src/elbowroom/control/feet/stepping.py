@@ -76,7 +76,7 @@ class Stepping:
     def settling(self, moment: Moment, held: Playback) -> Iterator[Playback]:
         """How a pose that is held could be shown next, as legs come to a stand: best first.
 
-        Arms make way for legs that come to a stand; if that touches they stay.
+        Arms make way for legs that come to a stand; if that touches they stay, where no arm comes deeper into a leg.
         """
         moment = moment._replace(ahead=UNKNOWN)
         steps = self._followed(moment, held, STEPS)
@@ -85,10 +85,11 @@ class Stepping:
         made = [pose for how in order for pose in self._ways(moment, held, how)]
         if any(lively(pose.root) for pose in made):
             made += [pose for how in order for pose in self._ways(still, held, how)]
+        deepest = min(self._arms.room(*moment.shown[:2]), 0.0)
         for pose in made:
             is_apart = pose.upper is not held.upper
             yield pose if is_apart else pose._replace(upper=self._arms.apart(pose.root, pose.upper))
-        yield from made
+        yield from (pose for pose in made if self._arms.room(pose.root, pose.upper) >= deepest)
 
     def next(self, moment: Moment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
@@ -97,7 +98,8 @@ class Stepping:
         if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
             after = self._glided(moment, posed, lasts=around.lasts)
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
-        return Playback(after.root, upper, posed.upper_velocity)
+        made = moment.shown.upper - moment.meant
+        return Playback(after.root, self._arms.coming_back(upper, posed.upper, made, moment.dt), posed.upper_velocity)
 
     def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.

@@ -39,6 +39,7 @@ class Showing:
         upper, stood = standing_posture(root), around.check.standing(root)
         standing = Playback(around.feet.standing(root), upper, np.zeros_like(upper))
         self._pose = self._before = self._free = standing
+        self._meant = upper  # what was planned for the upper body that is shown
         self._clearance, self._posed_at = around.check.clearance(stood, upper, 0.0), 0.0
 
     @property
@@ -80,6 +81,7 @@ class Showing:
             if not self.assist or self._is_free(posed, clearance):
                 self.holding.end(stance)
                 self._show(posed, clearance)
+                self._meant = planned.upper
                 return True
         return False
 
@@ -138,7 +140,7 @@ class Showing:
 
     def follow(self, shown: Playback, planned: Playback, dt: float, ahead: Floats) -> Playback:
         """How a pose will be shown `dt` seconds after what is `shown` then, if that is free."""
-        return self._around.feet.next(self._moment(dt, ahead)._replace(shown=shown), planned)
+        return self._around.feet.next(self._moment(dt, ahead)._replace(shown=shown, meant=shown.upper), planned)
 
     def changes_nothing(self, states: Floats, uppers: Floats) -> bool:
         """Whether a motion (n, ROOT_STATE), (n, LOCAL) stands as what is shown does, in the same pose."""
@@ -164,7 +166,7 @@ class Showing:
     def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
         check = self._around.check
-        return Moment(self._pose, dt, ahead, self._room(), self._look, check.room_along, check.room_above)
+        return Moment(self._pose, self._meant, dt, ahead, self._room(), self._look, check.room_along, check.room_above)
 
     def _room(self) -> float:
         """Metres about the body as it is shown; where ground is not plain, about what the shins carry."""
@@ -203,5 +205,6 @@ class Showing:
             self._retracing.show(Past(self._pose, self._clearance, self._now - self._posed_at), pose)
         self._before = self._pose
         self._pose, self._clearance, self._posed_at = pose, clearance, self._now
+        self._meant = pose.upper
         if clearance >= 0.0:
             self._free = pose
