@@ -3,12 +3,14 @@
 from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
+from elbowroom.body.gait.foot_state import SWING, Z
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import lower_body
-from elbowroom.body.root import RISES, ROOT_STATE, WITH_FEET
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -17,7 +19,7 @@ from feet_walks import GAIT
 Floats = NDArray[np.float64]
 
 AVATAR = Humanoid.default()
-FRAME = 1 / 60
+FRAME, BALL = 1 / 60, 6  # seconds; column of the gait's legs
 BESIDE = {"type": "box", "center": [3.0, 0.1, 2.0], "size": [0.4, 0.2, 0.4]}
 ASKED = (Command(forward=1.0), Command(), Command(strafe=1.0), Command(turn=1.0), Command(forward=-1.0), Command())
 
@@ -34,6 +36,20 @@ def test_on_a_level_floor_feet_step_and_bodies_live_as_on_the_plane() -> None:
     """A low box that nobody comes near makes the ground of a place uneven."""
     assert not Scene.of("place", [BESIDE], finish=(0.0, 30.0)).ground.plain
     assert np.abs(shown([BESIDE]) - shown([])).max() < 1e-6
+
+
+@pytest.mark.parametrize("begin", [2.0, 2.08])
+def test_a_foot_on_a_sill_that_is_shorter_than_itself_stands_on_its_ball(begin: float) -> None:
+    """It rolls over that: in the air it would slide."""
+    sill = {"type": "box", "center": [0.0, 0.05, begin + 0.05], "size": [1.8, 0.1, 0.1]}
+    controller, balls = Controller(AVATAR, Scene.of("sill", [sill], finish=(0.0, 5.0))), list[float]()
+    while controller.root.z < begin + 0.4:
+        row = controller.step(ASKED[0], FRAME).root
+        for side, (foot, rise) in enumerate(zip(row[ROOT_STATE:WITH_FEET].reshape(2, -1), row[RISES::2], strict=False)):
+            if foot[SWING] <= 0.0 and row[HEIGHT] + rise > 0.08:
+                balls.append(row[1] + foot[Z] + GAIT.legs[side, BALL])
+    assert balls
+    assert begin - 1e-3 < min(balls) <= max(balls) < begin + 0.1 + 1e-3
 
 
 def test_feet_of_the_cycle_are_raised_alike_in_a_row_of_their_own() -> None:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
 from elbowroom.body.gait.footholds import landing, step_feet
-from elbowroom.body.gait.landing_places import Stepper
+from elbowroom.body.gait.landing_places import Stepper, landing_place
+from elbowroom.body.gait.own_steps import own_stride_at
+from elbowroom.body.gait.stepping_times import time_to_landing
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.jit import helper, inner_exact_kernel
 from elbowroom.planning.model.footing import OVER, Underfoot, in_world, stood_at
@@ -64,7 +66,8 @@ def _needed(under: Underfoot, row: Floats, foot: Floats, goal: Place, left: floa
     set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
     for k in range(_LOOKS):
         if overs[k] > _NONE:
-            wanted = max(wanted, overs[k] + (OVER if overs[k] > lands + _LEVEL else 0.0) - _RISING * k / _LOOKS * left)
+            over = OVER if overs[k] > lands + _LEVEL else 0.0
+            wanted = max(wanted, overs[k] + over - _RISING * k / _LOOKS * left)
     return max(wanted, lands - _RISING * left)
 
 
@@ -102,42 +105,52 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
 
 
 @helper
-def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> bool:
-    """Whether a foot at a place would have ground under its ankle and its ball, and not under its toes alone."""
+def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool]:
+    """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone."""
     lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
     x, z = in_world(row, foot[0], foot[1])
     ankle = height_at(under.ground, x, z, lies)
     x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
     front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
-    return lies > _NONE and lies - ankle < _AIR and lies - front < _AIR
+    return lies > _NONE and lies - ankle < _AIR, lies > _NONE and lies - front < _AIR
 
 
 @inner_exact_kernel
 def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> float:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
-    As little as possible; 0 where that is not had within a few centimetres.
+    As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
+    0 where it does not do so either.
     """
-    ball, scale = who.legs[side, _BALL], who.scale
+    ball, scale, onto_ball = who.legs[side, _BALL], who.scale, math.inf
     for k in range(2 * _TRIED + 1):
         ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
         x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
-        if _bears(under, row, (x, z, goal[2]), ball):
+        heel, front = _bears(under, row, (x, z, goal[2]), ball)
+        if heel and front:
             return float(ahead)
-    return 0.0
+        if front and onto_ball == math.inf:
+            onto_ball = float(ahead)
+    return onto_ball if onto_ball < math.inf else 0.0
 
 
 @helper
 def _set_farther(
     under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, farther: Floats, later: Floats
 ) -> None:
-    """Set how much farther ahead feet that swing have to land (2,) under a root state, on after the row `before`."""
-    row = np.empty(WITH_FEET)
+    """Set how much farther ahead feet that swing have to land (2,) under a root state, on after the row `before`.
+
+    Than they are meant to: one that is bound for a place already has been told, and goes where it was going.
+    """
+    row, (legs, scale, own) = np.empty(WITH_FEET), who
+    stride = own_stride_at(own, scale, root)
     carry(before, root, row)
     for side in range(2):
         foot = row[ROOT_STATE + FOOT * side :]
         if foot[SWING] > 0.0:
-            x, z, yaw, _ = landing(who, row, side, coming, farther, later)
+            twin = row[ROOT_STATE + FOOT * (1 - side) :]
+            left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
+            x, z, yaw = landing_place(who, side, row, twin, coming, left, 0.0, later)
             if _level_there(under, row, foot, (x, z, yaw)) == _NONE:
                 farther[side] = _farther_onto(under, who, row, side, (x, z, yaw))
 
