@@ -66,7 +66,7 @@ def _needed(under: Underfoot, row: Floats, foot: Floats, goal: Place, left: floa
     set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
     for k in range(_LOOKS):
         if overs[k] > _NONE:
-            over = OVER if overs[k] > lands + _LEVEL else 0.0
+            over = OVER * ground.step if overs[k] > lands + _LEVEL else 0.0
             wanted = max(wanted, overs[k] + over - _RISING * k / _LOOKS * left)
     return max(wanted, lands - _RISING * left)
 

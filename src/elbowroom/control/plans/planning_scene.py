@@ -9,6 +9,7 @@ from elbowroom.control.plans.planners import Planners
 from elbowroom.control.plans.wayfinder import Wayfinder
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.shown.body_check import BodyCheck
+from elbowroom.planning.model.highest_step import as_stepped
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.world.scene import Scene
 
@@ -18,6 +19,7 @@ class PlanningScene:
 
     def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet) -> None:
         """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
+        scene = as_stepped(scene, humanoid)
         self._humanoid, self.scene = humanoid, scene
         self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)

@@ -30,7 +30,7 @@ Bools = NDArray[np.bool_]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
-OVER = 0.04  # metres above an edge that a swinging foot keeps, as it is planned and as it is shown
+OVER = 0.16  # of the highest step that a swinging foot keeps above an edge, as it is planned and as it is shown
 _BESIDE = 0.04  # metres before and behind an edge that a foot keeps: where it rolls its toes come 3 cm farther
 _LEVEL = 0.002  # metres: what is no higher in its way is not stepped over
 _LOOKS = 25  # places of a swing that are looked at
@@ -252,23 +252,24 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
         overs[k] -= begin
         above, lacks = max(above, overs[k]), max(lacks, overs[k] - _climbed(_TIMES[k], rise) * rise)
     part = _climbed(w, rise)
-    height = begin + (_lifted(overs, rise, above + OVER, w) if lacks > _LEVEL else part * rise)
+    over = OVER * ground.step
+    height = begin + (_lifted(overs, rise, above + over, over, w) if lacks > _LEVEL else part * rise)
     return height, first + part * (last - first)
 
 
 @helper
-def _lifted(overs: Floats, rise: float, top: float, w: float) -> float:
+def _lifted(overs: Floats, rise: float, top: float, over: float, w: float) -> float:
     """How high a foot is lifted that goes over edges: up to the `top`, no sooner and no later than it must, and down.
 
     `overs` are heights of the ground in its way at `_TIMES`, `rise` is that of where it comes down; all from where it
-    stood.
+    stood. It keeps so far `over` edges.
     """
     up, down, early = _UP, _UP, 0.5 / _LOOKS
     for k in range(overs.shape[0]):
         if overs[k] > _LEVEL:
-            up = min(up, (_TIMES[k] - early) / _uneased((overs[k] + 0.9 * OVER) / top))
+            up = min(up, (_TIMES[k] - early) / _uneased((overs[k] + 0.9 * over) / top))
         if overs[k] > rise + _LEVEL:
-            down = min(down, (1.0 - _TIMES[k] - early) / _uneased((overs[k] + 0.9 * OVER - rise) / (top - rise)))
+            down = min(down, (1.0 - _TIMES[k] - early) / _uneased((overs[k] + 0.9 * over - rise) / (top - rise)))
     risen, sunk = _eased(w / max(up, _QUICKEST)), _eased((1.0 - w) / max(down, _QUICKEST))
     return min(top * risen, rise + (top - rise) * sunk)
 

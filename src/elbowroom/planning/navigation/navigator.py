@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
+from elbowroom.planning.model.highest_step import as_stepped
 from elbowroom.planning.navigation.field import Prices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
@@ -23,6 +24,7 @@ from elbowroom.planning.navigation.way import (
     said,
     way_over,
 )
+from elbowroom.world.ground.ground import STEP
 from elbowroom.world.scene import Scene
 
 _MARGINS = (4.0, 16.0, math.inf)  # metres around start and goal that are looked at, one after the other
@@ -32,7 +34,8 @@ class Navigator:
     """Threads may share it."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
-        self._scene, self._girth, self._ground = scene, girth_of(humanoid), ground_of(scene)
+        self._scene = as_stepped(scene, humanoid)
+        self._girth, self._ground = girth_of(humanoid), ground_of(scene)
         self._prices = Prices(self._girth.slim)
         self._known: RoomMap | None = None
         self._lock = Lock()
@@ -57,10 +60,19 @@ class Navigator:
             area = both.around(margin, ground)
             try:
                 return self._over(self._map_of(area), begin, goal, closed)
-            except NoWayError:
+            except NoWayError as error:
                 if area.holds(ground):
-                    raise
+                    raise self._told(error) from None
         raise NoWayError(f"no way leads from {said(begin)} to {said(end)}")
+
+    def _told(self, error: NoWayError) -> NoWayError:
+        """Why there is no way, and that steps are too high where that may be it."""
+        highest = self._scene.ground.step
+        if self._scene.ground.plain or highest >= STEP:
+            return error
+        told = NoWayError(f"{error}; steps of {100.0 * highest:.0f} cm are the highest for such legs")
+        told.nearest = error.nearest
+        return told
 
     def _over(self, room: RoomMap, begin: Place, goal: Place | Spot, closed: Sequence[tuple[Spot, float]]) -> Way:
         """The way over a map to the first floor that one leads to; raises `NoWayError` about the first of them."""

@@ -24,7 +24,7 @@ Floats32 = NDArray[np.float32]
 CELL = 0.06  # metres between points
 FARTHEST = 0.6  # metres: more room is not told apart
 _LOW = 0.03  # metres above a plane: what is lower is stood on
-_LESS = 0.02  # metres less than a slim body above what can be stepped onto: from there on things are in the way
+_LESS = 0.08  # of a step less than a slim body above what can be stepped onto: from there on things are in the way
 _OVER = np.float32(0.06)  # metres by which a body may be over an edge: ankles stay on the ground
 _IN_IT = 0.01  # metres: what is nearer than this to the middle of a place hangs over it
 _MANY = 100  # obstacles: among fewer a map is made at once
@@ -131,7 +131,9 @@ def room_map(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     if len(standing.rows) < _MANY:
         return _made(scene, girth, area)
     floor = () if scene.place is None or scene.place.floor is None else (scene.place.floor.there,)
-    about = np.array([*girth, *area, *scene.ground_center, *scene.ground_size, ground.cell, *ground.corner])
+    about = np.array(
+        [*girth, *area, *scene.ground_center, *scene.ground_size, ground.cell, *ground.corner, ground.step]
+    )
     whole = (about, *standing, ground.starts, ground.members, ground.triangles, ground.level, *floor)
     found = kept(__file__, whole, lambda: _written(_made(scene, girth, area)))
     columns, cell, step = found["grid"].tolist()
@@ -152,7 +154,7 @@ def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
     shape, corner = (int(deep / cell) + 1, int(wide / cell) + 1), (area.low_x, area.low_z)
     plain = scene.ground.plain
     surfaces = one_plane(shape, cell) if plain else over_ground(scene.ground, corner, shape, cell, girth.stooped)
-    low = _LOW if plain else scene.ground.step + girth.slim - _LESS
+    low = _LOW if plain else scene.ground.step + girth.slim - _LESS * scene.ground.step
     rises, steep = _climbs(scene.ground, surfaces, corner, girth.slim)
     near = scene.obstacles.near(np.array(area[:2]) - FARTHEST, np.array(area[2:]) + FARTHEST)
     climbed = steep > EVEN_STAIR

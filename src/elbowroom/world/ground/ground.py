@@ -38,7 +38,7 @@ _SQUARES = 0.5 * _AROUND * _EASED**2 * (_RINGS + 1) * (2 * _RINGS + 1) / (6 * _R
 EVEN_STAIR = 0.65  # metres that a stair of the usual kind rises in a metre, at most
 _LIFTED, _MOST_LIFTED = 0.3, 0.12  # metres that a body is carried higher where it is steeper by one in one; at most
 _TREADS = 0.04  # metres that ground is uneven by where it is all treads
-_CARRIED = 0.06  # metres that a body is above the ground at its place, in the middle of what it may be
+_CARRIED = 0.24  # of a step that a body is above the ground at its place, in the middle of what it may be
 _UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
 
 
@@ -176,7 +176,7 @@ def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -
 @exact_kernel
 def under_body(ground: Ground, x: float, height: float, z: float) -> float:
     """The ground under a body that is carried at a height (`eased_height`); that height where there is none."""
-    found = height_at(ground, x, z, height - _CARRIED)
+    found = height_at(ground, x, z, height - _CARRIED * ground.step)
     return found if found > _NONE else height
 
 
