@@ -74,8 +74,6 @@ def test_one_goes_under_what_hangs_low_over_a_stair(less: float, tread: tuple[fl
     assert not any(frame.stuck or frame.touching for frame in frames)
     motion = ShownMotion.at_rate(np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames]))
     verdict = judge(motion, AVATAR, stair_under(less, tread, up=up), JudgeSettings(mesh=False))
-    if (less, tread, up) == (0.1, EVEN, False) and verdict.capsules.touching == 1:
-        pytest.xfail("between two frames a foot that goes down backwards is 6 mm in the edge of a tread")
     assert verdict.clean, verdict.capsules.contacts[:3]
 
 

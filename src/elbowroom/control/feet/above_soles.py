@@ -14,7 +14,6 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.shown.standing_about import EVEN, OTHERS, ShownBody
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.footing import NOWHERE, Footing
-from elbowroom.planning.model.levers import raised_between
 from elbowroom.world.ground.ground import Ground
 
 Floats = NDArray[np.float64]
@@ -23,7 +22,6 @@ Longs = NDArray[np.int64]
 
 _STRIDES, _APART = 512, 0.01  # strides that are measured; metres above the ground from which shins need no look
 _LEAST, _MOST = np.array([-1.5, -1.0, -2.5, 0.0]), np.array([3.0, 1.0, 2.5, 1.0])  # m/s, m/s, rad/s, phase
-_RAISED = 0.04  # metres that legs move at most while feet are raised: less goes straight, nearly
 
 
 class AboveSoles:
@@ -54,10 +52,6 @@ class AboveSoles:
             return False
         both = zip(one.tolist(), other.tolist(), strict=True)
         return any(first > second + EVEN or second > first + EVEN for first, second in both)
-
-    def raised(self, one: Floats, other: Floats) -> bool:
-        """Whether feet are raised or tilted so much from one root state to another that screens show them elsewhere."""
-        return not self.footing.plain and raised_between(one, other) > _RAISED
 
     def soles_above(self, axes: Floats32, floors: Floats) -> float:
         """How far the capsules of the feet (C, 6, N) keep above what is not looked at under both soles (2,), metres."""

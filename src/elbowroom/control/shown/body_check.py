@@ -11,7 +11,7 @@ from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.control.feet.above_soles import AboveSoles
-from elbowroom.control.feet.turned_legs import turned_legs
+from elbowroom.control.feet.turned_legs import turned_at, turned_legs
 from elbowroom.control.others.neighbour import Neighbour
 from elbowroom.control.others.room_left import in_world, leaves_room
 from elbowroom.control.shown.standing_about import (
@@ -182,7 +182,7 @@ class BodyCheck:
         """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
 
         Each capsule by itself of what stands, the whole body of what moves. Where others move as they mean to, until
-        the second frame. Where feet are raised quickly `turned_legs.py` has more moments.
+        the second frame. Where feet go far, as on treads, `turned_legs.py` has more moments.
         """
         if self.alone:
             return True
@@ -190,7 +190,7 @@ class BodyCheck:
         floors, gaps = np.minimum(before.floors, after.floors), [before.gaps, after.gaps]
         if self.soles.change(before.floors, after.floors):
             gaps = [self._gaps(pose.axes, pose.root, floors) for pose in (before, after)]
-        if self.soles.raised(*frames.roots) and not self._turns_free(frames, floors):
+        if not self.footing.plain and not self._turns_free(frames, floors):
             return False
         body, standing, ends = self.soles.body, self._standing.about_bodies, np.array(gaps)
         if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, ends, floors):
@@ -220,7 +220,10 @@ class BodyCheck:
 
     def _turns_free(self, frames: Frames, floors: Floats) -> bool:
         """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
-        legs, parts = turned_legs(self.model, frames.roots, frames.uppers), self.model.roots
+        shares, parts = turned_at(*frames.roots), self.model.roots
+        if not len(shares):
+            return True
+        legs = turned_legs(self.model, frames.roots, frames.uppers, shares)
         lifted = self.soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
         axes = np.repeat(self._pose(frames.roots[0], frames.uppers[0]).axes, len(legs.states), axis=2)
         axes[parts.indices] = lifted
