@@ -144,6 +144,11 @@ describe("what the server says", () => {
     expect(sentences.filter((english) => inChinese(english) === null)).toEqual([]);
   });
 
+  it("is told whole where one sentence quotes another", () => {
+    const told = inChinese("no way leads from 0.00, 0.00 to 1.00, 4.00; steps of 3 cm are the highest for such legs");
+    expect(told).toBe("從 0.00, 0.00 到 1.00, 4.00 沒有路；這樣的腿最高只能踏上 3 公分的台階");
+  });
+
   it("keeps its values, and the longer sentence is found first", () => {
     expect(inChinese("no way leads from 1.00, 2.00 to 3.00, 4.00")).toBe("從 1.00, 2.00 到 3.00, 4.00 沒有路");
     expect(inChinese("nobody can stand at 1, 2: 0.52 m of room are needed there; the nearest place to stand is 3, 4")).toContain("最近可站立的位置是 3, 4");

@@ -4,6 +4,7 @@ import { filled, spoken, text } from "./texts";
 
 export const SAYINGS: Readonly<Record<string, string>> = {
   // places to go to
+  "{0}; steps of {1} cm are the highest for such legs": "{0}；這樣的腿最高只能踏上 {1} 公分的台階",
   "nobody can stand at {0}: {1} m of room are needed there": "{0} 處無法站立：需要 {1} 公尺的空間",
   "nobody can stand at {0}: {1} m of room are needed there; the nearest place to stand is {2}":
     "{0} 處無法站立：需要 {1} 公尺的空間；最近可站立的位置是 {2}",
@@ -100,11 +101,11 @@ export function heard(sentence: string): string {
   return known ?? (/[\u4e00-\u9fff]/.test(sentence) ? sentence : text("server.says", sentence));
 }
 
-/** A sentence of the server in Chinese; null for one that the table does not know. */
+/** A sentence of the server in Chinese, with what it quotes of others; null for one that the table does not know. */
 export function inChinese(sentence: string): string | null {
   for (const { pattern, words } of PATTERNS) {
     const found = pattern.exec(sentence.trim());
-    if (found) return filled(words, found.slice(1));
+    if (found) return filled(words, found.slice(1).map((value) => inChinese(value) ?? value));
   }
   return null;
 }
