@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.dof import LOCAL_GROUPS, DofGroup, columns_of
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 AVATAR = Humanoid.default()
 DT = 1 / 60
+HEAD_TURN = columns_of(DofGroup.HEAD).start + 1
 NEAREST = 0.02  # metres: as near as at the nearest, nearly
 FORWARD = Command(forward=1.0)
 SCENES = ("c", "d", "doorway", "beam")
@@ -103,7 +104,8 @@ def test_half_a_second_after_the_last_obstacle_the_walk_is_natural(scene: str) -
 
     The last obstacle is passed when the natural walk, legs included, would clear everything from then on.
 
-    Where it clears everything all the time, as of a body that turns in a doorway, that is where it is nearest last.
+    Where it clears everything all the time, as of a body that turns in a doorway, that is where it is nearest last. The
+    head turns farther while the body still does: it looks where one goes.
     """
     frames, check = walk(scene, None), BodyCheck(AVATAR, Scene.load(scene))
     clear = np.array([check.clearance(frame.root[:ROOT_STATE], frame.goal, frame.time) for frame in frames])
@@ -115,8 +117,9 @@ def test_half_a_second_after_the_last_obstacle_the_walk_is_natural(scene: str) -
     assert len(keys) > 1
     shown = np.array([frame.q[DofGroup.ROOT.size :] for frame in keys])
     natural = natural_walk()(RootPath(0.0, DT, np.array([frame.root for frame in keys])))
-    assert np.abs(shown - natural).max() < 0.05
+    off = np.abs(shown - natural)
+    assert np.delete(off, HEAD_TURN, axis=1).max() < 0.05
+    assert off[:, HEAD_TURN].max() < 0.1
     for plan in {frame.plan.number: frame.plan for frame in later if frame.plan is not None}.values():
         at = plan.root.path.times >= frames[passed].time + 0.5
-        off = plan.local.configurations - plan.local.goals
-        assert np.abs(off[at]).max() < 0.05
+        assert np.abs((plan.local.configurations - plan.local.goals)[at]).max() < 0.05

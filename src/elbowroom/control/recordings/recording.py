@@ -178,9 +178,11 @@ class StepWriter:
         )
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
+        root = np.zeros(SHOWN)
+        root[: len(frame.root)] = frame.root  # without feet where it was not a controller that made it
         self._things.note(self.steps)
         self._ways.note(self.steps, command)
-        self._pending.append((*wish, frame.q, frame.root, _PHASES.index(frame.phase), flags))
+        self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
 

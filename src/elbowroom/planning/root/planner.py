@@ -287,12 +287,15 @@ class _OfferMaker:
         """What is left of the evasion that is being followed, if it leads past all that is in sight and is free.
 
         As long as it is, no other is looked for: two ways that cost about the same would be taken in turn, and neither
-        be walked.
+        be walked. Sideways it is walked as fast as elsewhere, as soon as that is free.
         """
         if line is None or known is None or known.line != line or not known.whole:
             return None
-        plan = self._paths.followed(asked, line, known.along, known.profile, known.share)
-        return None if plan is None else _Idea(plan.lost, self._offer(plan, known, self.memory.way_out))
+        for share in (1.0, known.share) if known.share < 1.0 else (1.0,):
+            plan = self._paths.followed(asked, line, known.along, known.profile, share)
+            if plan is not None:
+                return _Idea(plan.lost, self._offer(plan, known._replace(share=share), self.memory.way_out))
+        return None
 
     def _evaded(
         self, asked: Asked, line: TravelLine, known: Evading | None, finder: EvasionFinder, through: float | None
