@@ -96,7 +96,7 @@ def test_a_reader_that_crashes_is_one_line(monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
 def test_a_reader_stands_behind_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
     """Linux shares time among sessions first: one of its own would have as much of it as the server, however nice."""
-    seen = f"(os.getsid(0) == {os.getsid(0)}) + 2 * (os.getpgid(0) != {os.getpgid(0)}) + 4 * (os.nice(0) >= 10)"
+    seen = f"(os.getsid(0) == {os.getsid(0)}) + 2 * (os.getpgid(0) != {os.getpgid(0)}) + 4 * (os.nice(0) >= 5)"
     assert "exit code 7" in asyncio.run(_ended_by(f"os._exit({seen})", Bounds(), monkeypatch))
 
 

@@ -34,7 +34,7 @@ class Bounds:
 def keep_to(bounds: Bounds) -> None:
     """Bind this process for the rest of its life; behind all others, where processor time is short."""
     with contextlib.suppress(OSError, AttributeError):
-        os.nice(10)
+        os.nice(5)  # a third of a share: with 10 nothing would be read while all processors are busy
     if sys.platform == "win32":
         return
     import resource
