@@ -66,7 +66,7 @@ types: $(VENV)/developer
 
 unit: $(VENV)/installed $(VENV)/developer
 	@echo "==> Tests"
-	@$(BIN)/python -m pytest -m "not browser and not long" -n 3 --dist worksteal $(ARGS)
+	@$(BIN)/python -m pytest -m "not browser and not long" -n 3 --dist loadfile $(ARGS)
 
 test-long: $(VENV)/installed $(VENV)/developer
 	@echo "==> Long walks"
