@@ -25,6 +25,7 @@ from elbowroom.server.stores.library import Library
 from elbowroom.server.wire.pose import Poser
 from elbowroom.server.wire.pose_frame import PoseFrame, parse
 from elbowroom.world.places.options import PlaceOptions
+from elbowroom.world.places.same_model import with_model_beside
 from elbowroom.world.scene import Scene
 from live_session import running
 from place_builder import TWO_ROOMS, glb, write_place
@@ -143,3 +144,14 @@ def test_a_run_in_a_place_is_shown_by_its_model(tmp_path: Path) -> None:
         shown = scene_message(library.scenes[library.scene])
     assert shown.model is None
     assert {one.form.shape for one in shown.obstacles} == {"mesh"}
+
+
+def test_a_model_beside_a_run_that_cannot_be_read_is_done_without(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def closed(*_: object) -> None:
+        raise PermissionError
+
+    scene = Scene.load(write_place(tmp_path / "rooms.glb"))
+    monkeypatch.setattr("elbowroom.world.places.same_model.read_place", closed)
+    assert with_model_beside(scene, tmp_path) is scene

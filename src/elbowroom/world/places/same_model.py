@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from elbowroom.errors import InputError
 from elbowroom.world.places.reading import read_place
 from elbowroom.world.scene import Scene
 
@@ -21,14 +22,17 @@ def shown_as_known(scene: Scene, known: Iterable[Scene]) -> Scene:
 
 
 def with_model_beside(scene: Scene, folder: Path) -> Scene:
-    """The scene with its model, where that lies unchanged in a folder; raises `InputError`."""
+    """The scene with its model, where that lies unchanged in a folder and can be read; else it does without."""
     own = scene.place
     if own is None or not own.sha256:
         return scene
     file = folder / Path(own.file).name
-    if not file.is_file() or _sha256(file) != own.sha256:
+    try:
+        if not file.is_file() or _sha256(file) != own.sha256:
+            return scene
+        return replace(scene, place=replace(own, place=read_place(file, own.options)))
+    except (OSError, InputError):
         return scene
-    return replace(scene, place=replace(own, place=read_place(file, own.options)))
 
 
 def _sha256(file: Path) -> str:
