@@ -93,11 +93,25 @@ def test_reset_brings_the_avatar_back(open_page: Open) -> None:
     live.wait(f"Math.hypot(s.root.x - {start['x']}, s.root.z - {start['z']}) < 0.1 && s.simTime < 3")
 
 
+_COUNT_PROGRAMS = """
+const { linkProgram } = WebGL2RenderingContext.prototype;
+window.__programs = 0;
+WebGL2RenderingContext.prototype.linkProgram = function (...program) {
+  window.__programs += 1;
+  return linkProgram.apply(this, program);
+};
+"""
+
+
 def test_menus_change_the_session(open_page: Open) -> None:
-    live = open_page("queue=4")
+    live = open_page("queue=4", script=_COUNT_PROGRAMS)
     live.wait("s.settings.queueSize === 4")
+    programs = live.page.evaluate("window.__programs")
+    assert programs > 5
     live.page.select_option("#scene", "c")
-    live.wait("s.scene === 'c' && s.settings.scene === 'c'")
+    count = live.wait("s.scene === 'c' && s.settings.scene === 'c'")["framesDrawn"]
+    live.wait(f"s.framesDrawn > {count + 3}")
+    assert live.page.evaluate("window.__programs") == programs  # what is compiled serves all scenes
     live.page.focus("#queue")
     live.page.keyboard.press("ArrowRight")
     live.wait("s.settings.queueSize === 5")

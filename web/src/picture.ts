@@ -136,6 +136,7 @@ export class Picture {
     this.overlays.seenBy(camera);
     if (pose && this.beside) this.drawHalves(pose, this.beside);
     else this.stage.render();
+    this.world.drawn();
     if (pose && scenery.inset) this.drawInset(this.followed(pose, scenery), dt);
     this.overlays.placeLabels(camera, this.host.clientWidth, this.host.clientHeight);
   }

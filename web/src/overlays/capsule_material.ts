@@ -26,9 +26,10 @@ export class MarkMaterial extends MeshBasicMaterial {
     super({
       color: look.color, transparent: true, opacity: look.opacity, depthWrite: false, depthTest: !look.onTop, toneMapped: false,
     });
-    this.defines = { MIDDLE: look.middle.toFixed(3), IN_FRONT: IN_FRONT.toFixed(3), ...(look.ghost ? { GHOST: "" } : {}) };
+    if (look.ghost) this.defines = { GHOST: "" };
     this.onBeforeCompile = (shader) => {
       shader.uniforms["avatarDepth"] = this.avatarDepth;
+      shader.uniforms["middle"] = { value: look.middle };
       shader.vertexShader = shader.vertexShader
         .replace("void main() {", `${VERTEX_HEAD}\nvoid main() {`)
         .replace("#include <project_vertex>", `#include <project_vertex>\n${VERTEX}`);
@@ -46,6 +47,7 @@ export class MarkMaterial extends MeshBasicMaterial {
 
 const VERTEX_HEAD = /* glsl */ `
   varying float vShare;
+  uniform float middle;
   #ifdef GHOST
     attribute float share;
     uniform float avatarDepth;
@@ -55,8 +57,8 @@ const VERTEX_HEAD = /* glsl */ `
 const VERTEX = /* glsl */ `
   vec3 outwards = normalize(mat3(modelViewMatrix) * mat3(instanceMatrix) * normal);
   float facing = abs(dot(outwards, normalize(mvPosition.xyz)));
-  vShare = mix(1.0, MIDDLE, smoothstep(0.25, 0.95, facing));
+  vShare = mix(1.0, middle, smoothstep(0.25, 0.95, facing));
   #ifdef GHOST
-    vShare *= share * mix(IN_FRONT, 1.0, smoothstep(-0.3, 0.4, -mvPosition.z - avatarDepth));
+    vShare *= share * mix(${IN_FRONT.toFixed(3)}, 1.0, smoothstep(-0.3, 0.4, -mvPosition.z - avatarDepth));
   #endif
 `;

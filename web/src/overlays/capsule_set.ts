@@ -35,6 +35,7 @@ export class CapsuleSet {
     this.tops = instanced(halfSphere(0), this.material, capacity);
     this.bottoms = instanced(halfSphere(Math.PI / 2), this.material, capacity);
     this.group.renderOrder = !solid && look.onTop ? 6 : 4;
+    this.group.visible = false;
     for (const part of this.parts) {
       part.castShadow = solid;
       part.geometry.setAttribute("share", this.shares);

@@ -19,6 +19,7 @@ export class PathRibbon {
     this.mesh = new Mesh(new BufferGeometry(), material);
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 3;
+    this.mesh.visible = false;
   }
 
   /**
@@ -33,6 +34,7 @@ export class PathRibbon {
     keys.forEach(([x, z, heading], i) => {
       if (i > 0) addArrow(corners, x, heights[i] ?? 0, z, heading);
     });
+    this.mesh.visible = corners.length > 0;
     this.mesh.geometry.dispose();
     this.mesh.geometry = new BufferGeometry();
     this.mesh.geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));

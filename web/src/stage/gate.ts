@@ -1,10 +1,12 @@
 /** The finish: two posts with a chequered banner, a band across the floor, and a carpet beyond; nothing like an obstacle. */
 
 import {
-  BoxGeometry, CanvasTexture, CylinderGeometry, DoubleSide, Group, LinearFilter, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, NearestFilter, PlaneGeometry, RingGeometry, SRGBColorSpace, type Texture,
+  BoxGeometry, CanvasTexture, CylinderGeometry, DoubleSide, Group, LinearFilter, Mesh, MeshBasicMaterial, NearestFilter,
+  PlaneGeometry, RingGeometry, SRGBColorSpace, type Texture,
 } from "three";
+import type { Leaving } from "./leaving";
 import type { Palette } from "./palette";
+import { solidMaterial } from "./solid_material";
 
 const HEIGHT = 3.05; // the camera from behind passes under the banner
 const BANNER = 0.42;
@@ -12,6 +14,7 @@ const POST = 0.035;
 const SQUARE = 0.14; // of the chequered band, metres
 const BAND_ROWS = 4;
 const CARPET = 6;
+const ROUGHNESS = 0.5;
 
 /** Where a gate stands and which way one walks through it. */
 export interface GatePlace {
@@ -25,8 +28,11 @@ export class Gate {
   private curtain: MeshBasicMaterial | null = null;
   private glow = 0;
 
-  build(finish: GatePlace | null, start: readonly [number, number], palette: Palette): void {
-    this.clear();
+  constructor(private readonly leaving: Leaving) {}
+
+  build(finish: GatePlace | null, start: readonly [number, number], palette: Palette, rich: boolean): void {
+    this.curtain = null;
+    this.leaving.empty(this.group);
     this.group.add(startRing(start, palette));
     if (!finish) return;
     const gate = new Group();
@@ -39,7 +45,7 @@ export class Gate {
     const curtain = new Mesh(new PlaneGeometry(finish.width - 2 * POST, HEIGHT - BANNER), this.curtain);
     curtain.position.y = (HEIGHT - BANNER) / 2;
     curtain.renderOrder = 3;
-    gate.add(...frame(finish.width, palette), curtain, band(finish.width, palette), carpet(finish.width, palette));
+    gate.add(...frame(finish.width, palette, rich), curtain, band(finish.width, palette), carpet(finish.width, palette));
     this.group.add(gate);
   }
 
@@ -53,23 +59,11 @@ export class Gate {
     this.glow = Math.max(0, this.glow - dt / 1.6);
     this.curtain.opacity = 0.22 + 0.6 * this.glow * this.glow;
   }
-
-  private clear(): void {
-    this.curtain = null;
-    this.group.traverse((object) => {
-      if (!(object instanceof Mesh)) return;
-      object.geometry.dispose();
-      const material = object.material as MeshBasicMaterial | MeshStandardMaterial;
-      material.map?.dispose();
-      material.dispose();
-    });
-    this.group.clear();
-  }
 }
 
 /** Posts and banner; the word is readable from both sides. */
-function frame(width: number, palette: Palette): Mesh[] {
-  const solid = new MeshStandardMaterial({ color: palette.accent, roughness: 0.5 });
+function frame(width: number, palette: Palette, rich: boolean): Mesh[] {
+  const solid = solidMaterial(palette.accent, ROUGHNESS, rich);
   const posts = [-1, 1].map((side) => {
     const post = new Mesh(new CylinderGeometry(POST, POST, HEIGHT, 16), solid);
     post.position.set((side * width) / 2, HEIGHT / 2, 0);

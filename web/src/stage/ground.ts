@@ -7,6 +7,7 @@ import {
 import type { PreparedBox } from "../camera/spring_arm";
 import { drawContactShadows } from "./contact_shadows";
 import { FIELD_REACH, FIELD_TILE, fieldMiddle } from "./field";
+import type { Leaving } from "./leaving";
 import type { Palette } from "./palette";
 
 const TILE_METRES = 5;
@@ -22,6 +23,8 @@ export class Ground {
   readonly group = new Group();
   private field: Mesh | null = null;
 
+  constructor(private readonly leaving: Leaving) {}
+
   /** Brings the field along, in whole tiles: its lines stay where they are. */
   follow(x: number, z: number): void {
     this.field?.position.setX(fieldMiddle(x)).setZ(fieldMiddle(z));
@@ -32,7 +35,7 @@ export class Ground {
     width: number, depth: number, center: readonly [number, number], boxes: readonly PreparedBox[], palette: Palette,
     rich: boolean,
   ): void {
-    this.clear();
+    this.leaving.empty(this.group);
     const shadows = drawContactShadows(boxes, center, width, depth, shadowScale(width, depth), palette.contact);
     const plane = () => new PlaneGeometry(width, depth);
     if (rich) {
@@ -57,16 +60,6 @@ export class Ground {
     mesh.renderOrder = order;
     this.group.add(mesh);
     return mesh;
-  }
-
-  private clear(): void {
-    for (const child of [...this.group.children]) {
-      const mesh = child as Mesh<BufferGeometry, FloorMaterial>;
-      mesh.geometry.dispose();
-      mesh.material.map?.dispose();
-      mesh.material.dispose();
-      this.group.remove(mesh);
-    }
   }
 }
 

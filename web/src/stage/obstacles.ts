@@ -1,24 +1,26 @@
 /** The scene's obstacles as things to look at: boxes softly bevelled, each in its own calm colour. */
 
 import {
-  BufferGeometry, CapsuleGeometry, CylinderGeometry, Float32BufferAttribute, Group, Mesh, MeshLambertMaterial,
-  MeshStandardMaterial, Quaternion, SphereGeometry,
+  BufferGeometry, CapsuleGeometry, CylinderGeometry, Float32BufferAttribute, Group, Mesh, Quaternion, SphereGeometry,
 } from "three";
 import { RoundedBoxGeometry } from "three/addons/geometries/RoundedBoxGeometry.js";
 import { damp } from "../camera/damping";
 import type { OrientedBox } from "../camera/spring_arm";
 import type { Form } from "../generated/messages";
+import type { Leaving } from "./leaving";
 import type { Palette } from "./palette";
+import { solidMaterial, type SolidMaterial } from "./solid_material";
 
 const BEVEL = 0.022;
 const BEVEL_SEGMENTS = 2;
 const SEE_THROUGH = 0.2;
 const FADE_HALFLIFE = 0.09;
 const GLOW = 0.5;
+const ROUGHNESS = 0.78;
 
 const ROUND = 48;
 
-type ObstacleMesh = Mesh<BufferGeometry, MeshStandardMaterial | MeshLambertMaterial>;
+type ObstacleMesh = Mesh<BufferGeometry, SolidMaterial>;
 
 /** What is drawn, and the box round it. */
 export interface DrawnObstacle {
@@ -35,9 +37,11 @@ export class Obstacles {
   private glow = 0;
   private heldGlow = 0;
 
+  constructor(private readonly leaving: Leaving) {}
+
   /** Replaces all obstacles; `rich` ones have physically based surfaces. */
   build(obstacles: readonly DrawnObstacle[], palette: Palette, rich: boolean): void {
-    this.clear();
+    this.leaving.empty(this.group);
     this.glow = palette.touching;
     this.heldGlow = palette.accent;
     obstacles.forEach((obstacle, i) => {
@@ -89,20 +93,10 @@ export class Obstacles {
       material.opacity = opacity;
     });
   }
-
-  private clear(): void {
-    for (const child of [...this.group.children]) {
-      const mesh = child as ObstacleMesh;
-      mesh.geometry.dispose();
-      mesh.material.dispose();
-      this.group.remove(mesh);
-    }
-  }
 }
 
 function obstacleMesh({ form, box }: DrawnObstacle, color: number, rich: boolean): Mesh {
-  const material = rich ? new MeshStandardMaterial({ color, roughness: 0.78 }) : new MeshLambertMaterial({ color });
-  const mesh = new Mesh(geometryOf(form), material);
+  const mesh = new Mesh(geometryOf(form), solidMaterial(color, ROUGHNESS, rich));
   mesh.position.set(...box.center);
   mesh.quaternion.copy(new Quaternion(...box.rotation));
   mesh.castShadow = mesh.receiveShadow = true;

@@ -7,6 +7,7 @@ import type { Vec3 } from "../camera/vectors";
 import type { Form, MovingObstacle, Obstacle, SceneMessage } from "../generated/messages";
 import { Gate } from "./gate";
 import { Ground } from "./ground";
+import { Leaving } from "./leaving";
 import { NOTHING_LOOSE, type Loose } from "./loose";
 import { boxAt } from "./moving";
 import { Obstacles, type DrawnObstacle } from "./obstacles";
@@ -28,10 +29,11 @@ export class World {
   message: SceneMessage | null = null;
   /** What was pushed moves by these tracks. */
   loose: Loose = NOTHING_LOOSE;
-  readonly gate = new Gate();
-  private readonly ground = new Ground();
-  private readonly obstacles = new Obstacles();
-  private readonly place = new PlaceModel();
+  private readonly leaving = new Leaving();
+  readonly gate = new Gate(this.leaving);
+  private readonly ground = new Ground(this.leaving);
+  private readonly obstacles = new Obstacles(this.leaving);
+  private readonly place = new PlaceModel(this.leaving);
   /** Of the place: its model, and obstacles that are meshes. */
   private readonly surfaces = new Surfaces();
 
@@ -135,6 +137,11 @@ export class World {
     this.obstacles.fade((i) => hides(this.boxes[i], camera, body), dt);
   }
 
+  /** The picture has been drawn: what was shown before is needed no more. */
+  drawn(): void {
+    this.leaving.letGo();
+  }
+
   /** Builds everything again in other colours or other materials. */
   repaint(palette: Palette, rich: boolean): void {
     const { message } = this;
@@ -145,7 +152,7 @@ export class World {
     const standing = this.boxes.slice(0, message.obstacles.length).filter((box) => !box.hollow);
     this.ground.lay(ground.size[0], ground.size[1], ground.center, standing, palette, rich);
     const gate = finish && { position: [finish.x, finish.z] as const, heading: finish.heading, width: finish.width };
-    this.gate.build(gate, [start.x, start.z], palette);
+    this.gate.build(gate, [start.x, start.z], palette, rich);
   }
 }
 

@@ -17,6 +17,7 @@ export class Steps {
 
   constructor(private readonly picture: Picture) {
     this.prints = new Footprints(picture.stage.palette.path);
+    this.prints.mesh.visible = false;
     picture.stage.scene.add(this.prints.mesh);
   }
 
@@ -29,7 +30,7 @@ export class Steps {
     const { message } = this.picture.world;
     if (message !== this.scene) this.prints.clear();
     this.scene = message;
-    this.prints.mesh.visible = shown;
+    this.prints.mesh.visible = shown && this.prints.count > 0;
     this.prints.paint(this.picture.stage.palette.path);
     const step = this.watch.update(pose);
     if (!step) return;
