@@ -66,7 +66,8 @@ types: $(VENV)/developer
 
 unit: $(VENV)/installed $(VENV)/developer
 	@echo "==> Tests"
-	@$(BIN)/python -m pytest -m "not browser and not long" -n 3 --dist loadfile $(ARGS)
+	@$(BIN)/python -m pytest --collect-only --quiet --quiet --ignore tests/browser > $(VENV)/collected
+	@$(BIN)/python -m pytest --ignore tests/browser -m "not long" -n 3 --dist loadfile $(ARGS)
 
 test-long: $(VENV)/installed $(VENV)/developer
 	@echo "==> Long walks"
@@ -87,7 +88,7 @@ browser-tools: $(VENV)/developer
 
 browser: browser-tools $(VENV)/installed
 	@echo "==> Tests in a real browser"
-	@$(BIN)/python -m pytest -m "browser and not long" -n 2 --dist worksteal $(ARGS)
+	@$(BIN)/python -m pytest tests/browser -m "not long" -n 2 --dist worksteal $(ARGS)
 
 docs: $(VENV)/developer
 	@echo "==> Pages in site/index.html"
