@@ -23,7 +23,7 @@ def slivers() -> Mesh:
 
 
 MESHES = {
-    "soup": soup(np.random.default_rng(1), 900, 0.4),
+    "soup": soup(np.random.default_rng(1), 900, 0.2),
     "one": soup(np.random.default_rng(2), 1, 0.4),
     "slivers": slivers(),
     "wall": box_mesh((1.0, 1.0, 0.0005)),
