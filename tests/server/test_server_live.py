@@ -59,6 +59,12 @@ def test_a_session_begins_with_all_that_a_page_needs(client: Client) -> None:
     np.testing.assert_allclose(np.linalg.norm(frame.rotations, axis=1), 1.0, atol=1e-5)
 
 
+@pytest.mark.parametrize(("asked", "first"), [("b", "b"), ("nowhere", "empty"), ("gauntlet:1:0", "empty")])
+def test_a_session_begins_in_the_scene_that_is_asked_for_if_it_is_at_hand(url: str, asked: str, first: str) -> None:
+    with client_at(f"{url}/ws?scene={asked}") as client:
+        assert client.wait_for(SceneMessage).name == first
+
+
 def test_walking_forward_and_letting_go(client: Client) -> None:
     start = client.frame()
     seq = client.press(forward=1.0)

@@ -102,7 +102,7 @@ export class App {
     this.taste.setBare(!wishes.showUi);
     this.address = new AddressBar(this);
     this.frames = new Frames(this);
-    this.session = new Session(sessionUrl(), new Hearing(this), wishes);
+    this.session = new Session(sessionUrl(wishes.scene), new Hearing(this), wishes);
     this.deeds = new Deeds(this);
     this.subscribe();
     this.frames.begin();

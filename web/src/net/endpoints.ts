@@ -3,9 +3,10 @@
 const STORE = "elbowroom.key";
 const KEY = /^[0-9a-f]{32}$/;
 
-/** The address of the live session. */
-export function sessionUrl(): string {
+/** The address of the live session, which begins in this scene, if the server has it at hand. */
+export function sessionUrl(scene: string | null): string {
   const url = new URL("ws", document.baseURI);
+  if (scene !== null) url.searchParams.set("scene", scene);
   url.searchParams.set("key", pageKey());
   url.searchParams.set("opening", OPENING);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";

@@ -118,7 +118,7 @@ class Session:
     async def _open(self) -> None:
         library = self._library
         await self._recall()
-        wanted = Wanted(library.scene, library.avatar, library.walk, library.clip)
+        wanted = Wanted(self._first_scene(), library.avatar, library.walk, library.clip)
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog(page_key(self._socket.query_params))))
         self._outbox.put(Loading("avatar", library.avatar, True))
         walk = await self._resumed() or await prepared(library, wanted, (), self)
@@ -132,6 +132,11 @@ class Session:
         if isinstance(walk, ClipWalk):
             self._outbox.put(clip_message(walk.stored))
         self._heard = self._now()
+
+    def _first_scene(self) -> str:
+        """The one that the page asks for with its connection, if it is at hand, else the server's."""
+        asked = self._socket.query_params.get("scene", "")
+        return asked if asked in self._library.scenes else self._library.scene
 
     async def _recall(self) -> None:
         """Learn where the page's last connection was, and have here what it showed."""
