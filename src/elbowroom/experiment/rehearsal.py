@@ -16,7 +16,7 @@ from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.planning.command import Command
@@ -161,7 +161,10 @@ def rehearse_place() -> None:
 def rehearse_ground(humanoid: Humanoid) -> None:
     """Stand before a low box, and follow the ground onto it."""
     scene = _scene_with(*_SILL)
-    Footing(body_model(humanoid), scene.ground).stood(np.zeros((1, ROOT_STATE)))
+    model, states = body_model(humanoid), np.zeros((1, ROOT_STATE))
+    footing = Footing(model, scene.ground)
+    footing.floors(footing.stood(states)[0])
+    footing.lifted(leg_capsules(model, states), model.roots, states)
     heights_along(scene.ground, 0.0, np.array([[0.0, 0.0], [0.0, 1.0]]))
     on_ground(scene, RootState())
 

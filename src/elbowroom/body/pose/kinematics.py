@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup, Turning, followers_of
 from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape, hips_sinks
-from elbowroom.body.gait.legs import leg_rest, leg_rotations
+from elbowroom.body.gait.legs import leg_rest
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose import posing
 from elbowroom.body.pose.hands import relaxed_rotations
-from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, posed_joints, whole_body
+from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, posed_joints, posed_legs, whole_body
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.skeleton import Skeleton
 
@@ -54,6 +54,7 @@ class BodyModel(NamedTuple):
     gait: GaitShape
     body: CapsuleSet  # every capsule, in the humanoid's order
     whole: WholeBody  # all of that, for kernels
+    lower: WholeBody  # the same with the capsules of pelvis and legs alone
     groups: dict[DofGroup, CapsuleSet]
     chains: dict[DofGroup, posing.Chain]  # of the local groups
     trunk: tuple[posing.Chain, CapsuleSet]  # the waist with all that follows it
@@ -99,19 +100,21 @@ def body_model(humanoid: Humanoid) -> BodyModel:
         chest=_end(skeleton, DofGroup.WAIST),
     )
     chains = {group: _chain(skeleton, capsules, figure, group, gait.half_leg) for group in LOCAL_GROUPS}
-    legs, rest_of_legs = capsules.of(DofGroup.ROOT), leg_rest(skeleton)
-    body = _capsule_set(capsules, every := np.arange(len(capsules.names)), _posed(skeleton, capsules, every, 0))
+    legs, every, rest_of_legs = capsules.of(DofGroup.ROOT), np.arange(len(capsules.names)), leg_rest(skeleton)
+    roots, body = (_capsule_set(capsules, own, _posed(skeleton, capsules, own, 0)) for own in (legs, every))
     sets = {group: _set_of_chain(capsules, capsules.of(group), chain) for group, chain in chains.items()}
     trunk = np.sort(np.concatenate([capsules.of(g) for g in (DofGroup.WAIST, *followers_of(DofGroup.WAIST))]))
     column = _following_column(skeleton, DofGroup.WAIST)
     whole = _chain_of(skeleton, capsules, figure, DofGroup.WAIST, gait.half_leg, trunk, column)
+    by = PosedBy(figure, body.posed, rest_of_legs, gait.legs, gait.scale, gait.half_leg)
     return BodyModel(
         figure=figure,
         leg_rest=rest_of_legs,
         gait=gait,
         body=body,
-        whole=whole_body(PosedBy(figure, body.posed, rest_of_legs, gait.legs, gait.scale, gait.half_leg)),
-        groups={DofGroup.ROOT: _capsule_set(capsules, legs, _posed(skeleton, capsules, legs, 0))} | sets,
+        whole=whole_body(by),
+        lower=whole_body(by._replace(capsules=roots.posed)),
+        groups={DofGroup.ROOT: roots} | sets,
         chains=chains,
         trunk=(whole, _set_of_chain(capsules, trunk, whole)),
     )
@@ -221,12 +224,6 @@ def _states(values: ArrayLike) -> Floats:
     return array[None] if array.ndim == 1 else array.reshape(-1, array.shape[-1])
 
 
-def _lower_body(model: BodyModel, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
-    """Rotations of the legs' joints (N, 2, 4, 4) and sinks of the hips (N, 3), see `gait.hips_sinks`."""
-    feet, sinks = lower_body(model.gait, states, np.ascontiguousarray(lowerings))
-    return leg_rotations(model.leg_rest, feet, sinks, states), sinks
-
-
 def lower_body(gait: GaitShape, states: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 3) as in `gait.hips_sinks`.
 
@@ -270,8 +267,7 @@ def posture_capsules(model: BodyModel, q: ArrayLike, roots: ArrayLike) -> Segmen
 def leg_capsules(model: BodyModel, roots: ArrayLike, lowerings: ArrayLike = 0.0) -> Segments:
     """The capsules of the group ROOT (C, 6, N) in the world for root states (N, 7) and lowerings, one or (N,)."""
     states = _states(roots)
-    legs, sinks = _lower_body(model, states, np.full(len(states), lowerings, np.float64))
-    return posing.pose_legs(model.figure, model.roots.posed, states, legs, sinks)
+    return posed_legs(model.lower, states, np.full(len(states), lowerings, np.float64))
 
 
 def group_capsules(model: BodyModel, group: DofGroup, configurations: ArrayLike) -> Segments:

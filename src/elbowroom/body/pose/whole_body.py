@@ -136,3 +136,14 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
 def posed_capsules(body: WholeBody, q: Floats, roots: Floats) -> Segments:
     """The capsules of `posed_body` alone."""
     return posed_body(body, q, roots)[0]
+
+
+@exact_kernel
+def posed_legs(body: WholeBody, roots: Floats, lowerings: Floats) -> Segments:
+    """Capsules (C, 6, N) that pelvis and legs carry, of a body that has no others, in the world.
+
+    For root states (N, 7 or more) and lowerings (N,).
+    """
+    by = _taken_apart(body)
+    legs, sinks = _lower_body(by, roots, lowerings)
+    return posing.pose_legs(by.figure, by.capsules, roots, legs, sinks)

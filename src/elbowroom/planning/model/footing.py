@@ -10,7 +10,7 @@ same stride it may be below any: feet are held against obstacles as much higher,
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,7 @@ from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
+Longs = NDArray[np.int64]
 
 IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _NONE = -math.inf
@@ -38,6 +39,8 @@ _QUICKEST = 0.12  # the part of a swing in which a foot is raised over what is c
 _BELOW, _ABOVE = 0.4, 1.4  # of a standing body's height: so far below and above its place it reaches at most
 _UPRIGHT, _EVEN = 1e-4, 5e-4  # radians: a level sole; metres by which level ground may be uneven
 NOWHERE = np.full(2, -math.inf)
+_NOTHING: Any = np.float32(0.0)
+_IN_GROUND: Any = np.float32(IN_GROUND)
 _UP, _DOWN = 0.7, 0.3  # the part of a swing by which a foot is up, or until which it does not come down
 _TIMES = np.arange(1.0, _LOOKS) / _LOOKS
 _GONE = _TIMES * _TIMES * (3.0 - 2.0 * _TIMES)  # how much of its way a foot has gone at those times of its swing
@@ -62,7 +65,7 @@ class Footing:
     @property
     def underfoot(self) -> Underfoot:
         """The same for kernels."""
-        return Underfoot(self.ground, self._sole)
+        return Underfoot(self.ground, self.sole)
 
     @property
     def plain(self) -> bool:
@@ -77,7 +80,7 @@ class Footing:
         if self.ground.plain:
             return states, np.ones(len(states), np.bool_)
         rows = states.copy()
-        return rows, set_rises(self.ground, self._model.gait.legs, self._model.gait.scale, self._sole, rows)
+        return rows, set_rises(self.ground, self._model.gait.legs, self._model.gait.scale, self.sole, rows)
 
     def heights(self, states: Floats) -> Span:
         """From where to where bodies reach in root states (N, ROOT_STATE); all heights on plain ground."""
@@ -98,10 +101,7 @@ class Footing:
         """
         if self.ground.plain:
             return NOWHERE
-        own = states[:, RISES : RISES + 4]
-        level = np.abs(own[:, 1::2]).max(axis=0) < _UPRIGHT
-        floors: Floats = np.where(level, (states[:, HEIGHT, None] + own[:, ::2]).min(axis=0) + _EVEN, -np.inf)
-        return floors
+        return floors_under(states)
 
     def over_soles(self, states: Floats) -> Span:
         """From where to where what is in the way reaches in root states (N, ROOT_STATE) that are `stood`."""
@@ -144,23 +144,18 @@ class Footing:
         """
         if self.ground.plain:
             return segments
-        higher, lifts = segments.copy(), self._lifts(states, lowerings) + np.float32(spare)
-        for end in (1, 4):
-            higher[self._feet(capsules), end] += lifts
+        higher, own, roots = segments.copy(), np.flatnonzero(self._feet(capsules)), self._model.roots
+        on_plane = leg_capsules(self._model, levelled(states), lowerings)
+        lift_feet(higher, own, on_plane, self.feet, roots.radii, spare)
         return higher
 
-    def _lifts(self, states: Floats, lowerings: ArrayLike) -> Floats32:
-        """How far each capsule of the feet (F,) is below the plane in the same strides on it (N,), and 3 mm: (F, N)."""
-        level, roots = states.copy(), self._model.roots
-        level[:, HEIGHT] = level[:, RISES:ROOT_STATE] = 0.0
-        feet = self._feet(roots)
-        ends = leg_capsules(self._model, level, lowerings)[feet][:, [1, 4]]
-        below = roots.radii[feet][:, None] - ends.min(axis=1)
-        lifts: Floats32 = np.maximum(below, np.float32(0.0)) + np.float32(IN_GROUND)
-        return lifts
+    @cached_property
+    def feet(self) -> Longs:
+        """The numbers (F,) of the legs' capsules that are round feet and toes."""
+        return np.flatnonzero(self._feet(self._model.roots))
 
     @cached_property
-    def _sole(self) -> Sole:
+    def sole(self) -> Sole:
         """The rectangle over which the capsules of a standing foot lie, about its ankle, and what it keeps to edges.
 
         So a foot is never just before an edge, nor rolls or slides into one: it is on it already.
@@ -292,3 +287,41 @@ def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Flo
             found[n] = found[n] and height > _NONE
             root[at], root[at + 1] = height - root[HEIGHT] if height > _NONE else 0.0, slope
     return found
+
+
+@exact_kernel
+def floors_under(states: Floats) -> Floats:
+    """`Footing.floors` (2,), on ground that is not plain."""
+    floors = np.empty(2)
+    for side in range(2):
+        at, floor, tilted = RISES + 2 * side, np.inf, 0.0
+        for n in range(states.shape[0]):
+            floor = min(floor, states[n, HEIGHT] + states[n, at])
+            tilted = max(tilted, abs(states[n, at + 1]))
+        floors[side] = floor + _EVEN if tilted < _UPRIGHT else _NONE
+    return floors
+
+
+@exact_kernel
+def levelled(states: Floats) -> Floats:
+    """Root states (N, ROOT_STATE) in the same strides on the plane."""
+    level = states.copy()
+    level[:, HEIGHT] = 0.0
+    level[:, RISES:ROOT_STATE] = 0.0
+    return level
+
+
+@exact_kernel
+def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs, radii: Floats32, spare: float) -> None:
+    """Raise the capsules `feet` (F,) among `segments` (C, 6, N) by as much as feet are below the plane, and 3 mm.
+
+    That is told by the capsules `soles` (F,) of legs `on_plane` (L, 6, N) in the same strides, with `radii` (L,). They
+    are raised by `spare` metres more.
+    """
+    for f in range(feet.shape[0]):
+        own, sole = segments[feet[f]], on_plane[soles[f]]
+        for n in range(segments.shape[2]):
+            below = radii[soles[f]] - min(sole[1, n], sole[4, n])
+            lift = max(below, _NOTHING) + _IN_GROUND + np.float32(spare)
+            own[1, n] += lift
+            own[4, n] += lift

@@ -13,8 +13,8 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.evasion.evasion import Evasion
 from elbowroom.planning.root.evasion.profile import Course, follow_profile
 from elbowroom.planning.root.legs.leg_check import FreeLegs, LegCheck
-from elbowroom.planning.root.legs.lower_body import Neighbours
 from elbowroom.planning.root.legs.moving_legs import MovingAround
+from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.line.ahead import NONE_TIGHT, Route, RouteFinder
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.line.way_ahead import WayAhead

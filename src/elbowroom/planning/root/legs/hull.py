@@ -208,17 +208,6 @@ def to_check(
 
 
 @exact_kernel
-def states_to_check(states: Floats, skin: float, hull: StrideHull, ground: Ground) -> Bools:
-    """Which states (N, 7), each by itself, may come within `skin` of something, (N,)."""
-    near, low, high = np.empty(states.shape[0], np.bool_), np.empty(2), np.empty(2)
-    for n in range(states.shape[0]):
-        row = states[n]
-        known = _swept(hull, row, row, 0.0, skin + _MORE, low, high)
-        near[n] = not known or _meets(row[0], row[1], row[2], _height(row), low, high, ground)
-    return near
-
-
-@exact_kernel
 def route_is_open(route: Floats, near: float, half: float, ground: Ground) -> bool:
     """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z.
 

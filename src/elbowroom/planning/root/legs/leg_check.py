@@ -2,25 +2,24 @@
 
 import math
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.legs.hull import states_to_check, to_check
+from elbowroom.planning.root.legs.along_path import Looks, free_part
+from elbowroom.planning.root.legs.hull import to_check
 from elbowroom.planning.root.legs.leg_cache import KnownLegs
-from elbowroom.planning.root.legs.lower_body import LowerBody, Neighbours
+from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.moving_legs import MovingAround
-from elbowroom.planning.root.motion import MotionBounds, dense_states, stopping_states
+from elbowroom.planning.root.legs.neighbours import Neighbours
+from elbowroom.planning.root.motion import MotionBounds, dense_states
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 
 _STRIDE = 0.1  # metres that a knee or a heel comes out of where it stands
-_SWING = 4.0  # times as fast as the root goes no part of a leg moves
 _GRAZE = 0.002  # metres that who goes along something may come nearer
 
 
@@ -30,6 +29,7 @@ class LegCheck:
     def __init__(self, body: LowerBody, bounds: MotionBounds, skin: float, spacing: float) -> None:
         """`skin` is the clearance to ask for in metres, `spacing` the seconds between samples."""
         self.body, self.bounds, self.skin, self.spacing = body, bounds, skin, spacing
+        self.looks = Looks(body.legs, body.hull, bounds, skin, spacing)
         self.known = KnownLegs()
 
 
@@ -82,27 +82,6 @@ class FreeLegs:
         self.checks += len(states)
         return self._check.body.clearance(self._near, states, self._check.skin, farthest)
 
-    def _rooms_along(self, states: Floats, numbers: Indices, owner: Indices) -> Floats32:
-        """The clearance (N,) in states (N, 7) of motions: every second one is posed, and those between where it counts.
-
-        States with following `numbers` (N,) and the same `owner` (N,) follow each other. From one to the next no foot
-        comes as far as those that are left out are free at both sides; these are infinite.
-        """
-        check = self._check
-        fastest = np.abs(states[:, 3:6]).max(axis=0, initial=0.0)
-        far = check.skin + check.spacing * (_SWING * (fastest[0] + fastest[1]) + check.body.reach * fastest[2])
-        clear = np.full(len(states), np.inf, np.float32)
-        clear[::2] = self.rooms(states[::2], far)
-        between = np.arange(1, len(states), 2)
-        roomy = (clear[between - 1] >= far) & (numbers[between - 1] == numbers[between] - 1)
-        roomy &= owner[between - 1] == owner[between]
-        inner = between + 1 < len(states)
-        after = np.where(inner, between + 1, between - 1)
-        roomy &= inner & (clear[after] >= far) & (numbers[after] == numbers[between] + 1)
-        doubt = between[~(roomy & (owner[after] == owner[between]))]
-        clear[doubt] = self.rooms(states[doubt], check.skin)
-        return clear
-
     def _to_check(self, states: Floats, skin: float) -> tuple[Bools, Bools]:
         """Which key intervals, and which stops from their ends, may come within `skin` of what stands."""
         bounds = self._check.bounds
@@ -122,31 +101,12 @@ class FreeLegs:
         return int(touching[0]) - 1 if len(touching) else horizon
 
     def _kept_at_rest(self, states: Floats) -> int:
-        """The number of leading key intervals that no standing box is in, with a free stop from the end of each."""
-        kept = len(states) - 1
+        """The number of leading key intervals that nothing stands in, with a free stop from the end of each."""
         if self._near.empty:
-            return kept
-        moving, stopping = self._to_check(states, self._check.skin)
-        if moving.any():
-            kept = self._before_contact(states, moving, stops=False)
-        if stopping[:kept].any():
-            kept = self._before_contact(states[: kept + 1], stopping[:kept], stops=True)
+            return len(states) - 1
+        check = self._check
+        known, names = check.known.recalled(self._interval, states)
+        kept, posed = free_part(check.looks, self._near, states, self._interval, self._skin, known)
+        check.known.learn(names, known)
+        self.checks += posed
         return kept
-
-    def _before_contact(self, states: Floats, wanted: Bools, *, stops: bool) -> int:
-        """The number of key intervals before the first of those `wanted` (n,) that touches, or whose stop does."""
-        rows = [row.tobytes() for row in states]
-        ends = rows[1:] if stops else [a + b for a, b in pairwise(rows)]
-        names = [(self._interval, bits) for bits in ends]
-        found, fresh = self._check.known.recalled(names, wanted, self._skin)
-        if fresh.any():
-            spacing, bounds = self._check.spacing, self._check.bounds
-            if stops:
-                shown, owner = stopping_states(states, self._interval, bounds, spacing, fresh)
-            else:
-                shown, owner = dense_states(states, self._interval, spacing, fresh)
-            near = np.flatnonzero(states_to_check(shown, self._check.skin, self._check.body.hull, self._near.ground))
-            np.minimum.at(found, owner[near] - 1, self._rooms_along(shown[near], near, owner[near]))
-            self._check.known.learn(names, fresh, found)
-        touching = np.flatnonzero(found < self._skin)
-        return int(touching[0]) if len(touching) else len(wanted)

@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules
-from elbowroom.body.root import HEIGHT, ROOT_STATE
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.root.legs.hull import Ground, ground_below, joined_ground, some_ground, stride_hull
+from elbowroom.planning.root.legs.hull import ground_below, some_ground, stride_hull
+from elbowroom.planning.root.legs.neighbours import Neighbours
+from elbowroom.planning.root.legs.room_of_legs import Legs, room_at
 from elbowroom.world.ground import ground as walked
 from elbowroom.world.ground.ground import STEP, heights_along, heights_beside, tops_about
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
-from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import is_empty, joined, some_of
 from elbowroom.world.walkable import Stance, WalkableMap, stance_segments, walkable_window
 
 Floats = NDArray[np.float64]
@@ -33,35 +33,6 @@ _CLIMB = 1.5  # metres up and down that are looked at on a way
 _FAR_BELOW = 0.1  # metres above the ground: what is lower is far from a stance that is held a step above it
 _BESIDE = 0.1  # metres beside a stance within which treads are stood on too: more than any room that is asked for
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
-
-
-class Neighbours(NamedTuple):
-    """Obstacles and the ground that they stand on."""
-
-    obstacles: Nearby
-    ground: Ground
-
-    @property
-    def empty(self) -> bool:
-        """Whether there is nothing."""
-        return is_empty(self.obstacles)
-
-    def around(self, places: Floats, reach: float) -> "Neighbours":
-        """Those that may come within `reach` metres of one of `places` (N, 2)."""
-        low, high = places.min(axis=0) - reach, places.max(axis=0) + reach
-        near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
-        if near.all():
-            return self
-        return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
-
-    def above(self, floor: float, top: float = math.inf) -> "Neighbours":
-        """Those that rise above a height and begin below another."""
-        rises = (self.ground.heights[:, 1] > floor) & (self.ground.heights[:, 0] < top)
-        return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_ground(self.ground, rises))
-
-    def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
-        """These and others."""
-        return Neighbours(joined(self.obstacles, more.obstacles), joined_ground(self.ground, more.ground))
 
 
 class Grid(NamedTuple):
@@ -93,6 +64,8 @@ class LowerBody:
         if not ground.plain:
             self.hull = self.hull._replace(extents=self.hull.extents + _KNEES)
             self.reach += _KNEES
+        feet, sole = self.footing.feet, self.footing.sole
+        self.legs = Legs(self.model.lower, self.radii, feet, sole, self.reach, self._tall)
         self._obstacles, self._low = obstacles, np.flatnonzero(low)
         self.ground = ground_below(corners[low], height, ground, tall)
         self.grids = grids_of(self.ground.least, self.ground.most)
@@ -120,16 +93,7 @@ class LowerBody:
         Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground.
         More than `farthest` metres are not told apart.
         """
-        near = among.around(states[:, :2], self.reach)
-        if near.empty:
-            return np.full(len(states), np.inf, np.float32)
-        if self.footing.plain:
-            return clearance(leg_capsules(self.model, states), self.radii, near.obstacles, farthest)
-        rows, found = self.footing.stood(states)
-        near = near.above(float(self.footing.floors(rows).min()), float(rows[:, HEIGHT].max()) + self._tall)
-        segments = self.footing.lifted(leg_capsules(self.model, rows), self.model.roots, rows, spare=spare)
-        clear = clearance(segments, self.radii, near.obstacles, farthest)
-        return np.where(found, clear, np.float32(-1.0))
+        return room_at(self.legs, among, states, spare, farthest)
 
     def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:
         """Clearance (N,) of the stance capsule at `places` (N, 2) on a way over the ground that begins at a height.

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.planning.root.legs.hull import ground_below
-from elbowroom.planning.root.legs.lower_body import LowerBody, Neighbours
+from elbowroom.planning.root.legs.lower_body import LowerBody
+from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.from_above import ball_radii, gaps_from_above, places_of
 from elbowroom.world.obstacles.layout import Spans

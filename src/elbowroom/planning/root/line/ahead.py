@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
 from elbowroom.planning.root.legs.hull import route_is_open
-from elbowroom.planning.root.legs.lower_body import Grid, LowerBody, Neighbours
+from elbowroom.planning.root.legs.lower_body import Grid, LowerBody
+from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.line.line import TravelLine, straight_route
 from elbowroom.planning.root.line.route import find_route, route_points, shortened_route
 from elbowroom.planning.root.plan import RootPlannerSettings

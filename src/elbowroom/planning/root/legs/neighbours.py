@@ -1,0 +1,42 @@
+"""What stands about legs: obstacles, each with what it covers of the ground."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.planning.root.legs.hull import Ground, joined_ground, some_ground
+from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.rows import is_empty, joined, some_of
+
+Floats = NDArray[np.float64]
+
+
+class Neighbours(NamedTuple):
+    """Obstacles and the ground that they stand on."""
+
+    obstacles: Nearby
+    ground: Ground
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing."""
+        return is_empty(self.obstacles)
+
+    def around(self, places: Floats, reach: float) -> "Neighbours":
+        """Those that may come within `reach` metres of one of `places` (N, 2)."""
+        low, high = places.min(axis=0) - reach, places.max(axis=0) + reach
+        near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
+        if near.all():
+            return self
+        return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
+
+    def above(self, floor: float, top: float = math.inf) -> "Neighbours":
+        """Those that rise above a height and begin below another."""
+        rises = (self.ground.heights[:, 1] > floor) & (self.ground.heights[:, 0] < top)
+        return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_ground(self.ground, rises))
+
+    def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
+        """These and others."""
+        return Neighbours(joined(self.obstacles, more.obstacles), joined_ground(self.ground, more.ground))

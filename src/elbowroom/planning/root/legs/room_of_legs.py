@@ -1,0 +1,85 @@
+"""The room that legs and pelvis have at root states: posed by the gait, held against what stands about them."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.pose.whole_body import WholeBody, posed_legs
+from elbowroom.body.root import HEIGHT
+from elbowroom.jit import exact_kernel, helper
+from elbowroom.planning.model.footing import floors_under, levelled, lift_feet, set_rises
+from elbowroom.planning.root.legs.hull import Ground
+from elbowroom.planning.root.legs.neighbours import Neighbours
+from elbowroom.world.ground.ground import Sole
+from elbowroom.world.obstacles.clearance import lower_clearance
+from elbowroom.world.obstacles.rows import first_of, shifted_into, unfilled
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_HERE = 0.0, 0.0, 0.0  # obstacles are seen from where they are
+
+
+class Legs(NamedTuple):
+    """Legs and pelvis of a body."""
+
+    posed: WholeBody
+    radii: Floats32  # (C,) of their capsules, metres
+    feet: Longs  # (F,) those that are round feet and toes
+    sole: Sole
+    reach: float  # metres that they reach from the root's place, with a little to spare
+    tall: float  # metres above the ground: what begins higher they do not meet
+
+
+@exact_kernel
+def room_at(legs: Legs, among: Neighbours, states: Floats, spare: float, farthest: float) -> Floats32:
+    """Metres (N,) from legs and pelvis at root states (N, ROOT_STATE) to what stands; infinite where nothing is near.
+
+    Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground. More
+    than `farthest` metres are not told apart.
+    """
+    out, chosen = np.full(states.shape[0], np.inf, np.float32), _within(among.ground, states, legs.reach)
+    if not chosen.any():
+        return out
+    out[:] = farthest
+    uneven, rows = not among.ground.underfoot.plain, states
+    lowerings, there = np.zeros(states.shape[0]), np.ones(states.shape[0], np.bool_)
+    if uneven:
+        rows = states.copy()
+        there = set_rises(among.ground.underfoot, legs.posed.gait_legs, legs.posed.scale, legs.sole, rows)
+        _leave_out(among.ground, floors_under(rows).min(), rows[:, HEIGHT].max() + legs.tall, chosen)
+    segments = posed_legs(legs.posed, rows, lowerings)
+    if uneven:
+        lift_feet(segments, legs.feet, posed_legs(legs.posed, levelled(rows), lowerings), legs.feet, legs.radii, spare)
+    near, count = unfilled(among.obstacles), 0
+    for b in range(chosen.shape[0]):
+        if chosen[b]:
+            shifted_into(among.obstacles, b, _HERE, near, count)
+            count += 1
+    lower_clearance(segments, legs.radii, first_of(near, count), out)
+    for n in range(out.shape[0]):
+        if not there[n]:
+            out[n] = -1.0
+    return out
+
+
+@helper
+def _within(ground: Ground, states: Floats, reach: float) -> Bools:
+    """Which boxes (B,) may come within `reach` metres of one of the places of root states."""
+    chosen = np.empty(ground.least.shape[0], np.bool_)
+    low_x, high_x = states[:, 0].min() - reach, states[:, 0].max() + reach
+    low_z, high_z = states[:, 1].min() - reach, states[:, 1].max() + reach
+    for b in range(chosen.shape[0]):
+        across = ground.least[b, 0] <= high_x and ground.most[b, 0] >= low_x
+        chosen[b] = across and ground.least[b, 1] <= high_z and ground.most[b, 1] >= low_z
+    return chosen
+
+
+@helper
+def _leave_out(ground: Ground, floor: float, top: float, chosen: Bools) -> None:
+    """Of the boxes that are chosen leave out those that do not rise above a height, or begin above another."""
+    for b in range(chosen.shape[0]):
+        chosen[b] = chosen[b] and ground.heights[b, 1] > floor and ground.heights[b, 0] < top
