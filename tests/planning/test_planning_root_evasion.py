@@ -214,6 +214,24 @@ def test_who_goes_past_with_one_shoulder_first_does_not_change_to_the_other(seed
     assert state.z > 1.2
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_who_steers_through_a_gap_keeps_to_the_shoulder_that_goes_first(seed: int) -> None:
+    """A hand is never still: every plan is asked for a little elsewhere, and both shoulders cost about the same."""
+    planner, rng, state, firsts = RootPlanner(AVATAR, gap(0.4)), np.random.default_rng(seed), WALKING, []
+    for i in range(18):
+        hand = Command(forward=1.0, direction=rng.uniform(-0.07, 0.07))
+        found = planner.candidates(state, hand, 16, 0.15, 0.15 * i, (0.6, 0.35, 0.2))
+        taken = next((plan for plan in found if plan.kind is RootPlanKind.EVASION), None)
+        if taken is None:
+            break
+        planner.follow(taken)
+        turned = taken.path.states[:, 2]
+        firsts.append(float(turned[np.abs(turned).argmax()]))
+        state = RootState(*taken.path.states[1].tolist())
+    assert min(firsts) * max(firsts) > 0.0
+    assert state.z > 2.2
+
+
 def test_settings_give_turns_to_both_sides() -> None:
     angles = EvasionSettings().angles
     np.testing.assert_allclose(angles, -angles[::-1])

@@ -29,6 +29,13 @@ class Evading(NamedTuple):
     share: float  # of the usual speed, sideways
     whole: bool  # whether it leads past all that was in sight
 
+    def is_meant(self, start: RootState, line: TravelLine) -> bool:
+        """Whether who is on it and wants to go along a line still means it: a hand that steers is never still."""
+        ahead, left = self.along.coordinates(start.x, start.z)
+        at = (ahead - self.profile.first) / self.profile.step
+        own = np.interp(at, np.arange(len(self.profile.rows)), self.profile.rows[:, 0])
+        return abs(left - float(own)) < _NEAR and self.line.leads_like(line)
+
 
 class RootMemory(NamedTuple):
     """What is known of the plans before; nothing at first."""

@@ -279,7 +279,7 @@ class _OfferMaker:
         axis = self._paths.axis_ahead(asked, line)
         if axis is None or (share >= 1.0 and axis.is_parallel(line)):
             return None
-        if known is not None and known.line == line and known.along.is_like(axis):
+        if known is not None and known.is_meant(asked.start, line) and known.along.is_like(axis):
             return known.along
         return axis
 
@@ -289,7 +289,7 @@ class _OfferMaker:
         As long as it is, no other is looked for: two ways that cost about the same would be taken in turn, and neither
         be walked. Sideways it is walked as fast as elsewhere, as soon as that is free.
         """
-        if line is None or known is None or known.line != line or not known.whole:
+        if line is None or known is None or not known.whole or not known.is_meant(asked.start, line):
             return None
         for share in (1.0, known.share) if known.share < 1.0 else (1.0,):
             plan = self._paths.followed(asked, line, known.along, known.profile, share)

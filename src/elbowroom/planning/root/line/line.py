@@ -32,9 +32,13 @@ class TravelLine(NamedTuple):
 
     def is_like(self, other: "TravelLine") -> bool:
         """Whether another leads in much the same direction, from much the same place."""
+        return self.leads_like(other) and math.dist((self.x, self.z), (other.x, other.z)) < _BESIDE
+
+    def leads_like(self, other: "TravelLine") -> bool:
+        """Whether another leads in much the same direction."""
         bent = abs(math.remainder(other.heading - self.heading, math.tau))
         bent = max(bent, abs(math.remainder(other.facing - self.facing, math.tau))) if self.turns else bent
-        return self.turns == other.turns and bent < BENT and math.dist((self.x, self.z), (other.x, other.z)) < _BESIDE
+        return self.turns == other.turns and bent < BENT
 
     def is_parallel(self, other: "TravelLine") -> bool:
         """Whether both lead in the same direction, for a walker."""
