@@ -111,10 +111,11 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
-    """Plan root paths round a low box, aside of it, with others about, and turning on the spot."""
+    """Plan root paths round a low box, aside of it, to a stand, with others about, and turning on the spot."""
     planner = RootPlanner(humanoid, _scene_with(*_LOW))
     start, horizon = RootState(0.0, 0.0, 0.0), 2 * _HORIZON
-    planner.plan(start, Command(turn=1.0), horizon, _INTERVAL)
+    for command in (Command(turn=1.0), Command()):
+        planner.plan(start, command, horizon, _INTERVAL)
     list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
     planner.others = Scene.load("traffic").obstacles.moving
     list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
