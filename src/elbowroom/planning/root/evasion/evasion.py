@@ -11,6 +11,7 @@ of room is only dear, because they can bend: how dear is what tells one evasion 
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -75,7 +76,7 @@ class EvasionSettings:
         """Columns of the grid; the middle one is the line."""
         return 2 * round(self.widest / self.aside) + 1
 
-    @property
+    @cached_property
     def angles(self) -> Floats:
         """The turns (T,) of the body from the line's facing."""
         return np.linspace(-self.most, self.most, 2 * self.turns + 1)
@@ -135,11 +136,13 @@ class EvasionFinder:
     def _floor(self, line: TravelLine, grid: Grid, height: float) -> Floor | None:
         """What one walks on over a grid, who comes from a height; None where that is not level."""
         ground = self._scene.ground
+        if ground.plain:
+            return Floor(np.zeros((grid.rows, grid.columns)), -np.inf)
         heights = heights_beside(ground, height, 0, places_on(line, grid))
         there = np.where(np.isfinite(heights), heights, height)
         if np.ptp(there) > _LEVEL:
             return None
-        return Floor(there, -np.inf if ground.plain else ground.step)
+        return Floor(there, ground.step)
 
     def _passing(self, moving: Moving, time: float, ahead: Floats, start: RootState, speed: float) -> Spans:
         """What moves about when places `ahead` (n,) metres are reached, a little larger, unless all of it stands."""
