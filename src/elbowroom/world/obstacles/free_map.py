@@ -31,6 +31,7 @@ LEVELS: Floats = 0.1 + 0.2 * np.arange(10.0)  # metres above the ground
 FARTHEST = 0.7  # metres: greater distances are not told apart
 _TALL = 0.06  # metres: half the height of the upright line that stands for a level
 _SAME = 0.01  # metres: floors that are told apart
+_ALIKE = 20  # of these: heights that are told apart where there is no floor, as far as levels are
 EVERY = (-np.inf, np.inf)  # heights
 _BLOCK = 2  # tiles by tiles that windows on plain ground are made of: who walks on needs the same for a while
 _WINDOWS = 8  # that are remembered
@@ -108,9 +109,12 @@ class FreeMap:
         return tile
 
     def _floor(self, start: Start, middle: Floats) -> int:
-        """How high the ground is at a place, as one comes to it; where there is none, as one sets out."""
+        """How high the ground is at a place, as one comes to it; where there is none, about as one sets out.
+
+        Who climbs sets out from another height each time, and would have the same filled again and again.
+        """
         height = height_along(self._ground, start, float(middle[0]), float(middle[1]))
-        return round((height if np.isfinite(height) else start[1]) / _SAME)
+        return round(height / _SAME) if np.isfinite(height) else _ALIKE * round(start[1] / (_ALIKE * _SAME))
 
     def _filled(self, middle: Floats, floor: float) -> Floats32:
         """A tile, reckoned from its middle: so it is as exact far from the world's origin as near to it."""
@@ -119,8 +123,8 @@ class FreeMap:
         near = self._near(middle - half - FARTHEST, middle + half + FARTHEST, heights)
         if is_empty(near):
             return _OPEN
-        found = clearance(_POINTS, _THIN, about(near, float(middle[0]), float(middle[1]), floor))
-        return np.minimum(found, np.float32(FARTHEST)).reshape(_OPEN.shape)
+        near = about(near, float(middle[0]), float(middle[1]), floor)
+        return clearance(_POINTS, _THIN, near, FARTHEST).reshape(_OPEN.shape)
 
 
 def _middle(i: int, k: int) -> Floats:
