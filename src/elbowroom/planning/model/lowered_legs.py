@@ -64,16 +64,18 @@ class LoweredLegs:
 
         Infinite where upright or far from everything.
         """
+        return self._standing(self.footing.stood(roots)[0], lowerings, np.zeros(len(roots)) if after is None else after)
+
+    def _standing(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
+        """`clearances` (N,) where the feet stand in the root states (N, 7)."""
         out = np.full(len(roots), np.inf, np.float32)
         lowered = np.flatnonzero(lowerings > _LEAST)
         if len(lowered):
-            times = np.zeros(len(lowered)) if after is None else after[lowered]
-            out[lowered] = self._crouching(roots[lowered], lowerings[lowered], times)
+            out[lowered] = self._crouching(roots[lowered], lowerings[lowered], after[lowered])
         return out
 
     def _crouching(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
-        """`clearances` (N,) where all are lowered, N at least 1."""
-        roots = self.footing.stood(roots)[0]
+        """`clearances` (N,) where all are lowered and the feet stand, N at least 1."""
         out = self._clear(self._near(roots), roots, lowerings)
         if self._sweeps is not None:
             spans = np.clip((after / self._interval).astype(np.int64), 0, span_count(self._sweeps) - 1)
@@ -111,11 +113,11 @@ class LoweredLegs:
         around = np.linspace(-0.5, 0.5, _AROUND) * path.interval
         times = np.arange(len(path.states))[:, None] * path.interval + around
         times = np.clip(times, 0.0, path.horizon * path.interval)
-        roots = sample_states(path.states, path.interval, times.ravel())
+        roots = self.footing.stood(sample_states(path.states, path.interval, times.ravel()))[0]
         states = np.repeat(roots, lowerings.shape[1], axis=0)
         each = np.repeat(lowerings[:, None], _AROUND, axis=1).ravel()
         after = np.repeat(times.ravel(), lowerings.shape[1])
-        found = self.clearances(states, each, after).reshape(len(times), _AROUND, -1)
+        found = self._standing(states, each, after).reshape(len(times), _AROUND, -1)
         blocked: Bools = found.min(axis=1) < margin
         return blocked
 
@@ -128,7 +130,7 @@ class LoweredLegs:
         roots, lowerings, after, owner = _shown(path.states, path.interval, *curve)
         blocked = np.zeros(path.horizon, np.bool_)
         if len(owner):
-            blocked[owner[self._crouching(roots, lowerings, after) < margin]] = True
+            blocked[owner[self._crouching(self.footing.stood(roots)[0], lowerings, after) < margin]] = True
         return blocked
 
 
