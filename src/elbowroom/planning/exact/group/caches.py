@@ -11,6 +11,7 @@ from typing import NamedTuple
 from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup
 from elbowroom.planning.exact.group.problem import Group
 from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
+from elbowroom.planning.exact.memory.known_rises import new_known_rises
 from elbowroom.planning.exact.sweep.motion_bounds import (
     KinematicChain,
     LimbSweeps,
@@ -85,8 +86,9 @@ def new_caches(
     groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
     trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST], horizon)
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
-    own_motion = OwnMotion(model.own_parts, underfoot)
-    own_trunk = OwnMotion(parts_of(model.own_parts, DofGroup.WAIST), underfoot, _CACHED * horizon)
+    rises = new_known_rises(underfoot)
+    own_motion = OwnMotion(model.own_parts, underfoot, rises=rises)
+    own_trunk = OwnMotion(parts_of(model.own_parts, DofGroup.WAIST), underfoot, _CACHED * horizon, rises)
     return PlanCaches(groups, trunk, own_nodes, own_motion, own_trunk, horizon)
 
 

@@ -16,12 +16,13 @@ from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
+from elbowroom.planning.exact.memory.known_rises import KnownRises, new_known_rises, recall_rises
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, forget, new_row_index, place_of
 from elbowroom.planning.exact.sweep.motion_bounds import moves_between, stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.axis_distances import clear_pairs
-from elbowroom.planning.model.footing import ON_PLANE, Underfoot, set_rises
+from elbowroom.planning.model.footing import ON_PLANE, Underfoot
 from elbowroom.planning.model.levers import MOVES, BodyLevers, raised_between
 from elbowroom.planning.model.self_pairs import SelfPairs
 from elbowroom.planning.root.path import RootPath, interpolate_root
@@ -62,11 +63,19 @@ class Shown(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """Key intervals that were looked at, by the content of both their ends."""
+    """Key intervals that were looked at, by the content of both their ends, and what feet stood on in them."""
 
     known: RowIndex
     gaps: Floats  # (S,) metres proven of all pairs, and
     groups: Indices  # (S,) the number in `SEARCH_ORDER` of the group of the pair that is nearest by what is proven
+    rises: KnownRises
+
+
+class _Feet(NamedTuple):
+    """What feet stand on."""
+
+    under: Underfoot
+    known: KnownRises
 
 
 def own_parts(model: BodyModel, pairs: SelfPairs, levers_of_body: BodyLevers) -> OwnParts:
@@ -84,11 +93,20 @@ def parts_of(parts: OwnParts, group: DofGroup) -> OwnParts:
 class OwnMotion:
     """One avatar's motion among its own parts, and the key intervals of it that were looked at."""
 
-    def __init__(self, parts: OwnParts, underfoot: Underfoot = ON_PLANE, room: int = _ROOM) -> None:
-        """So many intervals can be remembered; when half of them are, all are forgotten before the next plan."""
+    def __init__(
+        self,
+        parts: OwnParts,
+        underfoot: Underfoot = ON_PLANE,
+        room: int = _ROOM,
+        rises: KnownRises | None = None,
+    ) -> None:
+        """So many intervals can be remembered; when half of them are, all are forgotten before the next plan.
+
+        What is known of feet may be shared.
+        """
         self._parts, self._underfoot = parts, underfoot
-        known = new_row_index(room, 2 * _WIDTH)
-        self._seen = Seen(known, np.empty(room), np.empty(room, np.int64))
+        known, rises = new_row_index(room, 2 * _WIDTH), rises or new_known_rises(underfoot)
+        self._seen = Seen(known, np.empty(room), np.empty(room, np.int64), rises)
 
     def contacts(self, path: RootPath, keys: Floats, rates: Floats, walk: Floats, ahead: int) -> Indices:
         """The group, by its number in `SEARCH_ORDER`, that is not clear of the body in each interval (n,), or -1.
@@ -128,7 +146,7 @@ def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, wal
         else:
             gaps[k], groups[k] = seen.gaps[place], seen.groups[place]
     if count:
-        _prove(parts, underfoot, shown, missing[:count], gaps, groups)
+        _prove(parts, _Feet(underfoot, seen.rises), shown, missing[:count], gaps, groups)
         for k in missing[:count]:
             place = admit(seen.known, names[k * _WIDTH : (k + 2) * _WIDTH])
             seen.gaps[place], seen.groups[place] = gaps[k], groups[k]
@@ -162,9 +180,7 @@ def _beside(keys: Floats, walk: Floats) -> Indices:
 
 
 @helper
-def _prove(
-    parts: OwnParts, underfoot: Underfoot, shown: Shown, chosen: Indices, least: Floats, groups: Indices
-) -> None:
+def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: Floats, groups: Indices) -> None:
     """Set the proven gaps `least` (n,) in chosen intervals (K,), and whose they are."""
     count, looks = chosen.shape[0], _PARTS + 1
     intervals, moments = np.empty(count * looks, np.int64), np.empty(count * looks)
@@ -173,9 +189,9 @@ def _prove(
         for n in range(looks):
             intervals[i * looks + n], moments[i * looks + n] = chosen[i], n / _PARTS
         _set_moves(shown, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
-    roots = _roots_at(parts, underfoot, shown, intervals, moments)
+    roots = _roots_at(parts, feet, shown, intervals, moments)
     lengths = _lengths(parts.levers, moves)
-    if not underfoot.ground.plain:
+    if not feet.under.ground.plain:
         _add_raising(parts.levers, roots, lengths)
     proof = begun(_gaps(parts, shown, roots, intervals, moments), lengths, _PARTS, _AFAR, _HALVINGS)
     wanted, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
@@ -184,7 +200,7 @@ def _prove(
         for n in range(more):
             shares[n] = (wanted[n] % _PARTS + shares[n]) / _PARTS
             wanted[n] = chosen[wanted[n] // _PARTS]
-        roots = _roots_at(parts, underfoot, shown, wanted[:more], shares[:more])
+        roots = _roots_at(parts, feet, shown, wanted[:more], shares[:more])
         settle(proof, _gaps(parts, shown, roots, wanted[:more], shares[:more]), more)
         more = due(proof, wanted, shares)
     for b in range(proof.least.shape[0]):
@@ -228,7 +244,7 @@ def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
 
 
 @inner_exact_kernel
-def _roots_at(parts: OwnParts, underfoot: Underfoot, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+def _roots_at(parts: OwnParts, feet: _Feet, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
     """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), on what the feet stand on, at the origin."""
     roots = np.zeros((shares.shape[0], ROOT_STATE))
     for n in range(roots.shape[0]):
@@ -236,8 +252,8 @@ def _roots_at(parts: OwnParts, underfoot: Underfoot, shown: Shown, intervals: In
         state = interpolate_root(shown.states[k], shown.states[k + 1], shares[n], shown.interval)
         for j in range(state.shape[0]):
             roots[n, j] = state[j]
-    if not underfoot.ground.plain:
-        set_rises(underfoot.ground, parts.body.gait_legs, parts.body.scale, underfoot.sole, roots)
+    if not feet.under.ground.plain:
+        recall_rises(feet.known, feet.under, parts.body.gait_legs, parts.body.scale, roots)
     roots[:, :3] = 0.0
     return roots
 
