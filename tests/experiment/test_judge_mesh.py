@@ -1,5 +1,6 @@
 """The judge of the skinned mesh: posed as a viewer poses it, cut into patches without loss, and able to fail."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import coal
@@ -25,6 +26,9 @@ from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh
 from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.shapes import Box, Mesh
+from elbowroom.world.scene import Scene
 from judged_bodies import T_POSE, gliding, random_boxes, random_postures, scene_with, upright
 from odd_bodies import Body, ring_body
 from shared_data import SHARED, needs_shared
@@ -159,45 +163,76 @@ def test_patches_hold_every_triangle_once() -> None:
 def test_patches_are_never_farther_than_they_seem() -> None:
     rng = np.random.default_rng(11)
     posed = poses(STOCK, *random_postures(rng, 5))
-    patches = patches_of(SKIN)
+    patches, every = patches_of(SKIN), np.arange(5)
+    spans = patches.spans(posed)
     for obstacle in obstacles_of(scene_with(random_boxes(rng, 2))):
-        bounds = patches.bounds(posed, obstacle)
-        assert (patches.body_bounds(posed, obstacle) <= bounds.min(axis=1) + 1e-9).all()
+        wide = obstacle.world_distance(*spans)
         for i, patch in enumerate(patches.patches):
+            bounds = patches.bounds(i, posed, every, obstacle)
             beyond = np.abs(obstacle.seen_from(SKIN.vertices(posed, patch.vertices))) - obstacle.half_size
             true = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1).min(axis=1)
-            assert (bounds[:, i] <= true + 1e-9).all()
+            assert (bounds <= true + 1e-9).all()
+            assert (wide[:, i] <= true + 1e-9).all()
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_nothing_is_missed(seed: int) -> None:
-    """The whole mesh in one piece, and every contact asked for, gives the same."""
-    rng = np.random.default_rng(seed)
-    q, roots = random_postures(rng, 4)
+def crumpled(rng: np.random.Generator) -> Obstacles:
+    """A mesh of triangles of all sizes and slants about the body, and a box."""
+    sizes = 10.0 ** rng.uniform(-2.0, 0.3, (60, 1, 1))
+    corners = rng.uniform([-1.5, 0.0, -1.5], [1.5, 1.8, 1.5], (60, 1, 3)) + sizes * rng.normal(size=(60, 3, 3))
+    corners[:, :, 0] += 0.8  # mostly beside the body
+    mesh = Mesh(corners.reshape(-1, 3), np.arange(180).reshape(-1, 3))
+    turns = quaternion.normalize(rng.normal(size=(2, 4)))
+    centers = np.array([[0.1, 0.05, 0.0], [1.0, 1.0, 0.3]])
+    return Obstacles((mesh, Box((0.3, 0.3, 0.3))), centers, turns, ("heap", "box"), ground=-9.0)
+
+
+def beside(rng: np.random.Generator) -> Obstacles:
     boxes = random_boxes(rng, 2)
     boxes.centers[0, 0] += 0.8  # mostly beside the body
-    posed, obstacles = poses(STOCK, q, roots), obstacles_of(scene_with(boxes))
-    ledger = Ledger(1e-5)
-    MeshJudge(SKIN, STOCK.skeleton, obstacles).judge(posed, np.arange(4) / 60, 0, ledger)
-    vertices = SKIN.vertices(posed, np.arange(len(SKIN.joints)))
-    whole = np.array([min(whole_distance(points, obstacle) for obstacle in obstacles) for points in vertices])
+    return boxes
+
+
+@pytest.mark.parametrize("place", [beside, crumpled])
+@pytest.mark.parametrize("seed", range(2))
+def test_nothing_is_missed(seed: int, place: Callable[[np.random.Generator], Obstacles]) -> None:
+    """The whole skin in one piece, against whole meshes, and every contact asked for, gives the same."""
+    rng = np.random.default_rng(seed)
+    q, roots = random_postures(rng, 4)
+    scene = scene_with(place(rng))
+    posed, ledger = poses(STOCK, q, roots), Ledger(1e-5)
+    MeshJudge(SKIN, STOCK.skeleton, obstacles_of(scene)).judge(posed, np.arange(4) / 60, 0, ledger)
+    vertices, obstacles = SKIN.vertices(posed, np.arange(len(SKIN.joints))), whole_obstacles(scene)
+    whole = np.array([min(whole_distance(points, *obstacle) for obstacle in obstacles) for points in vertices])
     assert ledger.least is not None
     assert ledger.least.clearance == pytest.approx(whole.min(), abs=1e-6)
     assert ledger.touching == set(np.flatnonzero(whole < -1e-5))
 
 
-def whole_distance(points: Floats, obstacle: object) -> float:
+def whole_obstacles(scene: Scene) -> list[tuple[object, object]]:
+    """Shapes of the library and where they are: a mesh is one of them."""
+    return [
+        (triangles(shape.vertices, shape.faces) if isinstance(shape, Mesh) else coal.Box(*shape.size), placed)  # type: ignore[union-attr]
+        for _, shape, center, turn in scene.obstacles
+        for placed in [coal.Transform3s(quaternion.to_matrix(turn), center)]
+    ]
+
+
+def triangles(points: Floats, faces: NDArray[np.int64]) -> object:
     model = coal.BVHModelOBBRSS()
-    model.beginModel(len(SKIN.triangles), len(points))
+    model.beginModel(len(faces), len(points))
     model.addVertices(points)
-    model.addTriangles(SKIN.triangles)
+    model.addTriangles(faces)
     model.endModel()
-    bodies = (model, coal.Transform3s(), obstacle.shape, obstacle.place)  # type: ignore[attr-defined]
+    return model
+
+
+def whole_distance(points: Floats, shape: object, place: object) -> float:
+    bodies = (triangles(points, SKIN.triangles), coal.Transform3s(), shape, place)
     distance = coal.distance(*bodies, coal.DistanceRequest(), coal.DistanceResult())
     if distance > 0.0:
         return float(distance)
     request, result = coal.CollisionRequest(), coal.CollisionResult()
-    request.num_max_contacts, request.enable_contact = len(SKIN.triangles), True
+    request.num_max_contacts, request.enable_contact = 100 * len(SKIN.triangles), True
     coal.collide(*bodies, request, result)
     return float(min(contact.penetration_depth for contact in result.getContacts()))
 

@@ -1,15 +1,16 @@
 """The skinned mesh against obstacles: every triangle, none left out, the far ones dismissed in bulk."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.experiment.judge.around import Around
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
+from elbowroom.experiment.judge.pieces import MOST
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.skin import Skin
 
@@ -17,17 +18,18 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-class _Moments(NamedTuple):
-    """Some poses: their numbers (n,), times (n,) and joints."""
+class _Moments:
+    """Some poses, and the skin in them: a patch is posed once, when it is first asked for."""
 
-    numbers: Ints
-    times: Floats
-    posed: Posed
+    def __init__(self, skin: Skin, posed: Posed, times: Floats, first: int) -> None:
+        self.posed, self.times, self.first = posed, times, first
+        self._skin, self._known = skin, dict[int, Floats]()
 
-    def at(self, rows: Ints) -> "_Moments":
-        """Those in some rows."""
-        posed = Posed(self.posed.positions[rows], self.posed.rotations[rows])
-        return _Moments(self.numbers[rows], self.times[rows], posed)
+    def points(self, number: int, patch: Patch) -> Floats:
+        """The vertices (N, v, 3) of a patch of that number, in the world."""
+        if number not in self._known:
+            self._known[number] = self._skin.vertices(self.posed, patch.vertices)
+        return self._known[number]
 
 
 class MeshJudge:
@@ -38,33 +40,33 @@ class MeshJudge:
     """
 
     def __init__(self, skin: Skin, skeleton: Skeleton, obstacles: Sequence[Obstacle]) -> None:
-        self._coal, self._skin, self._obstacles = coal_library(), skin, obstacles
+        self._coal, self._skin, self._around = coal_library(), skin, Around(obstacles)
         self._patches = patches_of(skin)
         self._regions = [region_of(bone) for bone in skeleton.names]
         self._nearest = self._coal.DistanceRequest()
 
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the surface does at N poses, whose numbers begin at `first`."""
-        every = _Moments(np.arange(first, first + len(times)), times, posed)
-        bounds = [self._patches.body_bounds(posed, obstacle) for obstacle in self._obstacles]
-        for which in sorted(range(len(bounds)), key=lambda which: float(bounds[which].min())):
-            near = np.flatnonzero(bounds[which] <= ledger.limit)
-            if len(near):
-                self._judge_obstacle(every.at(near), self._obstacles[which], ledger)
-
-    def _judge_obstacle(self, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
-        bounds = self._patches.bounds(moments.posed, obstacle)  # (N, P)
-        nearest = bounds.min(axis=0)
-        for i in np.argsort(nearest):
-            if nearest[i] > ledger.limit:
+        moments = _Moments(self._skin, posed, times, first)
+        low, high = self._patches.spans(posed)  # (N, P, 3)
+        for least, obstacle in self._around.nearest_first(low.min(axis=(0, 1)), high.max(axis=(0, 1))):
+            if least > ledger.limit:
                 return
-            patch = self._patches.patches[i]
+            bounds = obstacle.world_distance(low, high)  # (N, P)
             if ledger.least is None:  # one pose first: from then on the ledger has a limit
-                self._judge_patch(patch, moments.at(bounds[:, [i]].argmin(axis=0)), obstacle, ledger)
-            self._judge_patch(patch, moments.at(np.flatnonzero(bounds[:, i] <= ledger.limit)), obstacle, ledger)
+                nearest, patch = np.unravel_index(bounds.argmin(), bounds.shape)
+                self._judge_patch(int(patch), np.array([nearest]), moments, obstacle, ledger)
+            near = bounds <= ledger.limit
+            for number in np.argsort(bounds.min(axis=0)):
+                self._judge_patch(int(number), np.flatnonzero(near[:, number]), moments, obstacle, ledger)
 
-    def _judge_patch(self, patch: Patch, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
-        points = self._skin.vertices(moments.posed, patch.vertices)
+    def _judge_patch(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+        """Enter what a patch does to an obstacle at those poses `rows` (n,) at which it may be near."""
+        patch = self._patches.patches[number]
+        rows = rows[self._patches.bounds(number, moments.posed, rows, obstacle) <= ledger.limit]
+        if not len(rows):
+            return
+        points = moments.points(number, patch)[rows]
         corners = obstacle.seen_from(points)[:, patch.triangles]  # (n, t, 3, 3)
         gaps = obstacle.box_distance(corners.min(axis=2), corners.max(axis=2))  # (n, t)
         for row in np.argsort(gaps.min(axis=1)):
@@ -72,8 +74,8 @@ class MeshJudge:
             if not close.any():
                 return
             distance = self._distance(points[row], patch.triangles[close], obstacle)
-            found = Nearness(self._regions[patch.joint], obstacle.name, float(moments.times[row]), distance)
-            ledger.enter(int(moments.numbers[row]), found)
+            found = Nearness(self._regions[patch.joint], obstacle.name, float(moments.times[rows[row]]), distance)
+            ledger.enter(moments.first + int(rows[row]), found)
 
     def _distance(self, points: Floats, triangles: Ints, obstacle: Obstacle) -> float:
         """Distance of the nearest triangle; negative: how far the deepest one would have to be moved to be free."""
@@ -90,7 +92,7 @@ class MeshJudge:
     def _depth(self, bodies: tuple[object, ...], triangles: int) -> float:
         """The contact depth of the deepest triangle, negative (a distance query stops at the first that touches)."""
         request, result = self._coal.CollisionRequest(), self._coal.CollisionResult()
-        request.num_max_contacts, request.enable_contact = triangles, True
+        request.num_max_contacts, request.enable_contact = triangles * MOST, True
         self._coal.collide(*bodies, request, result)
         return min([float(contact.penetration_depth) for contact in result.getContacts()], default=0.0)
 

@@ -1,5 +1,6 @@
 """A scene's obstacles as another library knows them, and in which oriented box each of them lies."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.experiment.judge.pieces import pieces_of
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.meshes.hulls import surface_of
@@ -21,7 +23,7 @@ Longs = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """One obstacle: the library's shape and place, and an oriented box round it for finding what is near."""
+    """An obstacle, or a piece of a mesh: the library's shape and place, and a box round it for finding what is near."""
 
     name: str
     shape: Any  # coal.CollisionGeometry
@@ -36,6 +38,13 @@ class Obstacle:
         Corners are in the box's frame. Whatever lies between them is at least so far from the obstacle.
         """
         gap = np.maximum(np.maximum(low - self.half_size, -self.half_size - high), 0.0)
+        distance: Floats = np.sqrt(np.einsum("...i,...i->...", gap, gap))
+        return distance
+
+    def world_distance(self, low: Floats, high: Floats) -> Floats:
+        """The same of boxes along the world's axes with corners `low`, `high` (..., 3) in the world; quick and wide."""
+        reach = np.abs(self.to_box.T) @ self.half_size
+        gap = np.maximum(np.maximum(low - self.center, self.center - high) - reach, 0.0)
         distance: Floats = np.sqrt(np.einsum("...i,...i->...", gap, gap))
         return distance
 
@@ -72,32 +81,38 @@ class Surroundings:
 
 
 def obstacles_of(scene: Scene) -> tuple[Obstacle, ...]:
-    """Every obstacle of a scene that stands still: of a mesh, what is above the ground."""
-    found, ground = [], scene.obstacles.ground
+    """Every obstacle of a scene that stands still: of a mesh, what is above the ground, in pieces."""
+    found, ground = list[Obstacle](), scene.obstacles.ground
     for name, shape, center, turn in scene.obstacles:
         standing = above_ground(shape, center, turn, ground) if isinstance(shape, Mesh) else shape
         if standing is not None:
-            found.append(_obstacle(name, standing, center, quaternion.to_matrix(turn)))
+            found += _obstacles(name, standing, center, quaternion.to_matrix(turn))
     return tuple(found)
 
 
 def surroundings_of(scene: Scene) -> tuple[Surroundings, ...]:
     """Every obstacle of a scene: those that stand still together, each moving one by itself."""
     moving = [
-        Surroundings((_obstacle(track.name, track.shape, np.zeros(3), np.eye(3)),), track)
+        Surroundings(tuple(_obstacles(track.name, track.shape, np.zeros(3), np.eye(3))), track)
         for track in scene.obstacles.moving.tracks
     ]
     return (Surroundings(obstacles_of(scene), None), *moving)
 
 
-def _obstacle(name: str, shape: Shape, origin: Floats, turn: Floats) -> Obstacle:
+def _obstacles(name: str, shape: Shape, origin: Floats, turn: Floats) -> Iterator[Obstacle]:
+    """A shape about an origin (3,), turned by a matrix (3, 3); a mesh in its pieces, which all have its name."""
+    if isinstance(shape, Mesh):
+        place = coal_library().Transform3s(turn, origin)
+        for piece in pieces_of(shape):
+            center, to_box = origin + turn @ piece.middle, piece.to_box @ turn.T
+            yield Obstacle(name, _library_mesh(piece.mesh), place, center, to_box, piece.half_size)
+        return
     made, to_made = _library_shape(shape)
     place, center = coal_library().Transform3s(turn @ to_made, origin), origin + turn @ shape.middle
-    half = shape.half + shape.rounding
-    return Obstacle(name=name, shape=made, place=place, center=center, to_box=turn.T, half_size=half)
+    yield Obstacle(name, made, place, center, turn.T, shape.half + shape.rounding)
 
 
-def _library_shape(shape: Shape) -> tuple[Any, Floats]:
+def _library_shape(shape: Box | Sphere | Capsule | Cylinder | Hull) -> tuple[Any, Floats]:
     """The library's own shape, and how it is turned in ours: its capsules and cylinders lie along Z."""
     coal, along_y = coal_library(), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
     match shape:
@@ -111,8 +126,6 @@ def _library_shape(shape: Shape) -> tuple[Any, Floats]:
             return coal.Cylinder(radius, height), along_y
         case Hull():
             return _library_hull(shape), np.eye(3)
-        case Mesh():
-            return _library_mesh(shape), np.eye(3)
 
 
 def _library_hull(hull: Hull) -> Any:

@@ -37,24 +37,25 @@ class Patches:
     joints: Ints  # (B,) joint of each box
     centers: Floats  # (B, 3) in the joint's frame
     half_sizes: Floats  # (B, 3)
-    reaches: Floats  # (J,) metres: how far from each joint of the skeleton that joint alone would carry a vertex
 
-    def body_bounds(self, posed: Posed, obstacle: Obstacle) -> Floats:
-        """A lower bound (N,) of the distance between the whole skin and an obstacle at N poses; quick and wide."""
-        carrying = np.flatnonzero(self.reaches > 0.0)
-        places, reach = obstacle.seen_from(posed.positions[:, carrying]), self.reaches[carrying, None]
-        return obstacle.box_distance((places - reach).min(axis=1), (places + reach).max(axis=1))
-
-    def bounds(self, posed: Posed, obstacle: Obstacle) -> Floats:
-        """A lower bound (N, P) of the distance between each patch and an obstacle at N poses."""
-        turns = np.einsum("ij,nkjl->nkil", obstacle.to_box, posed.rotations)
-        places = obstacle.seen_from(posed.positions)
-        own = turns[:, self.joints]
-        middle = np.einsum("nbij,bj->nbi", own, self.centers) + places[:, self.joints]
+    def spans(self, posed: Posed) -> tuple[Floats, Floats]:
+        """The corners (N, P, 3) of boxes along the world's axes that hold the patches at N poses."""
+        own = posed.rotations[:, self.joints]
+        middle = np.einsum("nbij,bj->nbi", own, self.centers) + posed.positions[:, self.joints]
         reach = np.einsum("nbij,bj->nbi", np.abs(own), self.half_sizes)
-        low = np.minimum.reduceat(middle - reach, self.starts, axis=1)
-        high = np.maximum.reduceat(middle + reach, self.starts, axis=1)
-        return obstacle.box_distance(low, high)
+        low, high = middle - reach, middle + reach
+        return np.minimum.reduceat(low, self.starts, axis=1), np.maximum.reduceat(high, self.starts, axis=1)
+
+    def bounds(self, number: int, posed: Posed, rows: Ints, obstacle: Obstacle) -> Floats:
+        """A lower bound (n,) of the distance between a patch and an obstacle at some of N poses."""
+        ends = np.append(self.starts, len(self.joints))
+        boxes = slice(ends[number], ends[number + 1])
+        joints = self.joints[boxes]
+        own = np.einsum("ij,nbjl->nbil", obstacle.to_box, posed.rotations[rows[:, None], joints])
+        places = obstacle.seen_from(posed.positions[rows[:, None], joints])
+        middle = np.einsum("nbij,bj->nbi", own, self.centers[boxes]) + places
+        reach = np.einsum("nbij,bj->nbi", np.abs(own), self.half_sizes[boxes])
+        return obstacle.box_distance((middle - reach).min(axis=1), (middle + reach).max(axis=1))
 
 
 def patches_of(skin: Skin) -> Patches:
@@ -62,22 +63,12 @@ def patches_of(skin: Skin) -> Patches:
     patches = tuple(_patch(skin, rows) for rows in _pieces(skin))
     boxes = [_boxes(skin, patch) for patch in patches]
     return Patches(
-        reaches=_reaches(skin),
         patches=patches,
         starts=np.cumsum([0, *(len(joints) for joints, _, _ in boxes[:-1])]),
         joints=np.concatenate([joints for joints, _, _ in boxes]),
         centers=np.concatenate([0.5 * (low + high) for _, low, high in boxes]),
         half_sizes=np.concatenate([0.5 * (high - low) for _, low, high in boxes]),
     )
-
-
-def _reaches(skin: Skin) -> Floats:
-    """Largest offset of a vertex from each joint (J,), up to the last joint that carries any."""
-    used = np.unique(skin.triangles)
-    joints, weights = skin.joints[used], skin.weights[used]
-    reaches = np.zeros(int(joints.max()) + 1)
-    np.maximum.at(reaches, joints, np.where(weights > 0.0, np.linalg.norm(skin.offsets[used], axis=-1), 0.0))
-    return reaches
 
 
 def _pieces(skin: Skin) -> list[Ints]:

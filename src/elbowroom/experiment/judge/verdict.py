@@ -1,7 +1,7 @@
 """The judge's verdict on a shown motion: what touches, how near it comes, how smoothly it moves."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from elbowroom.experiment.judge.obstacles import surroundings_of
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import SelfJudge
 from elbowroom.experiment.judge.settings import JudgeSettings
-from elbowroom.experiment.judge.skin import Skin, skin_of
+from elbowroom.experiment.judge.skin import skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
@@ -44,6 +44,7 @@ class Verdict:
 
     frames: int  # as recorded
     poses: int  # judged
+    left: int  # poses that were not judged any more, since it was broken off
     seconds: float  # of motion
     capsules: BodyVerdict
     mesh: BodyVerdict | None  # None: not asked for, or the avatar has none
@@ -55,8 +56,8 @@ class Verdict:
 
     @property
     def clean(self) -> bool:
-        """Whether no obstacle is touched; what the body does to itself is a figure of its own."""
-        return self.capsules.touching == 0 and (self.mesh is None or self.mesh.touching == 0)
+        """Whether all was judged, and no obstacle is touched; what the body does to itself is a figure of its own."""
+        return self.left == 0 and self.capsules.touching == 0 and (self.mesh is None or self.mesh.touching == 0)
 
 
 def judge_recording(
@@ -78,56 +79,73 @@ def judge(
 
     Raises `InputError` where the collision library is missing or the avatar's mesh is damaged.
     """
-    chosen = settings or JudgeSettings()
-    surroundings, poser = surroundings_of(scene), Poser(humanoid)
-    skin, note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
-    moments = motion.moments(chosen.rate)
-    of_capsules, of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
-    of_itself = Ledger(chosen.self_tolerance)
-    capsule_judges = [CapsuleJudge(humanoid, around.obstacles) for around in surroundings]
-    self_judge, soles = SelfJudge(humanoid), Soles(humanoid, poser, motion, floors=math.isinf(scene.obstacles.ground))
-    mesh_judges = (
-        [] if skin is None else [MeshJudge(skin, humanoid.skeleton, around.obstacles) for around in surroundings]
-    )
-    for first in range(0, len(moments.times), _AT_ONCE):
-        some = moments.part(slice(first, first + _AT_ONCE))
-        posed = poser.at(motion, some)
-        times = motion.scene_times(some)
-        bodies, surfaces = (
-            [around.seen(body, times) for around in surroundings]
-            for body in (soles.raised(posed, some), posed if skin is None else soles.raised(posed, some, skin))
-        )
-        for view, capsule_judge in zip(bodies, capsule_judges, strict=True):
-            capsule_judge.judge(view, some.times, first, of_capsules)
-        self_judge.judge(posed, some.times, first, of_itself)
-        for view, mesh_judge in zip(surfaces, mesh_judges, strict=bool(mesh_judges)):
-            mesh_judge.judge(view, some.times, first, of_mesh)
+    judging = Judging(motion, humanoid, scene, settings)
+    for time in judging.parts():
         if progress is not None:
-            progress(float(some.times[-1]))
-    return _verdict(motion, moments, (skin, note), of_capsules, of_itself, of_mesh)
+            progress(time)
+    return judging.verdict()
 
 
-def _verdict(
-    motion: ShownMotion,
-    moments: Moments,
-    surface: tuple[Skin | None, str],
-    capsules: Ledger,
-    itself: Ledger,
-    mesh: Ledger,
-) -> Verdict:
-    skin, note = surface
-    return Verdict(
-        frames=len(motion),
-        poses=len(moments.times),
-        seconds=float(motion.times[-1] - motion.times[0]),
-        capsules=_body_verdict(capsules, motion, moments),
-        mesh=None if skin is None else _body_verdict(mesh, motion, moments),
-        itself=_body_verdict(itself, motion, moments),
-        mesh_note=note,
-        triangles=0 if skin is None else len(skin.triangles),
-        triangles_left_out=0 if skin is None else skin.left_out,
-        smoothness=smoothness(motion),
-    )
+class Judging:
+    """A motion of an avatar in a scene while it is judged: who breaks it off has the verdict on what was judged.
+
+    Raises as `judge` does.
+    """
+
+    def __init__(
+        self, motion: ShownMotion, humanoid: Humanoid, scene: Scene, settings: JudgeSettings | None = None
+    ) -> None:
+        chosen = settings or JudgeSettings()
+        self._motion, self._moments, self.judged = motion, motion.moments(chosen.rate), 0  # poses
+        self._surroundings, self._poser = surroundings_of(scene), Poser(humanoid)
+        self._skin, self._note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
+        self._of_capsules, self._of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
+        self._of_itself, self._itself = Ledger(chosen.self_tolerance), SelfJudge(humanoid)
+        self._soles = Soles(humanoid, self._poser, motion, floors=math.isinf(scene.obstacles.ground))
+        around = [surroundings.obstacles for surroundings in self._surroundings]
+        self._capsules, skin = [CapsuleJudge(humanoid, obstacles) for obstacles in around], self._skin
+        self._mesh = [] if skin is None else [MeshJudge(skin, humanoid.skeleton, obstacles) for obstacles in around]
+
+    @property
+    def poses(self) -> int:
+        """How many poses there are."""
+        return len(self._moments.times)
+
+    def parts(self) -> Iterator[float]:
+        """Judge one part after the other; gives the seconds of the motion that are judged."""
+        for first in range(self.judged, self.poses, _AT_ONCE):
+            some = self._moments.part(slice(first, first + _AT_ONCE))
+            self._judge(some, first)
+            self.judged = first + len(some.times)
+            yield float(some.times[-1])
+
+    def _judge(self, some: Moments, first: int) -> None:
+        posed, times = self._poser.at(self._motion, some), self._motion.scene_times(some)
+        body = self._soles.raised(posed, some)
+        for around, capsules in zip(self._surroundings, self._capsules, strict=True):
+            capsules.judge(around.seen(body, times), some.times, first, self._of_capsules)
+        self._itself.judge(posed, some.times, first, self._of_itself)
+        if self._skin is not None:
+            surface = self._soles.raised(posed, some, self._skin)
+            for around, mesh in zip(self._surroundings, self._mesh, strict=True):
+                mesh.judge(around.seen(surface, times), some.times, first, self._of_mesh)
+
+    def verdict(self) -> Verdict:
+        """On all that is judged by now."""
+        motion, moments, skin = self._motion, self._moments, self._skin
+        return Verdict(
+            frames=len(motion),
+            poses=self.judged,
+            left=self.poses - self.judged,
+            seconds=float(motion.times[-1] - motion.times[0]),
+            capsules=_body_verdict(self._of_capsules, motion, moments),
+            mesh=None if skin is None else _body_verdict(self._of_mesh, motion, moments),
+            itself=_body_verdict(self._of_itself, motion, moments),
+            mesh_note=self._note,
+            triangles=0 if skin is None else len(skin.triangles),
+            triangles_left_out=0 if skin is None else skin.left_out,
+            smoothness=smoothness(motion),
+        )
 
 
 def _body_verdict(ledger: Ledger, motion: ShownMotion, moments: Moments) -> BodyVerdict:
