@@ -13,7 +13,7 @@ from elbowroom.cli.main import app
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.tour.leg import NO_WAY, OUT_OF_TIME, walk_to
 from elbowroom.experiment.tour.targets import random_targets
-from elbowroom.experiment.tour.tour import Milliseconds, Shown, judged, run_tour
+from elbowroom.experiment.tour.tour import Milliseconds, Shown, judging, run_tour
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.world.places.options import PlaceOptions
@@ -41,7 +41,12 @@ def test_both_rooms_are_visited_and_nothing_is_touched(humanoid: Humanoid, rooms
     assert (result.targets, result.arrived, heard) == (2, 2, [0, 1])
     assert result.plan_ms.count == result.plan_cpu_ms.count > 10
     assert result.frame_ms.count == result.plan_cpu_ms.count + result.frame_cpu_ms.count
-    verdict = judged(shown, controller, mesh=False, progress=lambda _time: None)
+    walk = judging(shown, controller, mesh=False)
+    next(parts := walk.parts())
+    first = walk.verdict()
+    assert (first.clean, first.poses > 0, first.poses + first.left) == (False, True, walk.poses)
+    assert list(parts)[-1] == pytest.approx(result.seconds, abs=0.1)
+    verdict = walk.verdict()
     assert verdict.clean
     assert verdict.poses > 4 * 60 * result.seconds - 10
 

@@ -13,6 +13,7 @@ from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpA
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
+from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing_settings import CrossingSettings
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 EXAMPLES = "Examples:  elbowroom tour d  |  elbowroom tour house.glb --drop 'IfcDoor_*' --targets 20 --seed 3 --json"
 FELL_SHORT = 1
 MOST_TARGETS = 1000
+_NOT_JUDGED = {"touching": "not judged"}
 
 
 def tour(
@@ -74,10 +76,13 @@ def tour(
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     shown, result = _walked(controller, targets, record, quiet)
-    verdict = _judged(shown, controller, result.seconds, mesh=mesh, quiet=quiet) if judge else None
     if plan is not None:
         _draw(plan, controller, shown, result)
-    _report(result, verdict, json)
+    if not json:
+        _report(result, judge=judge)
+    verdict = _judged(shown, controller, result, mesh=mesh, json=json, quiet=quiet) if judge else None
+    if json and verdict is None:
+        _print_json(result, None)
     touched = verdict is not None and not verdict.clean
     raise typer.Exit(FELL_SHORT if touched or result.arrived < result.targets else 0)
 
@@ -93,20 +98,34 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
     start = controller.root.x, controller.root.height, controller.root.z
     places = random_targets(controller.navigator, start, count, controller.settings.seed)
     with (
-        progress_bar(said("Touring {0}", controller.scene.title), float(count), quiet) as bar,
+        time_left_bar(said("Touring {0}", controller.scene.title), quiet) as move,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
     ):
+        move(0, count)
         shown = Shown(controller.step(Command(), 0.0), None if recorder is None else recorder.append)
-        return shown, run_tour(
-            controller, places, shown.append, lambda number, leg: bar.move(number + 1.0, f"{leg.outcome}")
-        )
+        return shown, run_tour(controller, places, shown.append, lambda number, _leg: move(number + 1, count))
 
 
-def _judged(shown: "Shown", controller: "Controller", seconds: float, *, mesh: bool, quiet: bool) -> "Verdict":
-    from elbowroom.experiment.tour.tour import judged
+def _judged(
+    shown: "Shown", controller: "Controller", result: "TourResult", *, mesh: bool, json: bool, quiet: bool
+) -> "Verdict":
+    """The verdict, reported; one that is broken off too, with what was judged until then."""
+    from elbowroom.experiment.tour.tour import judging
 
-    with progress_bar(said("Judging"), max(seconds, 1.0), quiet) as bar:
-        return judged(shown, controller, mesh=mesh, progress=lambda time: bar.move(time, f"{time:.0f} s"))
+    walk = judging(shown, controller, mesh=mesh)
+    try:
+        with time_left_bar(said("Judging"), quiet) as move:
+            for _ in walk.parts():
+                move(walk.judged, walk.poses)
+    finally:
+        verdict = walk.verdict()
+        if verdict.left:
+            typer.echo(f"elbowroom: not judged to the end: {verdict.poses} of {walk.poses} poses", err=True)
+        if json:
+            _print_json(result, verdict)
+        else:
+            print_row("Judged by coal", _verdict_row(verdict))
+    return verdict
 
 
 def _draw(path: Path, controller: "Controller", shown: "Shown", result: "TourResult") -> None:
@@ -122,29 +141,36 @@ def _draw(path: Path, controller: "Controller", shown: "Shown", result: "TourRes
         raise InputError(f"{path}: cannot be written ({error})") from None
 
 
-def _report(result: "TourResult", verdict: "Verdict | None", json: bool) -> None:
+def _print_json(result: "TourResult", verdict: "Verdict | None") -> None:
     from dataclasses import asdict
 
-    touching = None if verdict is None else _touching(verdict)
-    if json:
-        told = asdict(result) | {"touching_frames": touching}
-        told["given_up"] = [asdict(leg) for leg in result.given_up]
-        print_json(told | {"frames_judged": None if verdict is None else verdict.poses})
-        return
+    judged = {
+        "touching_frames": None if verdict is None else _touching(verdict),
+        "frames_judged": None if verdict is None else verdict.poses,
+        "frames_not_judged": None if verdict is None else verdict.left,
+    }
+    print_json(asdict(result) | judged | {"given_up": [asdict(leg) for leg in result.given_up]})
+
+
+def _report(result: "TourResult", *, judge: bool) -> None:
     rows = {
         "arrived": said("{0} of {1}", result.arrived, result.targets),
         "stuck": said("{0} times, {1} s of {2} s", result.stuck, f"{result.stuck_s:.1f}", f"{result.seconds:.0f}"),
-        "touching": "not judged" if verdict is None else said("{0} of {1} poses", touching, verdict.poses),
         "planning": _costs(result.plan_ms),
         "in processor time": _costs(result.plan_cpu_ms),
         "a frame": _costs(result.frame_ms),
         "without planning": _costs(result.frame_cpu_ms),
         "finding the way": _costs(result.find_ms),
     }
-    print_row(said("Tour of {0}, seed {1}", result.scene, result.seed), rows)
+    print_row(said("Tour of {0}, seed {1}", result.scene, result.seed), rows if judge else rows | _NOT_JUDGED)
     if result.given_up:
         lost = {told_place(leg.target): f"{leg.outcome}: {leg.reason}" for leg in result.given_up}
         print_row("Not reached", lost)
+
+
+def _verdict_row(verdict: "Verdict") -> dict[str, str]:
+    rows = {"touching": said("{0} of {1} poses", _touching(verdict), verdict.poses)}
+    return rows | ({"not judged": str(verdict.left)} if verdict.left else {})
 
 
 def _touching(verdict: "Verdict") -> int:

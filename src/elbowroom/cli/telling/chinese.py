@@ -61,6 +61,7 @@ CHINESE = {
     "{0} times, {1} s of {2} s": "{0} 次，{2} 秒中的 {1} 秒",
     "touching": "碰觸",
     "not judged": "未檢驗",
+    "Judged by coal": "由 coal 檢驗",
     "{0} of {1} poses": "{1} 個姿勢中的 {0} 個",
     "planning": "規劃",
     "in processor time": "規劃之處理器時間",

@@ -11,7 +11,7 @@ from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
-from elbowroom.experiment.judge.verdict import Verdict, judge
+from elbowroom.experiment.judge.verdict import Judging
 from elbowroom.experiment.tour.leg import Leg, LegTimes, Listener, walk_to
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import Place, Spot
@@ -116,9 +116,9 @@ def run_tour(
     )
 
 
-def judged(shown: Shown, controller: Controller, *, mesh: bool, progress: Callable[[float], object]) -> Verdict:
-    """The other library's verdict on what was shown, against all that stands in the scene."""
-    return judge(shown.motion(), controller.humanoid, controller.scene, JudgeSettings(mesh=mesh), progress)
+def judging(shown: Shown, controller: Controller, *, mesh: bool) -> Judging:
+    """The other library's judgement of what was shown, against all that stands in the scene."""
+    return Judging(shown.motion(), controller.humanoid, controller.scene, JudgeSettings(mesh=mesh))
 
 
 def _limit(controller: Controller, target: Place | Spot) -> float:
