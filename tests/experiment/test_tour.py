@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.control.controller import Controller
+from elbowroom.experiment.judge.verdict import Judging
 from elbowroom.experiment.tour.leg import NO_WAY, OUT_OF_TIME, walk_to
 from elbowroom.experiment.tour.targets import random_targets
 from elbowroom.experiment.tour.tour import Milliseconds, Shown, judging, run_tour
@@ -88,6 +90,24 @@ def test_the_command_tells_it_as_json() -> None:
     told = json.loads(done.stdout)
     assert {"targets", "arrived", "stuck", "touching_frames", "plan_ms", "plan_cpu_ms", "given_up"} <= set(told)
     assert (told["targets"], told["arrived"], told["touching_frames"], told["given_up"]) == (2, 2, 0, [])
+
+
+def test_a_judgement_that_is_broken_off_leaves_the_walk_and_what_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = Judging.parts
+
+    def broken_off(judging: Judging) -> Iterator[float]:
+        yield next(whole(judging))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Judging, "parts", broken_off)
+    done = CliRunner().invoke(app, ["tour", "a", "--targets", "1", "--seed", "3", "--json", "-q"])
+    assert done.exit_code != 0
+    told = json.loads(done.stdout)
+    assert (told["arrived"], told["touching_frames"]) == (1, 0)
+    assert told["frames_judged"] > 0
+    every = told["frames_judged"] + told["frames_not_judged"]
+    assert told["frames_not_judged"] > 0
+    assert f"not judged to the end: {told['frames_judged']} of {every} poses" in done.stderr
 
 
 def test_so_many_targets_are_none() -> None:

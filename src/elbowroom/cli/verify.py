@@ -7,8 +7,9 @@ import typer
 
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import print_json, print_row, progress_bar
+from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.spoken import said
+from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.experiment.judge.settings import JudgeSettings
 
 if TYPE_CHECKING:
@@ -41,15 +42,18 @@ def verify(
     settings = JudgeSettings(rate=rate, mesh=mesh)
     from elbowroom.control.recordings.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion
-    from elbowroom.experiment.judge.verdict import judge
+    from elbowroom.experiment.judge.verdict import Judging
 
     recorded = Recording(recording)
     compile_first(quiet=quiet)
     motion = ShownMotion.of(recorded)
     scene = recorded.scene()
-    with progress_bar(said("Judging"), float(motion.times[-1]), quiet) as bar:
+    with time_left_bar(said("Judging"), quiet) as move:
         humanoid = recorded.header.avatar.load(avatar)
-        verdict = judge(motion, humanoid, scene, settings, lambda time: bar.move(time, f"{time:.1f} s"))
+        judging = Judging(motion, humanoid, scene, settings)
+        for _ in judging.parts():
+            move(judging.judged, judging.poses)
+    verdict = judging.verdict()
     if json:
         about = {"recording": str(recording), "scene": scene.name, "avatar": humanoid.name, "rate_hz": rate}
         print_json(about | _as_json(verdict) | {"note": recorded.note})

@@ -49,16 +49,27 @@ class MeshJudge:
         """Enter what the surface does at N poses, whose numbers begin at `first`."""
         moments = _Moments(self._skin, posed, times, first)
         low, high = self._patches.spans(posed)  # (N, P, 3)
-        for least, obstacle in self._around.nearest_first(low.min(axis=(0, 1)), high.max(axis=(0, 1))):
+        lowest, highest = low.min(axis=1), high.max(axis=1)
+        for least, obstacle in self._around.nearest_first(lowest.min(axis=0), highest.max(axis=0)):
             if least > ledger.limit:
                 return
-            bounds = obstacle.world_distance(low, high)  # (N, P)
-            if ledger.least is None:  # one pose first: from then on the ledger has a limit
-                nearest, patch = np.unravel_index(bounds.argmin(), bounds.shape)
-                self._judge_patch(int(patch), np.array([nearest]), moments, obstacle, ledger)
-            near = bounds <= ledger.limit
-            for number in np.argsort(bounds.min(axis=0)):
-                self._judge_patch(int(number), np.flatnonzero(near[:, number]), moments, obstacle, ledger)
+            rows = np.flatnonzero(obstacle.world_distance(lowest, highest) <= ledger.limit)
+            if len(rows):
+                self._judge_obstacle(rows, obstacle.world_distance(low[rows], high[rows]), moments, obstacle, ledger)
+
+    def _judge_obstacle(
+        self, rows: Ints, bounds: Floats, moments: _Moments, obstacle: Obstacle, ledger: Ledger
+    ) -> None:
+        """Enter what the surface does to an obstacle at poses `rows` (n,); no patch is nearer than `bounds` (n, P)."""
+        if ledger.least is None:  # one pose first: from then on the ledger has a limit
+            row, number = np.unravel_index(bounds.argmin(), bounds.shape)
+            self._judge_patch(int(number), rows[[row]], moments, obstacle, ledger)
+        near, nearest = bounds <= ledger.limit, bounds.min(axis=0)
+        numbers = np.flatnonzero(near.any(axis=0))
+        for number in numbers[np.argsort(nearest[numbers], kind="stable")].tolist():
+            if nearest[number] > ledger.limit:
+                return
+            self._judge_patch(number, rows[near[:, number]], moments, obstacle, ledger)
 
     def _judge_patch(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
         """Enter what a patch does to an obstacle at those poses `rows` (n,) at which it may be near."""

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.judge.pieces import pieces_of
+from elbowroom.experiment.judge.pieces import Piece, pieces_of
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.meshes.hulls import surface_of
@@ -26,11 +27,16 @@ class Obstacle:
     """An obstacle, or a piece of a mesh: the library's shape and place, and a box round it for finding what is near."""
 
     name: str
-    shape: Any  # coal.CollisionGeometry
+    made_of: Any  # coal.CollisionGeometry, or the piece
     place: Any  # coal.Transform3s
     center: Floats  # (3,) of the box round it, in the world
     to_box: Floats  # (3, 3) world to box axes
     half_size: Floats  # (3,)
+
+    @cached_property
+    def shape(self) -> Any:
+        """The library's shape; that of a piece is made when it is first asked for: most are never near."""
+        return _library_mesh(self.made_of.mesh) if isinstance(self.made_of, Piece) else self.made_of
 
     def box_distance(self, low: Floats, high: Floats) -> Floats:
         """Distance (...) from the box round the obstacle to boxes along its axes with corners `low`, `high` (..., 3).
@@ -105,7 +111,7 @@ def _obstacles(name: str, shape: Shape, origin: Floats, turn: Floats) -> Iterato
         place = coal_library().Transform3s(turn, origin)
         for piece in pieces_of(shape):
             center, to_box = origin + turn @ piece.middle, piece.to_box @ turn.T
-            yield Obstacle(name, _library_mesh(piece.mesh), place, center, to_box, piece.half_size)
+            yield Obstacle(name, piece, place, center, to_box, piece.half_size)
         return
     made, to_made = _library_shape(shape)
     place, center = coal_library().Transform3s(turn @ to_made, origin), origin + turn @ shape.middle

@@ -21,49 +21,67 @@ _FLAT = 1e-12  # square metres: a smaller triangle says nothing of how it is tur
 class Piece(NamedTuple):
     """Some triangles of a mesh, and the box round them."""
 
-    mesh: Mesh
+    whole: Mesh
+    rows: Ints  # (t,) the numbers of its triangles
     middle: Floats  # (3,) of the box, in the mesh's own axes
     to_box: Floats  # (3, 3) from these to the box's
     half_size: Floats  # (3,)
 
+    @property
+    def mesh(self) -> Mesh:
+        """These triangles by themselves."""
+        used, faces = np.unique(self.whole.faces[self.rows], return_inverse=True)
+        return Mesh(self.whole.vertices[used], faces.reshape(-1, 3))
+
+
+class _Triangles(NamedTuple):
+    """The triangles of a mesh."""
+
+    whole: Mesh
+    middles: Floats  # (T, 3)
+    areas: Floats  # (T,) twice as large
+    axes: Floats  # (T, 3, 3) rows: along the longest side, across it in the triangle, and out of it
+
 
 def pieces_of(mesh: Mesh) -> list[Piece]:
     """The mesh in pieces; each of its triangles is in one."""
-    waiting, done = [np.arange(len(mesh.faces))], list[Piece]()
+    triangles, waiting, done = _triangles(mesh), [np.arange(len(mesh.faces))], list[Piece]()
     while waiting:
         rows = waiting.pop()
-        corners = mesh.corners[rows]
-        if len(rows) == 1 or (len(rows) <= MOST and np.ptp(corners, axis=(0, 1)).max() <= _SMALL):
-            done.append(_piece(mesh, rows))
+        if len(rows) == 1 or (len(rows) <= MOST and np.ptp(mesh.corners[rows], axis=(0, 1)).max() <= _SMALL):
+            done.append(_piece(triangles, rows))
             continue
-        middles = corners.mean(axis=1)
+        middles = triangles.middles[rows]
         order = rows[np.argsort(middles[:, np.ptp(middles, axis=0).argmax()], kind="stable")]
         waiting += [order[: len(rows) // 2], order[len(rows) // 2 :]]
     return done
 
 
-def _piece(mesh: Mesh, rows: Ints) -> Piece:
-    used, faces = np.unique(mesh.faces[rows], return_inverse=True)
-    vertices = mesh.vertices[used]
-    boxes = [_box(vertices, axes) for axes in (np.eye(3), *_along_largest(mesh.corners[rows]))]
-    middle, axes, half = min(boxes, key=lambda box: float(box[2] @ np.roll(box[2], 1)))
-    return Piece(Mesh(vertices, faces.reshape(-1, 3)), middle, axes, half)
+def _triangles(mesh: Mesh) -> _Triangles:
+    corners = mesh.corners
+    sides = np.roll(corners, -1, axis=1) - corners
+    longest = sides[np.arange(len(sides)), np.linalg.norm(sides, axis=2).argmax(axis=1)]
+    out = np.cross(sides[:, 0], sides[:, 1])
+    areas = np.linalg.norm(out, axis=1)
+    axes = np.stack([longest, np.cross(out, longest), out], axis=1)
+    lengths = np.linalg.norm(axes, axis=2, keepdims=True)
+    return _Triangles(mesh, corners.mean(axis=1), areas, axes / np.where(lengths > 0.0, lengths, 1.0))
 
 
-def _box(vertices: Floats, axes: Floats) -> tuple[Floats, Floats, Floats]:
-    """The middle, the axes and the half lengths of a box round vertices (V, 3) along some axes, the rows (3, 3)."""
-    seen = vertices @ axes.T
+def _piece(triangles: _Triangles, rows: Ints) -> Piece:
+    """In a box along the mesh's axes, or along those of its largest triangle: that which is smaller."""
+    points, largest = triangles.whole.corners[rows].reshape(-1, 3), rows[triangles.areas[rows].argmax()]
+    ways = (np.eye(3), triangles.axes[largest]) if triangles.areas[largest] > _FLAT else (np.eye(3),)
+    middle, axes, half = min((_box(points, axes) for axes in ways), key=lambda box: _surface(*box[2].tolist()))
+    return Piece(triangles.whole, rows, middle, axes, half)
+
+
+def _box(points: Floats, axes: Floats) -> tuple[Floats, Floats, Floats]:
+    """The middle, the axes and the half lengths of a box round points (N, 3) along some axes, the rows (3, 3)."""
+    seen = points @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)
     return 0.5 * (low + high) @ axes, axes, 0.5 * (high - low)
 
 
-def _along_largest(corners: Floats) -> list[Floats]:
-    """Axes, the rows (3, 3), two of them in the largest triangle and one along its longest side; none if it is flat."""
-    sides = np.roll(corners, -1, axis=1) - corners  # (T, 3, 3)
-    normals = np.cross(sides[:, 0], sides[:, 1])
-    which = int(np.linalg.norm(normals, axis=1).argmax())
-    normal, longest = normals[which], sides[which, np.linalg.norm(sides[which], axis=1).argmax()]
-    if np.linalg.norm(normal) < _FLAT:
-        return []
-    normal, longest = normal / np.linalg.norm(normal), longest / np.linalg.norm(longest)
-    return [np.stack([longest, np.cross(normal, longest), normal])]
+def _surface(x: float, y: float, z: float) -> float:
+    return x * y + y * z + z * x
