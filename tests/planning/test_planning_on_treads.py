@@ -80,6 +80,21 @@ def test_who_walks_naturally_runs_into_no_part_of_the_own_body_on_treads() -> No
     assert gave_way > 0.01, "no knee came to a hand"
 
 
+def test_what_feet_stand_on_is_the_same_when_it_is_known_again() -> None:
+    """Motions that differ along one path, in the order in which a plan comes to them, against each by itself."""
+    model, body = body_model(AVATAR), LowerBody(AVATAR, STAIR.obstacles, STAIR.ground)
+    parts = own_parts(model, self_pairs(model), body_levers(AVATAR))
+    path = RootPath(0.0, STEP, body.footing.stood(around(0.5, 0.3, 0.0, up=True))[0][:20])
+    walk, together = natural_walk()(path), OwnMotion(parts, body.footing.underfoot)
+    for lifted in (0.3, 0.6, 0.3):
+        keys = walk + lifted
+        asked = path, keys, np.zeros_like(keys), walk
+        for one, other in zip(
+            together.proven(*asked), OwnMotion(parts, body.footing.underfoot).proven(*asked), strict=True
+        ):
+            np.testing.assert_array_equal(one, other)
+
+
 def even_stair(rise: float, deep: float, count: int) -> Scene:
     """A stair that begins 2 m ahead, and what it leads to."""
     boxes: list[dict[str, Any]] = []
