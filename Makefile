@@ -66,7 +66,7 @@ types: $(VENV)/developer
 
 unit: $(VENV)/installed $(VENV)/developer
 	@echo "==> Tests"
-	@$(BIN)/python -m pytest --collect-only --quiet --quiet --ignore tests/browser > $(VENV)/collected
+	@$(BIN)/python -m pytest --collect-only --quiet --quiet --ignore tests/browser > $(VENV)/collected || { cat $(VENV)/collected; exit 1; }
 	@$(BIN)/python -m pytest --ignore tests/browser -m "not long" -n 4 --dist loadfile $(ARGS)
 
 test-long: $(VENV)/installed $(VENV)/developer

@@ -10,7 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.tour.targets import random_targets
-from elbowroom.experiment.tour.tour import Shown, judged, run_tour
+from elbowroom.experiment.tour.tour import Shown, judging, run_tour
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError
@@ -89,4 +89,6 @@ def test_steps_to_a_deck_are_walked_up_and_down_and_nothing_is_touched(tmp_path:
     result = run_tour(controller, [(1.4, 0.51, 2.8), (1.4, 0.0, 0.3)], shown.append)
     assert [leg.outcome for leg in result.legs] == ["arrived"] * 2, result.legs
     assert result.legs[0].place[1] == pytest.approx(0.51, abs=0.01)
-    assert judged(shown, controller, mesh=False, progress=lambda _time: None).clean
+    judgement = judging(shown, controller, mesh=False)
+    assert len(list(judgement.parts())) > 1
+    assert judgement.verdict().clean
