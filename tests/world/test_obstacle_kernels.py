@@ -1,10 +1,15 @@
 """Every shape's kernel against a float64 twin and against coal: at random, next to touching, and where it is hard."""
 
+from collections.abc import Iterable
+from itertools import groupby
+from operator import attrgetter
+
 import coal
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from elbowroom.experiment.judge.obstacles import Obstacle
 from elbowroom.experiment.judge.obstacles import obstacles_of as judged_obstacles
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
@@ -52,21 +57,24 @@ def twin(segment: Floats, obstacles: Obstacles) -> Floats:
     return gaps
 
 
-def coal_distance(segment: Floats, radius: float, obstacle: object) -> float:
-    """Distance of a capsule, negative where they overlap, by coal."""
+def coal_distance(segment: Floats, radius: float, pieces: Iterable[Obstacle]) -> float:
+    """Distance of a capsule from an obstacle, which a mesh is in pieces, negative where they overlap, by coal."""
     length = float(np.linalg.norm(segment[3:] - segment[:3]))
     turn = quaternion.to_matrix(quaternion.between([0.0, 0.0, 1.0], segment[3:] - segment[:3]))
     place = coal.Transform3s(turn, 0.5 * (segment[:3] + segment[3:]))
-    shape, at = obstacle.shape, obstacle.place  # type: ignore[attr-defined]
-    request, result = coal.DistanceRequest(), coal.DistanceResult()
-    return float(coal.distance(coal.Capsule(radius, length), place, shape, at, request, result))
+    request, capsule = coal.DistanceRequest(), coal.Capsule(radius, length)
+    distances = [
+        coal.distance(capsule, place, piece.shape, piece.place, request, coal.DistanceResult()) for piece in pieces
+    ]
+    return float(min(distances))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_distances_are_the_twins_and_coals(kind: str) -> None:
     rng = np.random.default_rng(KINDS.index(kind))
     obstacles = obstacles_of([RANDOM[kind](rng) for _ in range(12)], rng)
-    judges = judged_obstacles(scene_with(obstacles))
+    judges = [list(pieces) for _, pieces in groupby(judged_obstacles(scene_with(obstacles)), attrgetter("name"))]
+    assert len(judges) == len(obstacles)
     segments, radius, checked = axes(rng, 80), 0.12, 0
     ours = pairwise_clearance(segments[None], [radius], obstacles.standing)[0]
     for i, segment in enumerate(segments.T):
@@ -119,7 +127,7 @@ def test_touching_or_not_is_told_next_to_touching(kind: str, gap: float) -> None
                 (obstacles.shapes[i],), center[None], obstacles.rotations[i : i + 1], ("thing",), ground=-9.0
             )
             ours = clearance_of(segment[None], [radius], one.standing)
-            theirs = coal_distance(segment, radius, judged_obstacles(scene_with(one))[0])
+            theirs = coal_distance(segment, radius, judged_obstacles(scene_with(one)))
             assert abs(theirs - sign * gap) < 1e-5
             assert (ours < 0.0) == (sign < 0.0)
             assert abs(ours - theirs) < 1e-5

@@ -19,6 +19,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
+from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
@@ -51,7 +52,7 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.root.settings import RootMotionSettings
-from elbowroom.world.ground.ground import heights_along
+from elbowroom.world.ground.ground import heights_along, heights_beside
 from elbowroom.world.obstacles.meshes.solids import inner_boxes
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
@@ -140,12 +141,14 @@ def rehearse_narrow(humanoid: Humanoid) -> None:
 
 
 def rehearse_feet(humanoid: Humanoid) -> None:
-    """Stand, glide, step and live, and look how feet will step and glide."""
-    gait, root = body_model(humanoid).gait, np.zeros(ROOT_STATE)
+    """Stand, glide, step and live, and look how feet will step and glide, and how legs turn from frame to frame."""
+    model, root = body_model(humanoid), np.zeros(ROOT_STATE)
+    gait, upper = model.gait, np.zeros(LOCAL)
     row = gliding(gait, beside(gait, root), root, 0.01)
     settled(gait, onward(gait, row, root, 0.01))
     for ahead in (steps_ahead, glides_ahead):
         ahead(gait, row, np.concatenate([[0.1], root])[None], 0.1)
+    turned_legs(model, (row, row), (upper, upper), np.array([0.5]))
     feet_standing(1.0, root[None])
     stride_length(_SPEED)
     living(body_of(gait), np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
@@ -167,6 +170,7 @@ def rehearse_ground(humanoid: Humanoid) -> None:
     footing.floors(footing.stood(states)[0])
     footing.lifted(leg_capsules(model, states), model.roots, states)
     heights_along(scene.ground, 0.0, np.array([[0.0, 0.0], [0.0, 1.0]]))
+    heights_beside(scene.ground, 0.0, 0, np.zeros((2, 2, 2)))
     on_ground(scene, RootState())
 
 
