@@ -196,6 +196,12 @@ def half_of_a_corridor(edge: float, near: float) -> Moving:
     return Moving((Track("half", box, np.zeros(1), center, np.zeros(1), Repeat.ONCE),))
 
 
+def farthest_turn(plan: RootPlan) -> float:
+    """The heading that is farthest from straight on along a path: its sign tells which shoulder goes first."""
+    headings = plan.path.states[:, 2]
+    return float(headings[np.abs(headings).argmax()])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_who_goes_past_with_one_shoulder_first_does_not_change_to_the_other(seed: int) -> None:
     """Both ways cost about the same, and where the other walks is seen a little elsewhere in every plan."""
@@ -207,8 +213,7 @@ def test_who_goes_past_with_one_shoulder_first_does_not_change_to_the_other(seed
         found = planner.candidates(state, Command(forward=0.62), 16, 0.15, 0.15 * i, (0.6, 0.35, 0.2))
         taken = next(plan for plan in found if plan.kind is RootPlanKind.EVASION)
         planner.follow(taken)
-        turned = taken.path.states[:, 2]
-        firsts.append(float(turned[np.abs(turned).argmax()]))
+        firsts.append(farthest_turn(taken))
         state = RootState(*taken.path.states[1].tolist())
     assert min(firsts) * max(firsts) > 0.0
     assert state.z > 1.2
@@ -225,8 +230,7 @@ def test_who_steers_through_a_gap_keeps_to_the_shoulder_that_goes_first(seed: in
         if taken is None:
             break
         planner.follow(taken)
-        turned = taken.path.states[:, 2]
-        firsts.append(float(turned[np.abs(turned).argmax()]))
+        firsts.append(farthest_turn(taken))
         state = RootState(*taken.path.states[1].tolist())
     assert min(firsts) * max(firsts) > 0.0
     assert state.z > 2.2

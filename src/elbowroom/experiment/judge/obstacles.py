@@ -22,6 +22,13 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
 
+def distance_between(low: Floats, high: Floats, centers: Floats, halves: Floats) -> Floats:
+    """Distance (...) of boxes with corners `low`, `high` (..., 3) from others along the same axes, metres."""
+    gap = np.maximum(np.maximum(low - centers, centers - high) - halves, 0.0)
+    distance: Floats = np.sqrt(np.einsum("...i,...i->...", gap, gap))
+    return distance
+
+
 @dataclass(frozen=True, eq=False)
 class Obstacle:
     """An obstacle, or a piece of a mesh: the library's shape and place, and a box round it for finding what is near."""
@@ -38,21 +45,22 @@ class Obstacle:
         """The library's shape; that of a piece is made when it is first asked for: most are never near."""
         return _library_mesh(self.made_of.mesh) if isinstance(self.made_of, Piece) else self.made_of
 
+    @property
+    def reach(self) -> Floats:
+        """Half lengths (3,) along the world's axes of the box along these that it lies in, metres."""
+        reach: Floats = np.abs(self.to_box.T) @ self.half_size
+        return reach
+
     def box_distance(self, low: Floats, high: Floats) -> Floats:
         """Distance (...) from the box round the obstacle to boxes along its axes with corners `low`, `high` (..., 3).
 
         Corners are in the box's frame. Whatever lies between them is at least so far from the obstacle.
         """
-        gap = np.maximum(np.maximum(low - self.half_size, -self.half_size - high), 0.0)
-        distance: Floats = np.sqrt(np.einsum("...i,...i->...", gap, gap))
-        return distance
+        return distance_between(low, high, np.zeros(3), self.half_size)
 
     def world_distance(self, low: Floats, high: Floats) -> Floats:
         """The same of boxes along the world's axes with corners `low`, `high` (..., 3) in the world; quick and wide."""
-        reach = np.abs(self.to_box.T) @ self.half_size
-        gap = np.maximum(np.maximum(low - self.center, self.center - high) - reach, 0.0)
-        distance: Floats = np.sqrt(np.einsum("...i,...i->...", gap, gap))
-        return distance
+        return distance_between(low, high, self.center, self.reach)
 
     def seen_from(self, points: Floats) -> Floats:
         """World points (..., 3) in the frame of the box round the obstacle."""
