@@ -143,3 +143,27 @@ def test_a_program_whose_kernels_cannot_be_written_runs(tmp_path: Path) -> None:
     toy(tmp_path)
     most = 100  # bytes that a file may have
     assert compilations(tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))) == "1"
+
+
+def test_a_kernel_that_was_read_is_taken_in_by_one_that_is_compiled(
+    tmp_path: Path,
+) -> None:
+    place = toy(tmp_path)
+    assert compilations(tmp_path) == "1"
+    caller = "from elbowroom.jit import exact_kernel\nfrom toy import double\n\n\n@exact_kernel\ndef fourfold(x):\n"
+    (tmp_path / "caller.py").write_text(f"{caller}    return double(double(x))\n")
+    program = f"""
+import sys
+sys.path.insert(0, {str(tmp_path)!r})
+from toy import double
+assert double(4.0) == 8.0
+(found,) = double.overloads.values()
+print(type(found.library._shared_module).__name__)
+from caller import fourfold
+assert fourfold(4.0) == 16.0
+print(sum(double.stats.cache_misses.values()), sum(fourfold.stats.cache_misses.values()))
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(place)}
+    call = [sys.executable, "-c", program]
+    runs = [subprocess.run(call, env=environment, check=True, capture_output=True, text=True).stdout for _ in range(2)]
+    assert [run.split() for run in runs] == [["UnreadModule", "0", "1"], ["UnreadModule", "0", "0"]]

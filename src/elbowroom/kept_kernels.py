@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from elbowroom.kernel_bitcode import leave_unread
 from elbowroom.kernel_turns import Turn
 
 _UNREADABLE = (OSError, ValueError, TypeError)
@@ -55,6 +56,7 @@ class KeptKernel:
                 found = self._cache.load_overload(signature, context)
                 if found is not None and not known:
                     note(self._folder, self._name)
+                leave_unread(found)
                 return found
         forget(self._folder, self._name)
         return None
