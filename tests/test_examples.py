@@ -46,11 +46,13 @@ def test_example(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
         assert words in told
 
 
+@pytest.mark.long
 def test_an_avatars_file_can_be_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     run("own_avatar", monkeypatch, str(stock_avatar_path()))
     assert "VRM 1.0" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_the_scene_is_kept_in_a_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

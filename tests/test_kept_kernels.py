@@ -127,9 +127,8 @@ def test_a_real_kernel_is_kept_checked_and_made_anew(tmp_path: Path) -> None:
     name = name_of(tmp_path / "toy.py", "double", 4)
     (folder,) = {file.parent for file in place.rglob("*.sum")}
     assert {file.name for file in folder.iterdir()} == {f"{name}.nbi", f"{name}.1.nbc", f"{name}.sum"}
-    for file in sorted(folder.iterdir()):
-        flip(file)
-        assert compilations(tmp_path) == "1"
+    flip(folder / f"{name}.1.nbc")
+    assert compilations(tmp_path) == "1"
     assert compilations(tmp_path) == "0"
 
 

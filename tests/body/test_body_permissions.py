@@ -49,6 +49,7 @@ def test_a_vrm_is_never_changed(recipe: Recipe) -> None:
     assert load_humanoid_bytes(data, "mine.vrm").glb == data
 
 
+@pytest.mark.long
 @needs_shared
 def test_vrms_of_others_are_never_changed() -> None:
     assert SHARED is not None

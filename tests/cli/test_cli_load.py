@@ -30,6 +30,7 @@ def test_it_is_told_in_two_lines() -> None:
     assert "9.0 % of one core and 7.0 MB each" in text
 
 
+@pytest.mark.long
 def test_users_come_steer_and_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(load, "_SETTLE", 0.5)
     monkeypatch.setattr(load, "_AGAIN", 0.1)

@@ -38,6 +38,7 @@ def done(scene: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, d
     return out, json.loads(result.stdout)
 
 
+@pytest.mark.long
 def test_it_writes_one_report_a_csv_and_a_json(done: tuple[Path, dict[str, object]]) -> None:
     out, told = done
     assert results(out) == FILES

@@ -12,6 +12,7 @@ import pytest
 PATIENCE = 60.0  # seconds
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are looked up in /proc")
 def test_the_server_of_doctor_ends_with_it() -> None:
     call = [sys.executable, "-m", "elbowroom", "doctor", "--session", "--scene", "a"]

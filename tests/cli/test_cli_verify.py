@@ -53,6 +53,7 @@ def test_a_run_that_touches_ends_with_1_and_says_what(touching: Path) -> None:
     assert result.stderr == ""
 
 
+@pytest.mark.long
 def test_json_tells_all(touching: Path) -> None:
     result = RUNNER.invoke(app, ["verify", str(touching), "--rate", "120", "--json"])
     assert result.exit_code == 1

@@ -15,6 +15,7 @@ from elbowroom.cli.main import app
 from elbowroom.control.recordings import recording
 from elbowroom.control.recordings import replay as replays
 from elbowroom.experiment.crossing import CrossingResult
+from sampled import sampled
 
 RUNNER = CliRunner()
 SCENE = {
@@ -93,7 +94,9 @@ def test_replay_tells_it_as_json(run: tuple[Path, Path, dict[str, object]]) -> N
     assert told["first_difference"] is None
 
 
-@pytest.mark.parametrize(("cut", "told"), [(3, "in its last bytes"), (16, "without its end mark"), (400, "cut off")])
+@pytest.mark.parametrize(
+    ("cut", "told"), sampled([(400, "cut off"), (3, "in its last bytes"), (16, "without its end mark")])
+)
 def test_replay_of_a_cut_recording_says_what_is_missing_and_ends_with_1(
     run: tuple[Path, Path, dict[str, object]], tmp_path: Path, cut: int, told: str
 ) -> None:

@@ -11,6 +11,7 @@ from elbowroom.clips.planning_motion import planning_motion
 from elbowroom.clips.swing import resting, swing_of
 from elbowroom.errors import InputError
 from made_walk import FPS, PACE, SPEED, made_walk, upper_at
+from sampled import sampled
 from shared_data import SHARED, needs_shared
 
 
@@ -77,7 +78,7 @@ WALKS = {
 
 
 @needs_shared
-@pytest.mark.parametrize("name", WALKS)
+@pytest.mark.parametrize("name", sampled(WALKS, 3))
 def test_recorded_walks_give_a_swing(name: str) -> None:
     assert SHARED is not None
     clip = Clip.load(f"{SHARED}/motions/{name}")

@@ -10,9 +10,10 @@ from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import EXACT, FIGURE6
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 
-@pytest.mark.parametrize(("planner", "scene"), [(EXACT, "d"), (FIGURE6, "a")])
+@pytest.mark.parametrize(("planner", "scene"), sampled([(EXACT, "d"), (FIGURE6, "a")]))
 def test_nothing_is_left_of_a_walk_and_its_scene(planner: str, scene: str) -> None:
     _walk(planner, scene)  # what is made once and stays
     gc.collect()

@@ -116,6 +116,7 @@ def test_only_what_is_upright_and_small_is_pushed_and_only_over_the_ground() -> 
     assert abs(walker.hand.place[0]) <= 0.5 * walker.scene.ground_size[0] + abs(walker.scene.ground_center[0])
 
 
+@pytest.mark.long
 def test_a_push_is_recorded_played_again_bit_for_bit_and_told_as_a_track(tmp_path: Path) -> None:
     walker, path = controller(), tmp_path / "push.elbow"
     shown = []

@@ -308,6 +308,7 @@ def test_the_step_record_is_fixed() -> None:
     assert STEP.itemsize == 522
 
 
+@pytest.mark.long
 def test_a_walk_in_a_place_with_steps_replays_without_its_file(tmp_path: Path) -> None:
     place = write_place(tmp_path / "rooms.glb", {**TWO_ROOMS, "Podium": ((0, 0.08, 6.5), (4.0, 0.16, 2.0))})
     scene = Scene.load(place, PlaceOptions(drop=("Door_*",)))

@@ -18,6 +18,7 @@ from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 
@@ -64,7 +65,7 @@ def configurations(frames: tuple[Frame, ...]) -> Floats:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", sampled(SCENES, 2))
 def test_joints_keep_their_speeds_and_accelerations(scene: str, seed: int | None) -> None:
     """At every moment, also where a plan begins in the middle of a motion because the command changed."""
     frames = walk(scene, seed)

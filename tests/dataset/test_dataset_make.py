@@ -149,6 +149,7 @@ def test_strangers_read_the_same(made: Path) -> None:
     assert pq.read_schema(next(made.glob("*.parquet"))).equals(SCHEMA)
 
 
+@pytest.mark.long
 def test_hugging_face_reads_the_same(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its library, in a process of its own: it keeps what it read in a cache, and asks nobody outside."""
     monkeypatch.setenv("HF_HOME", str(tmp_path))
@@ -212,6 +213,7 @@ def test_the_report_counts_every_frame(made: Path, tmp_path: Path) -> None:
     assert "http" not in text.replace("http://www.w3.org", "")
 
 
+@pytest.mark.long
 def test_motion_is_small(tmp_path: Path) -> None:
     """At most 6 kB a second for configuration, contacts and clearance."""
     make_dataset(DatasetSpec(walks=1, seconds=6.0, places=("gauntlet:3",)), tmp_path, Here())

@@ -48,6 +48,7 @@ def test_the_hot_loop_is_vector_code_as_wide_as_the_processor_has() -> None:
     assert vector_bits() == expected, "the clearance loop lost its vector code: expect a fraction of the speed"
 
 
+@pytest.mark.long
 def test_command_prints_every_figure() -> None:
     result = CliRunner().invoke(
         app, ["bench", "collision", "--postures", "64", "--rounds", "1", "--json"], standalone_mode=False

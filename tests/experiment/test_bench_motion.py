@@ -82,6 +82,7 @@ def test_a_gap_is_as_wide_as_it_says() -> None:
     assert shoulder_width(Humanoid.default()) == pytest.approx(0.45, abs=0.01)
 
 
+@pytest.mark.long
 def test_the_command_prints_one_object_and_draws(tmp_path: Path) -> None:
     arguments = ["bench", "motion", "--case", "steady", "--speeds", "1.1", "--json", "--plots", str(tmp_path), "-q"]
     result = CliRunner().invoke(app, arguments)

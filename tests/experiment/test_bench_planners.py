@@ -53,6 +53,7 @@ def test_motion_goes_forward_in_time_and_no_faster_than_people(problem: Crossing
     assert not problem.is_slow_enough(a, b)
 
 
+@pytest.mark.long
 def test_general_planner_finds_a_motion_that_the_judge_finds_free() -> None:
     pytest.importorskip("ompl", reason="OMPL is not installed")
     humanoid, scene = Humanoid.default(), Scene.load("b")

@@ -8,6 +8,7 @@ from elbowroom.body.loading.avatar_file import load_humanoid
 from elbowroom.experiment.crossing import controller_for, run_crossing
 from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.world.scene import Scene
+from sampled import sampled
 from shared_data import SHARED, needs_shared
 
 HANIM = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []
@@ -23,7 +24,7 @@ def assert_straight(path: Path) -> None:
 
 
 @needs_shared
-@pytest.mark.parametrize("path", HANIM, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sampled(HANIM), ids=lambda path: path.name)
 def test_h_anim_crosses_scene_a_straight(path: Path) -> None:
     assert_straight(path)
 

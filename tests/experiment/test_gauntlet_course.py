@@ -18,6 +18,7 @@ from elbowroom.experiment.gauntlet.placing import Placed
 from elbowroom.world.scene import Scene
 from gauntlet_courses import SAMPLE, course, stock
 from odd_bodies import Body, box_body, ring_body
+from sampled import sampled
 
 # A body of average proportions: these change only with the generator itself, and then the gauntlet is another one.
 PINNED = {
@@ -41,7 +42,7 @@ def test_courses_are_the_same_on_every_machine(level: int, seed: int) -> None:
     assert maker.course(level, seed).fingerprint == PINNED[level, seed]
 
 
-@pytest.mark.parametrize(("level", "seed"), PINNED_STOCK)
+@pytest.mark.parametrize(("level", "seed"), sampled(PINNED_STOCK, 2))
 def test_courses_of_the_stock_avatar_are_the_same_on_every_machine(level: int, seed: int) -> None:
     assert course(level, seed).fingerprint == PINNED_STOCK[level, seed]
 

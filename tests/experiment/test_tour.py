@@ -84,6 +84,7 @@ def test_costs_are_told_by_median_and_tail() -> None:
     assert Milliseconds.of(np.arange(101.0)) == Milliseconds(101, 50.0, 99.0, 100.0)
 
 
+@pytest.mark.long
 def test_the_command_tells_it_as_json() -> None:
     done = CliRunner().invoke(app, ["tour", "a", "--targets", "2", "--seed", "3", "--json", "-q"])
     assert done.exit_code == 0, done.output

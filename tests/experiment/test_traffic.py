@@ -87,6 +87,7 @@ def test_who_walks_lets_the_crossing_box_pass() -> None:
     assert frames[-1].root[1] > 3.0
 
 
+@pytest.mark.long
 def test_what_leaves_no_way_out_hits_and_says_so() -> None:
     """A wall that sweeps the whole floor, faster than anyone walks."""
     centers = np.array([[0.0, 1.0, 3.0], [0.0, 1.0, -6.0]])

@@ -42,7 +42,7 @@ def random_lattice(seed: int, size: int = 3, extras: int = 2, horizon: int = HOR
         cost=cost,
         masks=np.where(rng.random(horizon) < 0.6, np.arange(horizon), -1),
         closed=closed,
-        previous=rng.integers(0, size, horizon + 1).astype(np.int32),
+        previous=rng.integers(0, size, horizon + 1),
         step=STEP,
         weight=WEIGHT,
     )

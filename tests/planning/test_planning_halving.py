@@ -24,6 +24,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
 from feet_walks import alive, path, random_wish, walked
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 DENSE = 2000  # looks in an interval
@@ -195,7 +196,7 @@ def judged(mine: Floats, theirs: Floats) -> float:
     return float(least)
 
 
-@pytest.mark.parametrize("walks", [False, True])
+@pytest.mark.parametrize("walks", sampled([True, False]))
 def test_two_avatars_shown_as_free_of_each_other_are_so_between_the_frames(walks: bool) -> None:
     rng, shares, found = np.random.default_rng(2), np.linspace(0.0, 1.0, 41), [0, 0]
     check = BodyCheck(HUMANOID, Scene.load("empty"))

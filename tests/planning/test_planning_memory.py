@@ -25,6 +25,7 @@ from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.shared import Shared
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 T, QUEUE = 0.15, 5  # seconds, key frames
 
@@ -74,7 +75,7 @@ def posts(seed: int) -> Scene:
     return replace(Scene.load("empty"), obstacles=boxes)
 
 
-@pytest.mark.parametrize("where", ["c", "d", "doorway", "posts 1", "posts 2"])
+@pytest.mark.parametrize("where", sampled(["d", "posts 1", "c", "doorway", "posts 2"], 2))
 def test_without_what_was_found_out_the_same_paths_are_found(where: str, humanoid: Humanoid) -> None:
     scene = posts(int(where[-1])) if where.startswith("posts") else Scene.load(where)
     known, anew = (

@@ -21,6 +21,7 @@ from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Box
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ def raised(states: Floats) -> Floats:
     return higher
 
 
-@pytest.mark.parametrize("name", ["a", "d", *(pytest.param(name, marks=pytest.mark.long) for name in "bc")])
+@pytest.mark.parametrize("name", sampled("abcd"))
 def test_no_contact_of_legs_is_left_out_and_the_slab_is_none(name: str) -> None:
     scene, rng = Scene.load(name), np.random.default_rng(ord(name))
     slab = on_slab(scene.obstacles)
@@ -73,7 +74,7 @@ def test_no_contact_of_legs_is_left_out_and_the_slab_is_none(name: str) -> None:
     assert looked_at <= 1.3 * before + 8
 
 
-@pytest.mark.parametrize("name", ["a", "b", "doorway"])
+@pytest.mark.parametrize("name", sampled(["a", "b", "doorway"]))
 def test_ways_are_planned_there_as_on_the_plane(name: str) -> None:
     scene = Scene.load(name)
     slab = replace(scene, obstacles=on_slab(scene.obstacles))
@@ -90,6 +91,7 @@ def test_ways_are_planned_there_as_on_the_plane(name: str) -> None:
             np.testing.assert_allclose(other.path.states[:, HEIGHT], HIGH, atol=1e-6)
 
 
+@pytest.mark.long
 def test_frames_are_as_far_from_all_but_the_slab() -> None:
     scene, rng = Scene.load("d"), np.random.default_rng(4)
     slab = replace(scene, obstacles=on_slab(scene.obstacles))

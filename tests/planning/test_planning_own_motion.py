@@ -87,6 +87,7 @@ def test_what_is_proven_is_so_at_every_moment_and_no_contact_is_made_up(wild: fl
     assert free > 5 or wild
 
 
+@pytest.mark.long
 def test_legs_are_where_the_ground_has_them_at_every_moment() -> None:
     treads = [{"type": "box", "center": [0.0, 0.1 * n, 0.3 * n], "size": [3.0, 0.2 * n, 0.3]} for n in range(1, 9)]
     footing = Footing(MODEL, Scene.of("stair", treads, finish=(0.0, 3.0)).ground)

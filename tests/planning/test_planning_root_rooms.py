@@ -18,6 +18,7 @@ from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about, joined, span_of
 from elbowroom.world.scene import Scene
+from sampled import sampled
 from shapes import stacked
 
 Floats = NDArray[np.float64]
@@ -126,7 +127,7 @@ def test_boxes_that_pass_lower_the_room_and_leave_nothing_behind() -> None:
     np.testing.assert_array_equal(room_among(boxes, NOTHING).clear, before.clear)
 
 
-@pytest.mark.parametrize("name", ["doorway", "c", "traffic"])
+@pytest.mark.parametrize("name", sampled(["doorway", "c", "traffic"]))
 def test_who_knows_nothing_of_the_plans_before_finds_the_same_paths(name: str) -> None:
     """A walk whose planner keeps what it found, against a planner made anew for each plan."""
     scene = Scene.load(name)

@@ -35,6 +35,7 @@ from elbowroom.planning.model.self_pairs import (
     self_pairs,
 )
 from elbowroom.planning.root.path import RootPath
+from sampled import sampled
 from shared_data import SHARED, needs_shared
 
 Floats = NDArray[np.float64]
@@ -134,7 +135,7 @@ def _avatars() -> list[Path]:
 
 
 @needs_shared
-@pytest.mark.parametrize("file", _avatars(), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", sampled(_avatars(), 3), ids=lambda file: file.stem)
 def test_the_natural_walk_of_real_avatars_is_free_of_itself(file: Path) -> None:
     assert natural_clearance(Humanoid.load(file)) > 0.5 * OVERLAP
 

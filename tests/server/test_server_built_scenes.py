@@ -95,6 +95,7 @@ def test_a_scene_may_not_be_larger_than_what_a_page_builds(library: Library) -> 
     assert "512 KiB" in answer.json()["error"]
 
 
+@pytest.mark.long
 def test_an_avatar_walks_unseen(library: Library) -> None:
     walked = ask(library, "POST", "/api/walks?avatar=stock", json=document(BOX)).json()
     assert walked["decided"]

@@ -61,6 +61,7 @@ def test_a_performance_begins_at_the_start_and_keeps_the_whole_body() -> None:
     assert quaternion.angle_between(moment.rotations[knee], own[frame]) < 1e-6
 
 
+@pytest.mark.long
 def test_as_planned_it_shows_the_planning_configuration_alone(library: Library) -> None:
     walk = clip_walk(library, as_planned=True)
     walk.step(Command(forward=1.0), 0.4)

@@ -120,6 +120,7 @@ def test_the_pieces_leave_the_server_nothing_to_compile(tmp_path: Path) -> None:
     assert _compiles(_START, tmp_path) == []
 
 
+@pytest.mark.long
 def test_a_process_compiles_what_it_is_told_and_says_when_it_is_done() -> None:
     told = subprocess.run(command(), input="product\n", capture_output=True, text=True, check=False).stdout
     assert told.endswith("\n")

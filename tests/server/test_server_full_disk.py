@@ -24,6 +24,7 @@ def sent(server: LiveServer, file: Path) -> tuple[int, dict[str, object]]:
         return refusal.code, json.load(refusal)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="bounds of another process are set on Linux only")
 def test_a_server_without_room_refuses_files_and_takes_them_again_when_there_is() -> None:
     avatar = stock_avatar_path()

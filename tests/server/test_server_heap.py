@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 from elbowroom.cli.doctor.session_cost import memory_budget
 from elbowroom.server.heap import HandingBack, settle, share_one_heap
@@ -41,6 +42,7 @@ def test_the_budget_counts_the_process_once_and_every_session() -> None:
     assert four - one == 3.0 * (memory_budget(2) - one)
 
 
+@pytest.mark.long
 def test_who_plays_in_a_stock_scene_does_not_pay_for_scipy() -> None:
     """It takes a tenth of the server's own memory, and only places made of triangles need it."""
     code = """

@@ -116,6 +116,7 @@ def test_a_recording_of_an_avatar_that_is_not_here_is_shown_on_the_stock_one(
     assert posed_run(file, known).stand_in == ""
 
 
+@pytest.mark.long
 def test_a_recording_named_on_the_command_line_is_what_the_page_opens_with(walk: tuple[Path, list[Frame]]) -> None:
     file, shown = walk
     with closing(library_of(Recording(file), None)) as library, running(library) as url:
@@ -125,6 +126,7 @@ def test_a_recording_named_on_the_command_line_is_what_the_page_opens_with(walk:
     assert frames[-1].z == pytest.approx(shown[-1].root[1], abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_run_in_a_place_is_shown_by_its_model(tmp_path: Path) -> None:
     """By the one that this server shows, or the one that lies beside the recording; else by its triangles."""
     model = write_place(tmp_path / "rooms.glb")

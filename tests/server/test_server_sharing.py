@@ -31,6 +31,7 @@ def two() -> Iterator[tuple[str, str]]:
         yield first, second
 
 
+@pytest.mark.long
 def test_an_avatar_is_found_by_the_other_server(two: tuple[str, str]) -> None:
     first, second = two
     data = stock_avatar_path().read_bytes()

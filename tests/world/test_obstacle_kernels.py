@@ -18,6 +18,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import each_of, joined
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Shape, Sphere
 from judged_bodies import scene_with
+from sampled import sampled
 from shapes import RANDOM, box_hull, obstacles_of, random_hull, some_obstacles
 
 Floats = NDArray[np.float64]
@@ -93,7 +94,7 @@ def test_distances_are_the_twins_and_coals(kind: str) -> None:
     assert np.any(ours < 0.0)
 
 
-@pytest.mark.parametrize("name", HARD)
+@pytest.mark.parametrize("name", sampled(HARD, 8))
 def test_hard_shapes(name: str) -> None:
     """From a place on their surface: half of the axes touch or nearly; large ones have large coordinates."""
     rng = np.random.default_rng(len(name))

@@ -267,6 +267,7 @@ def test_what_is_no_model_is_refused(file: str) -> None:
         read_place(SHARED / "scenes" / file)
 
 
+@pytest.mark.long
 @needs_shared
 def test_the_house_has_two_floors_and_its_doors_open() -> None:
     assert SHARED is not None

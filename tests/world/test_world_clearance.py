@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 
@@ -69,7 +70,7 @@ def random_segments(rng: np.random.Generator, capsules: int, count: int) -> Floa
     return np.concatenate([starts, starts + steps], axis=1).astype(np.float32).astype(np.float64)
 
 
-@pytest.mark.parametrize("count", [1, 15, 16, 17, 40])
+@pytest.mark.parametrize("count", sampled([1, 16, 17, 15, 40], 3))
 def test_pairs_equal_the_naive_twin(count: int) -> None:
     rng = np.random.default_rng(count)
     boxes, segments, radii = random_boxes(rng, 4), random_segments(rng, 3, count), rng.uniform(0.03, 0.2, 3)

@@ -13,6 +13,7 @@ from elbowroom.world.obstacles.rows import corners_of
 from elbowroom.world.obstacles.shapes import Box, extents_of
 from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 
 def track(repeat: Repeat, yaws: tuple[float, float, float] = (0.0, 0.4, -0.3)) -> Track:
@@ -46,7 +47,7 @@ def test_what_moves_stands_at_its_pose() -> None:
         np.testing.assert_allclose(moving.at(time).rows, there.rows, atol=1e-12)
 
 
-@pytest.mark.parametrize("repeat", list(Repeat))
+@pytest.mark.parametrize("repeat", sampled(Repeat))
 def test_a_sweep_holds_every_corner_at_every_time_and_little_else(repeat: Repeat) -> None:
     rng = np.random.default_rng(4)
     moving = Moving((track(repeat, (0.0, 2.0, -1.0)),))

@@ -267,8 +267,10 @@ class BodyCheck:
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
-        posed, floors = capsules_of(self.soles.body, root, upper) if axes is None else axes, self.soles.floors(root)
-        pose = _Pose(root, upper, posed, floors, self._gaps(posed, root, floors))
+        if axes is None:
+            axes = capsules_of(self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper))
+        floors = self.soles.floors(root)
+        pose = _Pose(root, upper, axes, floors, self._gaps(axes, root, floors))
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 

@@ -93,7 +93,7 @@ class LowerBody:
         Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground.
         More than `farthest` metres are not told apart.
         """
-        return room_at(self.legs, among, states, spare, farthest)
+        return room_at(self.legs, among, np.ascontiguousarray(states), spare, farthest)
 
     def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:
         """Clearance (N,) of the stance capsule at `places` (N, 2) on a way over the ground that begins at a height.

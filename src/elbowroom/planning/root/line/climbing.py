@@ -55,7 +55,8 @@ def steep_places(ground: Ground, places: Floats, start: tuple[float, float, floa
         return NONE_SLOW
     x, height, z = start
     here = int(np.argmin(np.hypot(places[:, 0] - x, places[:, 1] - z)))
-    behind, ahead = heights_along(ground, height, places[here::-1]), heights_along(ground, height, places[here:])
+    back = np.ascontiguousarray(places[here::-1])
+    behind, ahead = heights_along(ground, height, back), heights_along(ground, height, places[here:])
     heights = np.concatenate([behind[:0:-1], ahead])
     places, heights = places[np.isfinite(heights)], heights[np.isfinite(heights)]
     if len(places) < 2:
