@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize
 
 from elbowroom.body.fitting.nelder_mead import Ends, Held, least_volume, volume
+from sampled import sampled
 
 SIZE, SPREAD = 1e-4, 1e-8
 
@@ -29,7 +30,7 @@ def test_it_finds_what_scipy_finds_to_the_last_bit(seed: int, evaluations: int) 
     assert least_volume(simplex, held, Ends(evaluations, SIZE, SPREAD)).tobytes() == judged.tobytes()
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), 4))
 def test_the_volume_is_that_of_the_capsule_that_holds_so_many_points(seed: int) -> None:
     simplex, held = some(seed)
     start, end = simplex[1, :3], simplex[1, 3:]

@@ -11,6 +11,7 @@ from elbowroom.experiment.motion.angles import leg_angles
 from elbowroom.experiment.motion.walked import posed
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ def beside_smooth(values: Floats) -> float:
     return float(np.abs(values - savgol_filter(values, 9, 3)).max())
 
 
-@pytest.mark.parametrize("name", WAYS)
+@pytest.mark.parametrize("name", sampled(WAYS, 3))
 def test_knees_do_not_snap_and_hips_do_not_jolt(name: str) -> None:
     commands, frames = WAYS[name]
     controller, shown = Controller(AVATAR, Scene.load("empty")), []

@@ -105,7 +105,8 @@ def test_odd_rigs_are_posed_as_in_a_viewer(recipe: dict[str, object]) -> None:
 
 @needs_shared
 @pytest.mark.parametrize(
-    "name", ["vrm0/Godette_vrm_v4.vrm", "vrm1/debug_robot.vrm", "glb/m2m_human-male.glb", "glb/KayKit_Knight.glb"]
+    "name",
+    sampled(["vrm0/Godette_vrm_v4.vrm", "vrm1/debug_robot.vrm", "glb/m2m_human-male.glb", "glb/KayKit_Knight.glb"]),
 )
 def test_avatars_of_others_are_posed_as_in_a_viewer(name: str) -> None:
     assert SHARED is not None

@@ -17,6 +17,7 @@ from elbowroom.planning.narrow.gap import Gap, gap_ahead
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 AVATAR = Humanoid.default()
 FIGURE = figure_of(AVATAR, body_model(AVATAR))
@@ -79,7 +80,7 @@ def test_what_is_no_gap_is_none() -> None:
     assert found(Scene.of("wall", wall, start=(60.0, 60.0), finish=(0.0, 50.0)), line) is None
 
 
-@pytest.mark.parametrize(("slant", "aside"), [(8.0, 0.0), (16.0, -0.1), (25.0, 0.1), (40.0, 0.0)])
+@pytest.mark.parametrize(("slant", "aside"), sampled([(16.0, -0.1), (40.0, 0.0), (8.0, 0.0), (25.0, 0.1)], 2))
 def test_a_door_is_passed_at_a_slant(slant: float, aside: float) -> None:
     heading = math.radians(slant)
     line = line_to(0.0, 2.2, heading, 2.2, aside)

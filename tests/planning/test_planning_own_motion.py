@@ -20,6 +20,7 @@ from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.ground.ground import PLAIN
 from elbowroom.world.scene import Scene
+from sampled import sampled
 
 Floats = NDArray[np.float64]
 T, LOOKS, FAR = 0.15, 2000, 99  # seconds, of a key interval; in it; so many key intervals ahead
@@ -69,7 +70,7 @@ def looked_at(path: RootPath, keys: Floats, rates: Floats, k: int, footing: Foot
     return gaps
 
 
-@pytest.mark.parametrize(("wild", "depth"), [(0.0, 0.0), (0.3, 0.0), (0.0, 0.6)])
+@pytest.mark.parametrize(("wild", "depth"), sampled([(0.3, 0.0), (0.0, 0.0), (0.0, 0.6)]))
 def test_what_is_proven_is_so_at_every_moment_and_no_contact_is_made_up(wild: float, depth: float) -> None:
     rng, free, touching, near = np.random.default_rng(5), 0, 0, 0
     for seed in range(9):

@@ -31,6 +31,7 @@ from elbowroom.server.stores import avatar_store, uploads
 from elbowroom.server.stores.library import Library
 from elbowroom.server.wire.codec import plain
 from live_session import running
+from sampled import sampled
 from sent_files import add_avatar
 
 LOCAL = "http://127.0.0.1:8765"
@@ -243,7 +244,9 @@ def test_a_dropped_file_is_in_no_menu_but_its_own(page: Page, library: Library) 
     library.avatars.check(avatar["id"])  # whoever is told the id may use it
 
 
-@pytest.mark.parametrize("data", [b"", b"glTF", b"{}", b"\x00" * 1000, b'{"asset": {"version": "2.0"}}', b"PK\x03\x04"])
+@pytest.mark.parametrize(
+    "data", sampled([b"", b'{"asset": {"version": "2.0"}}', b"glTF", b"{}", b"\x00" * 1000, b"PK\x03\x04"], 2)
+)
 def test_a_file_that_is_no_avatar_gets_one_clear_line(page: Page, data: bytes) -> None:
     answer = page.post("/api/avatars?name=broken.vrm", content=data)
     assert answer.status_code == 422
