@@ -59,3 +59,14 @@ def test_a_path_along_a_way_goes_on_as_it_was_round_the_corner_and_stands_at_the
     assert math.hypot(state.forward, state.lateral) < 0.1
     corner = min(math.dist(place, WAY[1]) for place in walked)
     assert corner < 0.4
+
+
+def test_a_slower_walk_along_a_way_loses_what_it_is_slower_by() -> None:
+    """Else it would be taken for the path as commanded, and be searched for anew at every key frame."""
+    planner, command = (
+        RootPlanner(Humanoid.default(), Scene.load("empty")),
+        Command(forward=1.0, direction=0.0, way=WAY),
+    )
+    start = RootState(forward=1.1)
+    lost = [planner.plan(start, command, 16, INTERVAL, pace=pace).lost for pace in (1.0, 0.6, 0.35)]
+    assert lost == pytest.approx([0.0, 0.4 * 16 * INTERVAL, 0.65 * 16 * INTERVAL], abs=0.01)

@@ -122,11 +122,12 @@ class ExactPlanner:
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
 
-        One that evades something is kept for a while, and then planned anew; a slower one is planned anew at once.
+        One that evades something or is slower is kept for a while, and then planned anew; one that the legs alone make
+        slower is planned anew at once.
         """
         horizon, known = self._horizon(query), left.root.path.horizon
         if not _is_commanded(left, root_planner):
-            kept = left.root.kind is RootPlanKind.EVASION and known >= horizon - self._spare(query)
+            kept = left.root.kind is not RootPlanKind.SHORTENED and known >= horizon - self._spare(query)
             return left if kept else None
         if known >= horizon:
             return left

@@ -158,6 +158,7 @@ class RootPaths:
         lost = self._lost(asked, line, speed, answer)
         if answer.likewise is not None:
             lost = max(_walked(answer.likewise) - _walked(answer.states), 0.0) / max(speed, SLOW)
+            lost += (1.0 - pace) * asked.horizon * asked.interval
             lost = crowded(self.settings, lost, line, answer.states, query.around, self._figure)
         return _plan(asked, answer, query.checks - before, began, lost)
 
