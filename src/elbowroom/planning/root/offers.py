@@ -19,13 +19,14 @@ class Offer(NamedTuple):
     plan: RootPlan
     memory: RootMemory
 
-    def later(self, time: float) -> "Offer":
-        """The same at another time, for which nothing was searched."""
+    def later(self, time: float, *, anew: bool = False) -> "Offer":
+        """The same at another time, for which nothing was searched, or all of it `anew`."""
         path, out = replace(self.plan.path, start_time=time), self.memory.way_out
         passed = time - self.plan.path.start_time
         if out is not None:
             out = out._replace(path=replace(out.path, start_time=out.path.start_time + passed))
-        return Offer(self.plan.going_on(path), self.memory._replace(way_out=out))
+        plan = self.plan._replace(path=path) if anew else self.plan.going_on(path)
+        return Offer(plan, self.memory._replace(way_out=out))
 
 
 class _Offers(NamedTuple):
@@ -58,4 +59,4 @@ class OffersFromHere:
             yield offer.later(asked.start_time)
         for offer in more:
             made.append(offer)
-            yield offer.later(asked.start_time)
+            yield offer.later(asked.start_time, anew=True)

@@ -70,6 +70,7 @@ class RootPaths:
         self.others = Moving()
         self._slow_legs: tuple[Corners, dict[int, Floats]] = (), {}
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
+        self._checks = 0  # of all queries before the last one
 
     @property
     def moving(self) -> Moving:
@@ -90,10 +91,16 @@ class RootPaths:
     def others(self, others: Moving) -> None:
         self._others, self._moving = others, self._scenes + others
 
+    @property
+    def checks(self) -> int:
+        """The number of postures and places whose clearance was computed since it was made."""
+        return self._checks + (0 if self._last is None else self._last[1].checks)
+
     def _query(self, asked: Asked) -> RootQuery:
         """The paths from one start; the same while the same is asked for."""
         key = (asked.start, *asked[2:], self._others)
         if self._last is None or self._last[0] != key:
+            self._checks = self.checks
             _, _, horizon, interval, start_time = asked
             around = MovingAround(self._check.body, self._moving, start_time, horizon, interval)
             reach = self._reach(horizon * interval)

@@ -101,14 +101,15 @@ class WayOutFinder:
         With each the whole path over the steps and on, and how many key intervals the steps take.
         """
         beyond = line.coordinates(asked.start.x, asked.start.z)[0] + self.settings.gain
-        grids = self.settings.grids
+        grids, before = self.settings.grids, self._paths.checks
         for place in islice(self._places(asked), self.settings.free):
             at, evading = asked._replace(start=place.end), place.roomy and grids > 0
             grids -= evading
             for plan in self._onward(at, line, evading=evading):
                 x, z = plan.path.states[-1, :2].tolist()
                 if plan.kind is not RootPlanKind.STOPPED and line.coordinates(x, z)[0] > beyond:
-                    yield _joined(asked, place, plan)
+                    yield _joined(asked, place, plan._replace(checks=self._paths.checks - before))
+                    before = self._paths.checks
                     break
 
     def _places(self, asked: Asked) -> Iterator[_Place]:

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from elbowroom.planning.command import Command
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.result import LocalPlan
@@ -14,10 +15,11 @@ _NEAR = 1e-6  # metres, radians: who has moved by less stands where he stood
 # Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
 # path for the upper body, the tables of all groups together, a place of the root.
 _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
-# A path and a place where the ground is uneven: there it is looked up what each foot stands on.
-_PATH_UNEVEN, _PLACE_UNEVEN = 700_000, 600
-# Work of a plan after which nothing is begun but a safe end: of who stands, of who walks, and in a hurry.
-_MOST_STANDING, _MOST, _MOST_IN_A_HURRY = 3e6, 2e6, 8e5
+_PLACE_UNEVEN = 600  # a place where the ground is uneven: there it is looked up what each foot stands on
+# Work of a plan after which nothing is begun but a safe end: at leisure, and in a hurry. Where something moves, to stop
+# is no safe end, and more is tried at once.
+_MOST, _MOST_IN_A_HURRY = 1e6, 5e5
+_MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY = 2e6, 8e5
 _LITTLE = 5e5  # work of a plan in which it is asked why there is no path
 _ORDER = Effort.QUICK, Effort.JOINT, Effort.REFINED  # from little to much
 _REMEMBERED = 200  # root paths
@@ -35,26 +37,44 @@ class _Failed(NamedTuple):
     upper: UpperPlan
 
 
+class LeftOff(NamedTuple):
+    """Where the plan of somebody who walks ended for what it had cost; the next one goes on there."""
+
+    tried: int  # root paths, in the order in which they are offered
+    place: tuple[float, float]  # x and z, where the last of them was blocked
+
+
 class Attempts:
     """The attempts of one plan, as far as it may go, and the vain ones of the plans before."""
 
     def __init__(self) -> None:
         self._work, self._most = 0.0, _MOST  # of this plan, in capsules checked
-        self._path, self._place = _PATH, _PLACE  # what these cost on this ground
+        self._place = _PLACE  # what one costs on this ground
         self._seen: tuple[float, float] | None = None  # the place that ended the commanded path in the plan before
         self._stood: tuple[float, ...] | None = None  # where somebody stands
         self._failed: dict[bytes, _Failed] = {}  # the vain ones from there
+        self._command: Command | None = None  # that is answered
+        self.left_off: LeftOff | None = None  # where the plan before did, if this one wants the same
         self._postponed = False  # whether it was left for later to ask why there is no path
 
-    def begin(self, query: MotionQuery, *, hurry: bool, stands: bool, uneven: bool = False) -> None:
-        """Begin a plan; `stands` says that nothing moves, the avatar neither, `uneven` that the ground is no plane."""
+    def begin(
+        self, query: MotionQuery, *, hurry: bool, stands: bool, uneven: bool = False, moving: bool = False
+    ) -> None:
+        """Begin a plan; `stands` says that nothing moves, the avatar neither, `moving` that something else does.
+
+        `uneven` says that the ground is no plane.
+        """
         self._work, self._postponed = 0.0, False
-        self._path, self._place = (_PATH_UNEVEN, _PLACE_UNEVEN) if uneven else (_PATH, _PLACE)
-        self._most = _MOST_STANDING if stands else _MOST_IN_A_HURRY if hurry else _MOST
+        self._place = _PLACE_UNEVEN if uneven else _PLACE
+        leisure, haste = (_MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY) if moving else (_MOST, _MOST_IN_A_HURRY)
+        self._most = haste if hurry else leisure
         here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
         if here is None or stood is None or max(abs(a - b) for a, b in zip(here, stood, strict=True)) > _NEAR:
             self._failed.clear()
         self._stood = here
+        if stands or hurry or moving or query.command != self._command:
+            self.left_off = None
+        self._command = query.command
 
     def failed(self, path: RootPath, effort: Effort) -> UpperPlan | None:
         """What was found on a root path when no less was tried on it, if that led nowhere."""
@@ -67,7 +87,7 @@ class Attempts:
 
     def enter(self, path: RootPath, effort: Effort, upper: UpperPlan) -> None:
         """A path was sought for the upper body."""
-        self._work += self._path + _work(upper.plan)
+        self._work += _PATH + _work(upper.plan)
         if self._stood is not None and upper.reached < path.horizon and len(self._failed) < _REMEMBERED:
             self._failed[path.states.tobytes()] = _Failed(effort, upper)
 

@@ -10,7 +10,7 @@ import numpy as np
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import StartState
-from elbowroom.planning.exact.plan.attempts import Attempts, same_place
+from elbowroom.planning.exact.plan.attempts import Attempts, LeftOff, same_place
 from elbowroom.planning.exact.plan.full_plan import FullPlan
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
@@ -56,8 +56,8 @@ class NewPlan:
         `left` is what is left of a walk that has no new end.
         """
         tried: list[_Tried] = []
-        uneven = not self.root_planner.bounds.ground.plain
-        self._attempts.begin(self.query, hurry=self.hurry, stands=self._stands, uneven=uneven)
+        uneven, moving = not self.root_planner.bounds.ground.plain, len(self.root_planner.moving) > 0
+        self._attempts.begin(self.query, hurry=self.hurry, stands=self._stands, uneven=uneven, moving=moving)
         found = self._group_by_group(left, tried)
         if found is None and not self.hurry:
             found = self._all_together(tried)
@@ -71,24 +71,43 @@ class NewPlan:
 
         The paths that were of no use are added to `tried`.
         """
-        blocked_at = 0.0
+        (before, blocked_at), self._attempts.left_off = self._left_off(), None
         grids = _GRIDS_STANDING if self._stands else _GRIDS
         candidates = self.root_planner.candidates(*self._asked, self.body.settings.paces, grids)
-        while not (tried and self._attempts.spent) and (root := next(candidates, None)) is not None:
+        for number, root in enumerate(candidates):
             self._attempts.enter_root(root.checks)
-            if tried and self._leads_nowhere_new(root, blocked_at + _FARTHER):
+            if number < before or (number > 0 and self._leads_nowhere_new(root, blocked_at + _FARTHER)):
                 continue
             upper = self._upper_body(root.path, Effort.QUICK)
-            if not tried and upper.reached < self.horizon:
+            if number == 0 and upper.reached < self.horizon:
                 if left is None and self._can_wait(upper) and (plan := self._braked(root, upper.reached)) is not None:
                     return plan
                 if self._stands and not self.hurry:
-                    upper = self._upper_body(root.path, Effort.REFINED)
+                    upper = self._thought_through(root.path, upper)
             if upper.reached == self.horizon:
                 return FullPlan(root, upper.plan, upper.margins, leads_on=True)
             tried.append(_Tried(root, upper))
             blocked_at = max(blocked_at, _walked(root.path, min(upper.reached + 1, self.horizon)))
-        return None
+            if self._attempts.spent:
+                self._attempts.left_off = None if self._stands else LeftOff(number + 1, _place(upper))
+                return None
+        return None if tried else self._group_by_group(left, tried)
+
+    def _left_off(self) -> tuple[int, float]:
+        """How many root paths the plan before tried in vain, if this one goes on with the others.
+
+        Also how many metres from here the last of these led.
+        """
+        left_off, here = self._attempts.left_off, (self.query.root.x, self.query.root.z)
+        return (0, 0.0) if left_off is None else (left_off.tried, math.dist(left_off.place, here))
+
+    def _thought_through(self, path: RootPath, upper: UpperPlan) -> UpperPlan:
+        """What is found on a path with more and more effort, where `upper` has no way; what this plan may still do."""
+        for effort in (Effort.JOINT, Effort.REFINED):
+            if upper.reached == self.horizon or self._attempts.spent:
+                break
+            upper = self._upper_body(path, effort)
+        return upper
 
     @property
     def _attempts(self) -> Attempts:
@@ -236,7 +255,9 @@ class NewPlan:
     def _searched(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         start, query = StartState(self.query.upper, self.query.velocity, harsh=harsh), self.query
         previous = self.body.memory.recent.previous(path)
-        return self.body.plan(path, start, previous, query.others, effort, query.go_on)
+        vain = self._attempts.failed(path, Effort.JOINT) if effort is Effort.REFINED and not harsh else None
+        after = None if vain is None else vain.search
+        return self.body.plan(path, start, previous, query.others, effort, query.go_on, after)
 
     def _leads_nowhere_new(self, root: RootPlan, least: float) -> bool:
         """Whether a path along the same line is shorter than `least` metres, among things that stand still."""

@@ -79,26 +79,31 @@ class UpperBodyPlanner:
         others: Moving | None = None,
         effort: Effort = Effort.REFINED,
         go_on: GoOn = keep_going,
+        after: UpperBodySearch | None = None,
     ) -> UpperPlan:
         """Motion along `path` from where it `begins`, near the `previous` plan; `others` move besides the scene's.
 
-        `go_on` is called before each search, and raises an exception to call the plan off.
+        `go_on` is called before each search, and raises an exception to call the plan off. `after` is the search of
+        these in vain with less effort, by an earlier plan: what it tried is not tried again.
         """
         path = self._legs.stood(path)
         near = self._near(path, others)
         legs = self._legs.among(others, path)
         rounds = 0 if effort is Effort.QUICK else self.settings.guided_rounds
         weights = self._quick_weights if effort is Effort.QUICK else self._weights
-        search = self._search_of(path, begins, previous, near, legs, weights, go_on)
-        found = search.motion(rounds)
+        search = after or self._search_of(path, begins, previous, near, legs, weights, go_on)
+        found = None if after is not None else search.motion(rounds)
         if found is None and effort is Effort.REFINED and not search.spent and self._refine(search):
             before, search = search, self._search_of(path, begins, previous, near, legs, weights, go_on)
-            search.evidence_log.begin_after(before.evidence_log)
+            if after is None:
+                search.evidence_log.begin_after(before.evidence_log)
             found = search.motion(rounds)
         if found is not None:
             return UpperPlan(found, path.horizon, search, search.margins)
         evidence_log, goals = search.evidence_log, search.goals
         plan = LocalPlan(PlanStatus.EXHAUSTED, goals[:0], goals, evidence_log.evidence(), joint=evidence_log.joint)
+        if search is after:
+            plan = plan._replace(evidence=(), joint=None)
         return UpperPlan(plan, search.deepest, search)
 
     def _near(self, path: RootPath, others: Moving | None) -> Along:
