@@ -13,7 +13,9 @@ REST = 3  # frames over which what is shown may not change, to be at rest
 # A few frames later: the panels that slide (what turns for ever is not waited for), the camera and the avatar.
 _SHOWN = """
 async (frames) => {
+  window.__hurry = true;
   for (let k = 0; k < frames; k += 1) await new Promise(requestAnimationFrame);
+  window.__hurry = false;
   const ends = (animation) => animation.effect?.getComputedTiming().endTime !== Infinity;
   const sliding = document.getAnimations().filter((a) => a.playState === "running" && ends(a)).length;
   const { camera, root } = window.__app;
@@ -31,27 +33,24 @@ _DROP = """
   }
 }
 """
-# Without a graphics card pictures cost more than all the rest of a test: five a second will do.
+# Without a graphics card pictures cost more than all the rest of a test: two or three a second will do, unless it
+# is pictures that are waited for (`__hurry`); between them nothing is asked of the browser.
 _SPARING = """
 (() => {
-  const ask = window.requestAnimationFrame.bind(window), drop = window.cancelAnimationFrame.bind(window);
-  const asked = new Map();
-  let count = 0, last = -Infinity;
+  const ask = window.requestAnimationFrame.bind(window);
+  const waiting = new Map();
+  let count = 0, last = -Infinity, next = null;
+  const turn = (time) => {
+    last = performance.now();
+    next = null;
+    for (const [id, draw] of [...waiting]) if (waiting.delete(id)) draw(time);
+  };
   window.requestAnimationFrame = (draw) => {
-    const id = (count += 1);
-    const turn = (time) => {
-      if (time !== last && time - last < 200) return asked.set(id, ask(turn));
-      last = time;
-      asked.delete(id);
-      draw(time);
-    };
-    asked.set(id, ask(turn));
-    return id;
+    waiting.set((count += 1), draw);
+    next ??= setTimeout(() => ask(turn), (window.__hurry ? 100 : 400) - (performance.now() - last));
+    return count;
   };
-  window.cancelAnimationFrame = (id) => {
-    drop(asked.get(id));
-    asked.delete(id);
-  };
+  window.cancelAnimationFrame = (id) => waiting.delete(id);
 })();
 """
 _NO_SERVER = ("WebSocket", "net::ERR_CONNECTION")
@@ -82,6 +81,10 @@ class LivePage:
         state: dict[str, Any] = seen.json_value()
         return state
 
+    def wait_for_pictures(self, count: int) -> dict[str, Any]:
+        """Wait until so many more pictures are drawn; the state then."""
+        return self.wait(f"s.framesDrawn >= {self.state()['framesDrawn'] + count}")
+
     def settle(self, seconds: float = PATIENCE) -> None:
         """Wait until panels, camera and avatar have come to rest, however slow the machine."""
         deadline = time.monotonic() + seconds
@@ -92,6 +95,12 @@ class LivePage:
                 return
             before = shown["at"]
         raise AssertionError(f"after {seconds:g} s something on the page still moves: {self.state()}")
+
+    def settle_panels(self, seconds: float = PATIENCE) -> None:
+        """Wait until panels have come to rest; for tests that look at nothing else: the camera takes longer."""
+        deadline = time.monotonic() + seconds
+        while self.page.evaluate(_SHOWN, 2)["sliding"]:
+            assert time.monotonic() < deadline, f"after {seconds:g} s some panel still slides: {self.state()}"
 
     def excuse_lost_server(self) -> None:
         """A test that ended its server: what the browser logs while none answers is no error of the page."""
@@ -148,5 +157,5 @@ def open_live_page(
         page.add_init_script(script)
     live = LivePage(page, context)
     page.goto(f"{url}/?quality=low&{query}")
-    live.wait("s.avatarLoaded && s.framesReceived > 5 && s.framesDrawn > 3 && s.root && s.settings", LOAD_SECONDS)
+    live.wait("s.avatarLoaded && s.framesReceived > 5 && s.framesDrawn > 1 && s.root && s.settings", LOAD_SECONDS)
     return live

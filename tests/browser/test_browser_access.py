@@ -58,13 +58,13 @@ def test_axe_finds_nothing_serious_wherever_one_can_be(open_page: Open, looks: l
     page = live.page
     found = {"menu": barriers_in_looks(page, looks)}
     page.keyboard.press("n")
-    live.settle()
+    live.settle_panels()
     found["page"] = barriers_in_looks(page, looks)
     page.keyboard.press("?")
     found["help"] = barriers_in_looks(page, looks)
     page.keyboard.press("Escape")
     page.keyboard.press("n")
-    live.settle()
+    live.settle_panels()
     page.locator("#keys-open").click()
     found["keys"] = barriers_in_looks(page, looks)
     page.keyboard.press("Escape")
@@ -125,10 +125,10 @@ def test_the_language_is_chosen_in_the_menu_and_kept(open_page: Open) -> None:
 def test_all_of_it_can_be_reached_at_twice_the_size(open_page: Open) -> None:
     live = open_page("scene=doorway", viewport=(640, 360), device_scale_factor=2, forced_colors="active")
     live.wait("s.scene === 'doorway'")
-    live.settle()
+    live.settle_panels()
     assert live.page.evaluate(CROWDED) == []
     live.page.locator("#menu-button").click()
-    live.settle()
+    live.settle_panels()
     assert [said for said in live.page.evaluate(CROWDED) if said.endswith("cut")] == []
     for name in ("#keys-open", "#language", "#hide-all"):
         live.page.locator(name).scroll_into_view_if_needed()
@@ -138,7 +138,7 @@ def test_all_of_it_can_be_reached_at_twice_the_size(open_page: Open) -> None:
         assert box["x"] + box["width"] <= 640, name
     live.page.locator("#build-open").click()
     live.wait("s.build && s.build.things.length > 0")
-    live.settle()
+    live.settle_panels()
     for name in ("#build .walk", "#build .close", "#build .verdict", "#build .board"):
         box = live.page.locator(name).bounding_box()
         assert box is not None
@@ -180,7 +180,7 @@ def test_on_a_phone_nothing_lies_over_the_menu_however_far_it_is_scrolled(open_p
     live = open_page("scene=empty", viewport=(390, 844), has_touch=True, is_mobile=True)
     live.page.tap("#menu-button")
     live.page.wait_for_selector("#menu:not(.closed)")
-    live.settle()
+    live.settle_panels()
     menu = live.page.locator("#menu")
     for part in (0.0, 0.13, 0.31, 0.5, 0.73, 1.0):
         menu.evaluate("(menu, part) => menu.scrollTo({ top: part * menu.scrollHeight, behavior: 'instant' })", part)

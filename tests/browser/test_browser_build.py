@@ -155,7 +155,7 @@ def test_all_of_it_can_be_reached_on_a_phone(open_page: Open, size: tuple[int, i
     live.page.locator("#menu-button").click()
     live.page.locator("#build-open").click()
     live.wait("s.build && s.build.things.length > 0")
-    live.settle()
+    live.settle_panels()
     board = live.page.locator("#build .board").bounding_box()
     assert board["width"] > 250
     assert board["height"] > 100

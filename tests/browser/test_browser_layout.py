@@ -37,7 +37,7 @@ def test_no_panel_lies_on_another(open_page: Open) -> None:
     live.page.keyboard.press("i")
     for width, height in SIZES:
         live.page.set_viewport_size({"width": width, "height": height})
-        live.settle()
+        live.settle_panels()
         found = boxes(live)
         assert {"#brand", "#bar", "#hud", "#status", "#inset"} <= set(found)
         for one, box in found.items():
@@ -65,7 +65,7 @@ def test_on_a_phone_the_whole_avatar_is_in_sight(open_page: Open, viewport: tupl
     assert feet[1] + 12 < boxes(live)["#status"]["y"]
 
 
-@pytest.mark.parametrize("viewport", PHONES)
+@pytest.mark.parametrize("viewport", [PHONES[0], pytest.param((844, 390), id="landscape", marks=pytest.mark.long)])
 def test_on_a_phone_every_control_is_as_large_as_a_thumb(open_page: Open, viewport: tuple[int, int]) -> None:
     live = open_page(viewport=viewport, has_touch=True, is_mobile=True)
     live.page.tap("#menu-button")

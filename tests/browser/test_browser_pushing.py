@@ -37,11 +37,10 @@ def test_a_thing_is_pushed_into_the_way_with_the_mouse_and_the_avatar_evades_it(
     live.wait("s.root.z > 0.3")
     live.page.mouse.move(x + 120, y, steps=12)
     pushed(live, SIDEBOARD, f"c[0] < {STARTS_AT - 0.25}")
-    for _ in range(20):
-        state = live.wait("true")
+    for _ in range(8):
+        state = live.wait_for_pictures(1)
         assert not state["touching"]
         assert state["clearance"] > 0.0
-        live.page.wait_for_timeout(60)
     live.page.mouse.up()
     live.page.keyboard.up("w")
     state = live.wait("s.held === null")

@@ -41,7 +41,7 @@ def distance_to_boxes(boxes: list[dict[str, Any]], point: list[float]) -> float:
 @pytest.mark.long
 def test_held_keys_walk_through_scene_a(open_page: Open, live_server: LiveServer) -> None:
     boxes: Any = live_server.get_json("/api/scenes/a")["obstacles"]
-    live = open_page("scene=a&speed=1.6")
+    live = open_page("scene=a&speed=1.6", sparing=False)
     live.wait("s.scene === 'a'")
     start = live.state()["root"]
     keyboard = live.page.keyboard
@@ -93,8 +93,7 @@ def test_keys_are_released_on_blur(open_page: Open) -> None:
     live.wait(f"s.acknowledged >= {sent}")
     live.settle()
     z = live.state()["root"]["z"]
-    live.page.wait_for_timeout(500)
-    assert abs(live.state()["root"]["z"] - z) < 0.02
+    assert abs(live.wait_for_pictures(3)["root"]["z"] - z) < 0.02
 
 
 def test_steering_keys_steer_past_lists(open_page: Open) -> None:
@@ -169,8 +168,7 @@ def test_gamepad_walks(open_page: Open) -> None:
     live = open_page("scene=empty", script=GAMEPAD)
     live.wait("s.scene === 'empty'")
     live.page.evaluate("window.stick = [0.05, -0.1]")
-    live.page.wait_for_timeout(300)
-    assert live.state()["sent"] == 0, "inside the dead zone"
+    assert live.wait_for_pictures(3)["sent"] == 0, "inside the dead zone"
     live.page.evaluate("window.stick = [0, -1]")
     live.wait("s.root.z > 0.5")
     live.page.evaluate("window.stick = [0, 0]")
