@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elbowroom.body import dof
-from elbowroom.body.dof import LOWERING, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
+from stiff import forbid_crouching
 
 DT = 1 / 60
 
@@ -24,9 +23,7 @@ def with_panel(width: float) -> Scene:
 @pytest.mark.parametrize("width", [0.8, 1.2])
 def test_a_panel_that_is_wide_is_walked_round_without_a_halt(width: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """By who cannot go down on bent knees and hips: all others pass below it."""
-    stiff = limits(DofGroup.WAIST)
-    stiff[LOWERING - DofGroup.WAIST.at.start] = 0.0
-    monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, stiff)
+    forbid_crouching(monkeypatch)
     controller = Controller(replace(Humanoid.default()), with_panel(width))
     frames = []
     for _ in range(round(6.0 / DT)):

@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elbowroom.body import dof
-from elbowroom.body.clips.stock_clips import stock_clips
 from elbowroom.body.dof import LOWERING, DofGroup, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
@@ -18,6 +16,7 @@ from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.world.scene import Scene
 from sampled import sampled
+from stiff import forbid_crouching
 
 HUMANOID = Humanoid.default()
 
@@ -79,10 +78,7 @@ def test_a_beam_hardly_above_the_pelvis_is_passed_bent_from_the_hips(humanoid: H
 
 
 def test_a_body_that_cannot_crouch_stops_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert any(clip.configurations[:, 2].any() for clip in stock_clips(DofGroup.WAIST))
-    stiff = limits(DofGroup.WAIST)
-    stiff[LOWERING - DofGroup.WAIST.at.start] = 0.0
-    monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, stiff)
+    forbid_crouching(monkeypatch)
     assert not limits(DofGroup.WAIST)[2].any()
     result, frames = cross(0, 7.0, replace(HUMANOID), lower(BEAM, 0.12))
     assert not result.passed

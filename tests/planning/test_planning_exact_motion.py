@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from elbowroom.body import dof
-from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, columns_of, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
@@ -27,6 +26,7 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
+from stiff import forbid_crouching
 
 Floats = NDArray[np.float64]
 T = 0.15
@@ -123,10 +123,8 @@ def test_the_shown_motion_is_bounded_and_does_not_jitter(humanoid: Humanoid) -> 
 
 @pytest.fixture
 def stiff(humanoid: Humanoid, monkeypatch: pytest.MonkeyPatch) -> Humanoid:
-    """One who cannot crouch: the others bend, nod and go into the knees below what is no lower than the hips."""
-    lowered = limits(DofGroup.WAIST)
-    lowered[LOWERING - DofGroup.WAIST.at.start] = 0.0
-    monkeypatch.setitem(dof._LIMITS, DofGroup.WAIST, lowered)
+    """One who cannot crouch."""
+    forbid_crouching(monkeypatch)
     return replace(humanoid)
 
 

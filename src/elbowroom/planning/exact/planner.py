@@ -122,12 +122,14 @@ class ExactPlanner:
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
 
-        One that evades something or is slower is kept for a while, and then planned anew; one that the legs alone make
-        slower is planned anew at once.
+        One that evades something is kept for a while, and then planned anew. So is one that is slower for the upper
+        body's sake, along a way; where a hand steers, and where the legs alone make it slower, it is planned anew at
+        once.
         """
         horizon, known = self._horizon(query), left.root.path.horizon
         if not _is_commanded(left, root_planner):
-            kept = left.root.kind is not RootPlanKind.SHORTENED and known >= horizon - self._spare(query)
+            slower = bool(query.command.way) and left.root.kind is not RootPlanKind.SHORTENED
+            kept = (slower or left.root.kind is RootPlanKind.EVASION) and known >= horizon - self._spare(query)
             return left if kept else None
         if known >= horizon:
             return left

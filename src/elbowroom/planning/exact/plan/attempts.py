@@ -18,7 +18,7 @@ _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
 _PLACE_UNEVEN = 600  # a place where the ground is uneven: there it is looked up what each foot stands on
 # Work of a plan after which nothing is begun but a safe end: at leisure, and in a hurry. Where something moves, to stop
 # is no safe end, and more is tried at once.
-_MOST, _MOST_IN_A_HURRY = 1e6, 5e5
+_MOST, _MOST_IN_A_HURRY = 1.5e6, 5e5
 _MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY = 2e6, 8e5
 _LITTLE = 5e5  # work of a plan in which it is asked why there is no path
 _ORDER = Effort.QUICK, Effort.JOINT, Effort.REFINED  # from little to much

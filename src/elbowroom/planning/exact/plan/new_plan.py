@@ -224,7 +224,8 @@ class NewPlan:
         has cost enough; one who has come to a stand asks anew, once. Near the end of a path it is now and then only the
         motion between free postures that touches: the earlier answer, which names obstacles, says more.
         """
-        path, depth, last = upper.search.path, upper.search.blocked[1], self.body.memory.blockade
+        depth, last = upper.search.blocked[1], self.body.memory.blockade
+        path = replace(upper.search.path, start_time=self.query.time)  # it may have been searched by an earlier plan
         place, moves, here = _place(upper), self._moves, (self.query.root.x, self.query.root.z)
         near = last is not None and same_place(place, last.place)
         told = math.dist(self.body.memory.asked_at, here) < _STANDING  # that is: from here
