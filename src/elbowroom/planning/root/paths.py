@@ -72,6 +72,11 @@ class RootPaths:
         self._last: tuple[tuple[object, ...], RootQuery] | None = None
         self._checks = 0  # of all queries before the last one
 
+    def reset(self) -> None:
+        """Forget what was found out about legs, and the last paths asked for."""
+        self._check.reset()
+        self._last, self._checks = None, 0
+
     @property
     def moving(self) -> Moving:
         """All that moves."""

@@ -65,8 +65,9 @@ class RootPlanner:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the line of travel."""
+        """Forget the line of travel, and what was found out: what is counted again then is what it was at first."""
         self.memory = RootMemory()
+        self._paths.reset()
         self._offered: list[Offer] = []
         self._from_here = OffersFromHere()
 

@@ -32,6 +32,10 @@ class LegCheck:
         self.looks = Looks(body.legs, body.hull, bounds, skin, spacing)
         self.known = KnownLegs()
 
+    def reset(self) -> None:
+        """Forget what is known."""
+        self.known = KnownLegs()
+
 
 class FreeLegs:
     """Tells of paths from one start how much of each is free, among what stands and what moves."""
