@@ -91,7 +91,7 @@ class NewPlan:
             if self._attempts.spent:
                 self._attempts.left_off = None if self._stands else LeftOff(number + 1, _place(upper))
                 return None
-        return None if tried else self._group_by_group(left, tried)
+        return self._group_by_group(left, tried) if before and not tried else None
 
     def _left_off(self) -> tuple[int, float]:
         """How many root paths the plan before tried in vain, if this one goes on with the others.
