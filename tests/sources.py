@@ -4,7 +4,8 @@ import ast
 from functools import cache
 from pathlib import Path
 
-ENTERED = {"kernel", "exact_kernel"}  # kinds of compiled functions that Python may call, as `elbowroom.jit` has them
+EXACT = {"exact_kernel", "brief_exact_kernel", "inner_exact_kernel"}  # kinds of compiled functions, see `elbowroom.jit`
+ENTERED = {"kernel", "exact_kernel", "brief_kernel", "brief_exact_kernel"}  # those that Python may call
 INNER = {"inner_kernel", "inner_exact_kernel"}  # those that only kernels call
 COMPILED = ENTERED | INNER | {"helper"}
 

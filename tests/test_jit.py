@@ -16,7 +16,7 @@ import pytest
 
 import elbowroom
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, inner_kernel, kernel, kernels_made, plain
-from sources import COMPILED, ENTERED, INNER, nodes_of, tree_of
+from sources import COMPILED, ENTERED, EXACT, INNER, nodes_of, tree_of
 
 PACKAGE = Path(elbowroom.__file__).parent
 
@@ -216,7 +216,7 @@ def test_kernels_call_each_other_with_the_same_literals_or_with_none() -> None:
 
 def _exact(kinds: set[str]) -> bool | None:
     """Whether a function is compiled with exact mathematics; None where it is not compiled by itself."""
-    return bool(kinds & {"exact_kernel", "inner_exact_kernel"}) if kinds & (ENTERED | INNER) else None
+    return bool(kinds & EXACT) if kinds & (ENTERED | INNER) else None
 
 
 def _private_kernels_called_once(tree: ast.Module) -> Iterator[str]:

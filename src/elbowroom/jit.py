@@ -8,6 +8,9 @@ with all that it calls: what one kernel alone calls, in one place, is a helper, 
 To take arguments from Python is a function of its own, and a third of what compiling a kernel costs. Those that only
 kernels call go without it, as an `inner_kernel` or an `inner_exact_kernel`.
 
+While a kernel computes, other threads may use the interpreter, and it waits up to a millisecond to have it back: long
+for who calls thirty of them in a frame. What takes a frame microseconds keeps it: `brief_kernel`, `brief_exact_kernel`.
+
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
 """
@@ -60,6 +63,16 @@ def exact_kernel(function: Function) -> Function:
     return _compiled(function)
 
 
+def brief_kernel(function: Function) -> Function:
+    """Compile a `kernel` that keeps the interpreter: for what a frame computes, microseconds at a time."""
+    return _compiled(function, fastmath=_FASTMATH, nogil=False)
+
+
+def brief_exact_kernel(function: Function) -> Function:
+    """Compile an `exact_kernel` that keeps the interpreter."""
+    return _compiled(function, nogil=False)
+
+
 def inner_kernel(function: Function) -> Function:
     """Compile a `kernel` that other kernels alone call."""
     return _without_entrance(_compiled(function, fastmath=_FASTMATH, no_cpython_wrapper=True))
@@ -101,7 +114,7 @@ def _compiled(function: Function, **options: Any) -> Function:
     code = function.__code__
     folder = cache_folder(Path(code.co_filename))
     with cached_by_sources():
-        dispatcher = numba.njit(cache=folder is not None, **_OPTIONS, **options)(function)
+        dispatcher = numba.njit(cache=folder is not None, **(_OPTIONS | options))(function)
     if folder is not None and hasattr(dispatcher, "_cache"):  # a plain function, where Numba is told not to compile
         name = name_of(Path(code.co_filename), function.__qualname__, code.co_firstlineno)
         dispatcher._cache = KeptKernel(dispatcher._cache, folder, name)

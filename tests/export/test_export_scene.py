@@ -24,8 +24,8 @@ def test_what_is_written_is_read_again_as_the_same_place(tmp_path: Path, name: s
     file = tmp_path / f"{name}.{ending}"
     file.write_bytes(write(scene))
     again = Scene.load(file, PlaceOptions(scale=1.0, up="y"))
-    standing = _extent(*scene.obstacles.bounds_at(0.0))
-    read = _extent(*again.obstacles.bounds_at(0.0))
+    standing = _extent(*scene.obstacles.first_bounds())
+    read = _extent(*again.obstacles.first_bounds())
     np.testing.assert_allclose(read, standing, atol=0.02)
 
 

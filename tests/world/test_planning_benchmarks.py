@@ -93,7 +93,7 @@ def test_capsules_touch_the_primitives_of_planning_scenes_where_coal_says_so(rob
     each = max(CAPSULES // len(found) // len(ROBOTS), 1)
     for _name, scene in found:
         obstacles = obstacles_in(scene)
-        low, high = obstacles.bounds_at(0.0)
+        low, high = obstacles.first_bounds()
         begins = rng.uniform(low.min(axis=0), high.max(axis=0), (each, 3)).T
         segments = np.concatenate([begins, begins + rng.uniform(-0.3, 0.3, (3, each))]).astype(np.float32)
         gaps = clearance(segments[None], [radius], obstacles.standing)

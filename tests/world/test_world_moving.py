@@ -1,6 +1,7 @@
 """Obstacles on tracks: where they are, and what holds all that they sweep."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import corners_of
-from elbowroom.world.obstacles.shapes import Box, extents_of
+from elbowroom.world.obstacles.rows import corners_of, rows_of
+from elbowroom.world.obstacles.shapes import Box, Hull, extents_of
 from elbowroom.world.obstacles.tracks.moving import Moving, Repeat, Track
 from elbowroom.world.scene import Scene
 from sampled import sampled
@@ -44,6 +45,17 @@ def test_what_moves_stands_at_its_pose() -> None:
         centers, yaws = moving.poses(time)
         turns = np.array([quaternion.about_axis(1, float(yaw)) for yaw in yaws[0]])
         there = Obstacles.boxes(centers[0], turns, moving.half_sizes).standing
+        np.testing.assert_allclose(moving.at(time).rows, there.rows, atol=1e-12)
+
+
+def test_what_is_not_about_its_origin_moves_as_rows_are_made() -> None:
+    points = [(0.1, 0.0, 0.2), (0.9, 0.0, 0.3), (0.2, 0.8, 0.4), (0.3, 0.1, 1.1)]
+    hull = replace(track(Repeat.LOOP), shape=Hull(tuple(points)))
+    moving = Moving((hull, track(Repeat.ONCE)))
+    for time in (0.0, 1.3, 2.6, 7.9):
+        centers, yaws = moving.poses(time)
+        turns = quaternion.about_axis(1, yaws[0])
+        there = rows_of([each.shape for each in moving.tracks], centers[0], turns)
         np.testing.assert_allclose(moving.at(time).rows, there.rows, atol=1e-12)
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import brief_exact_kernel
 from elbowroom.planning.interpolation import hermite, monotone_tangents
 from elbowroom.planning.root.path import RootPath, interpolate_root
 from elbowroom.planning.stillness import is_still
@@ -154,7 +154,7 @@ class KeyFrameQueue:
         return Playback(*_motion_at(self._times, self._roots, self._uppers, self._velocities, time))
 
 
-@exact_kernel
+@brief_exact_kernel
 def _motion_at(
     times: Floats, roots: Floats, uppers: Floats, velocities: Floats, time: float
 ) -> tuple[Floats, Floats, Floats]:

@@ -16,10 +16,11 @@ from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, leg_capsules
+from elbowroom.body.pose.kinematics import body_model, leg_capsules, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.turned_legs import turned_legs
+from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
 from elbowroom.planning.exact.joint.bounds import Problem
@@ -154,6 +155,17 @@ def rehearse_feet(humanoid: Humanoid) -> None:
     living(body_of(gait), np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)
 
 
+def rehearse_shown(humanoid: Humanoid) -> None:
+    """Look whether a step may be shown beside a box, while others move."""
+    obstacles = replace(_one_box(*_BESIDE), moving=Scene.load("traffic").obstacles.moving)
+    check, gait = BodyCheck(humanoid, replace(Scene.load("empty"), obstacles=obstacles)), body_model(humanoid).gait
+    upper, feet = np.zeros(LOCAL), [beside(gait, RootState(0.0, z, 0.0).as_array()) for z in (0.0, 1.0)]
+    shown = [np.concatenate([row, np.zeros(CARRIAGE)]) for row in feet]
+    check.free_between(Frames((shown[0], shown[1]), (upper, upper), (0.0, 10.0)))
+    check.room_along(feet[0][None], upper)
+    lower_body(gait, shown[0][None], upper[:1])
+
+
 def rehearse_place() -> None:
     """Look a triangle over as if it were a place."""
     surface_keys(np.eye(3)[None], 1.0, (2, 2))
@@ -238,6 +250,7 @@ REHEARSALS: dict[str, Callable[[Humanoid], object]] = {
     "detour": rehearse_detour,
     "own body": rehearse_own_body,
     "feet": rehearse_feet,
+    "shown": rehearse_shown,
     "way": rehearse_way,
     "crouch": rehearse_crouch,
     "product": lambda _: rehearse_product(),

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -52,7 +52,7 @@ class Proof(NamedTuple):
     lost: Bools  # (B / each,) rows in which a pair touches, or nearly
 
 
-@exact_kernel
+@brief_exact_kernel
 def begun(gaps: Floats32, lengths: Floats, each: int, enough: float, depth: int) -> Proof:
     """The proof as far as first looks have it.
 
@@ -101,7 +101,7 @@ def _weigh(proof: Proof, part: int, begin: float, level: int, before: int, after
         proof.counts[_ENTERED] = n + 1
 
 
-@exact_kernel
+@brief_exact_kernel
 def due(proof: Proof, parts: Longs, shares: Floats) -> int:
     """The number of looks that are wanted next, as many as there is room for: in which `parts`, and where in them."""
     count, at = 0, proof.counts[_TAKEN]
@@ -115,7 +115,7 @@ def due(proof: Proof, parts: Longs, shares: Floats) -> int:
     return count
 
 
-@exact_kernel
+@brief_exact_kernel
 def settle(proof: Proof, found: Floats32, count: int) -> None:
     """Take in the gaps `found` (N, R) at the first `count` looks that were wanted: their pieces are halved there."""
     for n in range(count):

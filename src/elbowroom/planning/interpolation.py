@@ -9,12 +9,12 @@ worth more than monotony in that one segment.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import brief_exact_kernel, exact_kernel
 
 Floats = NDArray[np.float64]
 
 
-@exact_kernel
+@brief_exact_kernel
 def monotone_tangents(times: Floats, values: Floats, first: Floats) -> Floats:
     """Tangents (m, d) for key values (m, d), m >= 1, at increasing `times` (m,).
 

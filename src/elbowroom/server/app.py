@@ -160,7 +160,7 @@ class _Handlers:
             if self._library.shared:
                 await asyncio.to_thread(bring_scene, self._library, name)
             found = self._library.find_scene(name, client)
-            return answer(await while_there(request, found))
+            return await asyncio.to_thread(answer, await while_there(request, found))  # which takes longer than a frame
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
         except ClientDisconnect:

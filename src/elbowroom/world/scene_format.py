@@ -203,7 +203,7 @@ def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     height = on_ground(scene, scene.start).height
     bottom = height + (_STANCE_LOW if ground.plain else ground.step + 2.0 * _STANCE_RADIUS)
     top = height + _STANCE_HIGH
-    least, most = scene.obstacles.bounds_at(0.0)
+    least, most = scene.obstacles.first_bounds()
     low, high = np.array([x, bottom, z]) - _STANCE_RADIUS, np.array([x, top, z]) + _STANCE_RADIUS
     if not np.any(np.all((least <= high) & (most >= low), axis=1)):
         return  # told without a kernel, which may have to be compiled

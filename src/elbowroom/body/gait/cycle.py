@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import helper, inner_kernel, kernel
+from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -368,7 +368,7 @@ def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Fl
         drops[n] = low + _bob(stride, phase)
 
 
-@kernel
+@brief_kernel
 def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Floats]:
     """Feet and pelvis of the walking cycle for root states (N, 7).
 
@@ -380,7 +380,7 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     return feet, drops
 
 
-@kernel
+@brief_kernel
 def feet_standing(scale: float, roots: Floats) -> Bools:
     """Which feet (N, 2), left and right, stand on the ground at root states (N, 7); both do where the root rests."""
     standing = np.empty((len(roots), 2), np.bool_)
@@ -427,7 +427,7 @@ def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, flo
     return drop + lowered, _SETBACK * lowered, hips_lean(lowering)
 
 
-@kernel
+@brief_kernel
 def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
     """How far the hips are below and behind their place in T-pose, metres, and lean forward, radians (N, 3).
 

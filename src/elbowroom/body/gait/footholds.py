@@ -28,7 +28,7 @@ from elbowroom.body.gait.stepping_times import (
 )
 from elbowroom.body.gait.swinging import swing_foot
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, kernel, plain
+from elbowroom.jit import brief_exact_kernel, brief_kernel, helper, inner_exact_kernel, plain
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ NO_FARTHER = np.zeros(2)
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 
 
-@kernel
+@brief_kernel
 def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
     stride = stride_of(scale, 0.0, 0.0, 0.0)
     out[:] = 0.0
@@ -57,7 +57,7 @@ def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foo
     return pitch
 
 
-@exact_kernel
+@brief_exact_kernel
 def step_feet(
     who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, farther: Floats, out: Floats
 ) -> None:
@@ -121,7 +121,7 @@ def landing(
     return goal[0], goal[1], goal[2], max(left, time_needed(stride, foot, goal))
 
 
-@kernel
+@brief_kernel
 def _settled(legs: Floats, scale: float, row: Floats) -> bool:
     stride, near = stride_of(scale, 0.0, 0.0, 0.0), True
     for side in range(2):

@@ -22,7 +22,7 @@ from elbowroom.body.gait.foot_state import (
     tilt,
 )
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
-from elbowroom.jit import exact_kernel
+from elbowroom.jit import brief_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ _GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet gli
 _AT_LEAST = 0.2  # of its swing is over, for a foot that does
 
 
-@exact_kernel
+@brief_exact_kernel
 def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: float, holds: bool, out: Floats) -> None:
     """The feet `dt` seconds later, as `step_feet`, where there is no room for steps of their own.
 

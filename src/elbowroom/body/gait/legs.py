@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_hip, hips_turn
 from elbowroom.body.root import WITH_FEET
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import helper, inner_kernel, kernel
+from elbowroom.jit import brief_kernel, helper, inner_kernel
 
 Floats = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def _relative(a: Floats, b: Floats, out: Floats) -> None:
     out[3] = a[3] * b[3] + a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@kernel
+@brief_kernel
 def leg_rotations(rest: Floats, feet: Floats, sinks: Floats, rows: Floats) -> Floats:
     """Normalised local rotations (N, 2, 4, 4) of thigh, shin, foot and toes; left leg first.
 

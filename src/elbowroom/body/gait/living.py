@@ -29,7 +29,7 @@ from elbowroom.body.gait.cycle import GaitShape, Stride, stride_at
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
 from elbowroom.body.root import SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
@@ -159,7 +159,7 @@ class Body(NamedTuple):
     own: OwnStride  # of a walk that was recorded, in place of published gait
 
 
-@exact_kernel
+@brief_exact_kernel
 def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, faces: float, out: Floats) -> None:
     """Write to a row (SHOWN,) with root and feet how it is carried `dt` seconds after the row `before` (SHOWN,).
 

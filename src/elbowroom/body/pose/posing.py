@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
-from elbowroom.jit import helper, inner_kernel, kernel, plain
+from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -323,7 +323,7 @@ def pose_body(
     return out, chest_places, chest_rotations
 
 
-@kernel
+@brief_kernel
 def pose_legs(figure: Figure, capsules: CapsuleChain, roots: Floats, leg_rotations: Floats, sinks: Floats) -> Segments:
     """Capsules (C, 6, N) of pelvis and legs in the world."""
     out = np.empty((len(capsules.joints), 6, len(roots)), np.float32)

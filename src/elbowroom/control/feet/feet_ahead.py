@@ -12,7 +12,7 @@ from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.feet.treading import step_on
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.model.footing import ON_PLANE, Underfoot, stood_at
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ def _lay(under: Underfoot, row: Floats) -> None:
             row[at], row[at + 1] = height - row[HEIGHT], slope
 
 
-@exact_kernel
+@brief_exact_kernel
 def _feet_ahead(who: Stepper, under: Underfoot, row: Floats, ahead: Floats, until: float, steps: bool) -> Floats:
     first, last, since, count = 0, 0, 0.0, 1
     while first < len(ahead) and ahead[first, 0] <= 0.0:

@@ -17,7 +17,7 @@ from elbowroom.body.pose.whole_body import posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.control.feet.treading import step_on, tread_gliding
 from elbowroom.control.shown.standing_about import ShownBody, lift_feet
-from elbowroom.jit import exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.footing import Underfoot
 
@@ -59,13 +59,13 @@ class Followed(NamedTuple):
     gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
 
 
-@exact_kernel
+@brief_exact_kernel
 def arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
     """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs, metres (2, 1)."""
     return pair_clearances(axes, pairs.first, pairs.second, pairs.arms, pairs.allowed, _ARMS)
 
 
-@exact_kernel
+@brief_exact_kernel
 def followed(
     who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, how: int
 ) -> tuple[Floats, Floats32, Floats32]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
 from elbowroom.planning.model.levers import Levers, travel
@@ -58,7 +58,7 @@ def lift_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None
             axes[c, 4, n] += lift
 
 
-@exact_kernel
+@brief_exact_kernel
 def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
     """The capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more), feet as high as they are held."""
     axes = posed_capsules(body.whole, q, roots)
@@ -66,7 +66,7 @@ def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
     return axes
 
 
-@exact_kernel
+@brief_exact_kernel
 def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
     """The capsules (C, 6, 1) of a root state and an upper body (LOCAL,), as seen from the root's place."""
     q, near = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
@@ -75,7 +75,7 @@ def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
     return lifted_capsules(body, q, near)
 
 
-@exact_kernel
+@brief_exact_kernel
 def gaps_about(body: ShownBody, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats) -> Floats32:
     """How far each capsule (C, 6, 1) about a place (x, z) is from what stands, (C,) metres: `clearances_around`.
 
@@ -96,7 +96,7 @@ def gaps_about(body: ShownBody, standing: Standing, axes: Floats32, x: float, z:
     return found
 
 
-@exact_kernel
+@brief_exact_kernel
 def proven_between(
     body: ShownBody, standing: Standing, levers: Levers, roots: Both, uppers: Both, gaps: Floats32, floors: Floats
 ) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, inner_kernel, kernel
+from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel
 
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
@@ -52,7 +52,7 @@ def lower_to_axis(lanes: Floats32, other: Floats32, allowed: float, out: Floats3
         out[i] = min(out[i], _distance(a, u, b, v) - allowed)
 
 
-@kernel
+@brief_kernel
 def lower_to_body(segments: Floats32, body: Floats32, allowed: Floats32, chosen: Bools, out: Floats32) -> None:
     """Lower `out` (N,) to the least distance beyond what is allowed (C, K).
 
@@ -78,7 +78,7 @@ def clear_pairs(first: Floats32, second: Floats32) -> Floats32:
     return out
 
 
-@kernel
+@brief_kernel
 def pair_clearances(
     capsules: Floats32, first: Indices, second: Indices, kinds: Indices, allowed: Floats32, count: int
 ) -> Floats32:

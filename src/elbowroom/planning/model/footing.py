@@ -19,7 +19,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
 from elbowroom.world.ground.swept import set_highest_under
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
@@ -269,7 +269,7 @@ def _lifted(overs: Floats, rise: float, top: float, over: float, w: float) -> fl
     return min(top * risen, rise + (top - rise) * sunk)
 
 
-@exact_kernel
+@brief_exact_kernel
 def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Floats) -> Bools:
     """Write to root states (N, ROOT_STATE) what their feet stand on; in which of them there is ground for both (N,)."""
     found, places = np.ones(roots.shape[0], np.bool_), np.empty(6)
@@ -289,7 +289,7 @@ def set_rises(ground: Ground, legs: Floats, scale: float, sole: Sole, roots: Flo
     return found
 
 
-@exact_kernel
+@brief_exact_kernel
 def floors_under(states: Floats) -> Floats:
     """`Footing.floors` (2,), on ground that is not plain."""
     floors = np.empty(2)
@@ -302,7 +302,7 @@ def floors_under(states: Floats) -> Floats:
     return floors
 
 
-@exact_kernel
+@brief_exact_kernel
 def levelled(states: Floats) -> Floats:
     """Root states (N, ROOT_STATE) in the same strides on the plane."""
     level = states.copy()
@@ -311,7 +311,7 @@ def levelled(states: Floats) -> Floats:
     return level
 
 
-@exact_kernel
+@brief_exact_kernel
 def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs, radii: Floats32, spare: float) -> None:
     """Raise the capsules `feet` (F,) among `segments` (C, 6, N) by as much as feet are below the plane, and 3 mm.
 

@@ -18,7 +18,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.pose.posing import Column
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, SHOWN, WITH_FEET
-from elbowroom.jit import exact_kernel, helper
+from elbowroom.jit import brief_exact_kernel, helper
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
 from elbowroom.planning.shared import Shared
@@ -137,7 +137,7 @@ class BodyLevers:
         return levers
 
 
-@exact_kernel
+@brief_exact_kernel
 def travel(levers: Levers, roots: tuple[Floats, Floats], uppers: tuple[Floats, Floats]) -> Floats:
     """No point of a capsule's axis moves farther, (C,) metres, while a posture changes evenly to another.
 
@@ -195,7 +195,7 @@ def _set_moves_of_feet(root: Floats, moves: Floats) -> None:
         moves[_OF_FEET + i] = abs(root[WITH_FEET + i])
 
 
-@exact_kernel
+@brief_exact_kernel
 def raised_between(one: Floats, other: Floats) -> float:
     """No point of a leg moves farther, metres, while what the feet of a root state stand on, and how fast that rises,
     changes to another's.

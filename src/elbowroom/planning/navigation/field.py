@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
 from elbowroom.world.ground.ground import EVEN_STAIR
@@ -120,7 +120,7 @@ def _between(costly: Costly, node: int, m: int) -> float:
     return max(price_at(costly, first), price_at(costly, other))
 
 
-@exact_kernel
+@brief_exact_kernel
 def aim_from(field: Field, costly: Costly, node: int, i: float, j: float, far: float) -> int:
     """The place to walk straight to from `node`, next to row `i` and column `j`: the farthest on the way within sight.
 

@@ -16,7 +16,7 @@ from elbowroom.server.entrance.rate_limit import TokenBucket
 
 _SLICE = 4096  # bytes of a WebSocket that are taken apart at once: 700 frames at most
 _SMALL_FRAMES = 50.0  # pings, pongs and parts of messages a second that a client may send
-_AFTER_CLOSE = 64 * 1024  # bytes that a client may still send when it is told that the connection closes
+_AFTER_CLOSE = 16 * 1024  # bytes that a client may still send when it is told that the connection closes
 
 
 class BoundedWebSocket(WebSocketsSansIOProtocol):

@@ -32,7 +32,7 @@ def kernels_in_memory() -> int:
 
     They stay: who meets for the first time what needs another kernel makes the process larger, once.
     """
-    return sum(len(kernel.signatures) for kernel in kernels())
+    return sum(len(kernel.overloads) for kernel in kernels())
 
 
 def kept_kernels() -> list[Any]:

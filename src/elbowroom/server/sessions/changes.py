@@ -19,6 +19,7 @@ from elbowroom.server.sessions.walk import Walk, WalkSettings
 from elbowroom.server.sessions.wanted import Wanted
 from elbowroom.server.stores.library import Library
 from elbowroom.server.stores.sharing import bring
+from elbowroom.server.wire.codec import encode
 from elbowroom.world.scene import Scene
 
 LOG = logging.getLogger("elbowroom.server")
@@ -97,14 +98,15 @@ class Changes:
             places = () if moved else (self._stage.walk.place,)
             self._library.hold(self._session, now, wanted)
             walk = await prepared(self._library, wanted, places, self._session)
+            scene = await told_scene(walk.scene) if moved else None
         finally:
             self._library.hold(self._session, Wanted.of(self._stage.walk))
             self._outbox.put(replace(notice, active=False))
         self._library.hold(self._session, wanted)
         self._outbox.drop_frame()
         self._stage.show(walk)
-        if moved:
-            self._outbox.put(scene_message(walk.scene))
+        if scene is not None:
+            self._outbox.put(scene)
         if dressed:
             self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
         if isinstance(walk, ClipWalk) and wanted.clip != now.clip:
@@ -117,6 +119,11 @@ async def prepared(library: Library, wanted: Wanted, places: Sequence[RootState]
     if wanted.clip:
         await library.clips.get(wanted.clip).read()
     return await asyncio.to_thread(make_walk, library, wanted, places, scene)
+
+
+async def told_scene(scene: Scene) -> str:
+    """What a client is told of a scene, as text: to make it takes longer than a frame, so another thread does."""
+    return await asyncio.to_thread(lambda: encode(scene_message(scene)))
 
 
 def make_walk(library: Library, wanted: Wanted, places: Sequence[RootState], scene: Scene) -> Walk | ClipWalk:

@@ -21,13 +21,13 @@ class Outbox:
     """Messages in order, and the newest pose frame."""
 
     def __init__(self) -> None:
-        self._messages: deque[ServerMessage] = deque()
+        self._messages: deque[ServerMessage | str] = deque()
         self._frame: bytes | None = None
         self._wake = asyncio.Event()
         self.dropped = 0  # frames replaced before they were sent
 
-    def put(self, message: ServerMessage) -> None:
-        """Send a message, in order; raises `SlowClientError` if too many wait."""
+    def put(self, message: ServerMessage | str) -> None:
+        """Send a message, or one that is encoded already, in order; raises `SlowClientError` if too many wait."""
         if isinstance(message, _REPLACED):
             self._messages = deque(m for m in self._messages if not _replaces(message, m))
         if len(self._messages) >= MAX_WAITING:
@@ -51,13 +51,14 @@ class Outbox:
             await self._wake.wait()
             self._wake.clear()
             while self._messages:
-                await socket.send_text(encode(self._messages.popleft()))
+                message = self._messages.popleft()
+                await socket.send_text(message if isinstance(message, str) else encode(message))
             if self._frame is not None:
                 frame, self._frame = self._frame, None
                 await socket.send_bytes(frame)
 
 
-def _replaces(message: ServerMessage, older: ServerMessage) -> bool:
+def _replaces(message: ServerMessage, older: ServerMessage | str) -> bool:
     if isinstance(message, Pushed) and isinstance(older, Pushed) and message.obstacle != older.obstacle:
         return False
     return type(message) is type(older)

@@ -18,9 +18,9 @@ from elbowroom.server.schema.bounds import INPUT_TIMEOUT, PROTOCOL
 from elbowroom.server.schema.commands import ClockMessage, Configure, Goto, Input, Overlays, Ping, Push, Reset
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.schema.progress import Loading, Notice, Pong
-from elbowroom.server.sessions.changes import Changes, prepared
+from elbowroom.server.sessions.changes import Changes, prepared, told_scene
 from elbowroom.server.sessions.outbox import Outbox, SlowClientError
-from elbowroom.server.sessions.reports import avatar_message, clip_message, scene_message
+from elbowroom.server.sessions.reports import avatar_message, clip_message
 from elbowroom.server.sessions.resuming import NOTED_EVERY, Whereabouts, forget, note, recall
 from elbowroom.server.sessions.stage import Stage
 from elbowroom.server.sessions.standstill import Standstill
@@ -122,12 +122,13 @@ class Session:
         self._outbox.put(Hello(__version__, PROTOCOL, library.catalog(page_key(self._socket.query_params))))
         self._outbox.put(Loading("avatar", library.avatar, True))
         walk = await self._resumed() or await prepared(library, wanted, (), self)
+        scene = await told_scene(walk.scene)
         self._outbox.put(Loading("avatar", library.avatar, False))
         self._stage = Stage(walk, self._now(), library.meter)
         self._changes = Changes(library, self._stage, self._outbox, self)
         self._ways = Ways(self._stage, self._outbox)
         self._outbox.put(self._stage.settings())
-        self._outbox.put(scene_message(walk.scene))
+        self._outbox.put(scene)
         self._outbox.put(avatar_message(walk.avatar, self._stage.revision))
         if isinstance(walk, ClipWalk):
             self._outbox.put(clip_message(walk.stored))
@@ -181,6 +182,7 @@ class Session:
 
     async def _read(self) -> None:
         while True:
+            await asyncio.sleep(0)  # what waits to be read comes at once: others' frames come between
             event = await self._socket.receive()
             if event["type"] == "websocket.disconnect":
                 self._code = event.get("code", 1005)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -235,7 +235,7 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
     return tilted, -math.atan(grade)
 
 
-@exact_kernel
+@brief_exact_kernel
 def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z: float) -> float:
     """How high a body is that walks there from `start` (x, height, z): the mean of the ground about the place.
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import helper, kernel
+from elbowroom.jit import brief_kernel, helper
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 from elbowroom.world.obstacles.clearance import lower_each
 from elbowroom.world.obstacles.layout import ROW, Nearby
@@ -69,7 +69,7 @@ def _lower_above(axes: Floats32, radii: Floats32, near: Nearby, tops: Floats, fl
                     out[c] = min(out[c], found[c])
 
 
-@kernel
+@brief_kernel
 def clearances_around(
     standing: Standing, segments: Floats32, radii: Floats32, x: float, z: float, floors: Floats
 ) -> Floats32:

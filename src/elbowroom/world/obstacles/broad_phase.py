@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -49,7 +49,7 @@ def meeting(grids: Grids, least: tuple[float, float], most: tuple[float, float])
     return found
 
 
-@exact_kernel
+@brief_exact_kernel
 def meeting_any_order(grids: Grids, low_x: float, low_z: float, high_x: float, high_z: float) -> Longs:
     """`meeting` for kernels that do not care about the order."""
     found, count = np.empty(grids.keys.shape[0], np.int64), 0

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.jit import helper, inner_kernel, kernel, plain
+from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
@@ -164,7 +164,7 @@ def _pairwise_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
             clearance_into(segments[c : c + 1], radii[c : c + 1], one, out[c, b])
 
 
-@kernel
+@brief_kernel
 def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any:
     """The least clearance of `capsules` (6, C), as lanes of one loop."""
     least, found = _INFINITE, np.empty(capsules.shape[1], np.float32)
@@ -174,7 +174,7 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
     return least
 
 
-@kernel
+@brief_kernel
 def clearance_of_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """The clearance of each of `capsules` (6, C) from the nearest of the obstacles, to `out` (C,)."""
     _infinitely_far(out)

@@ -100,6 +100,10 @@ class Obstacles:
         return pack((*self._parts.shapes, *(track.shape for track in self.moving.tracks)))
 
     @cached_property
+    def _movers(self) -> Nearby:
+        return self.moving.about_origin(self._packed)
+
+    @cached_property
     def _grids(self) -> Grids:
         least, most = bounds_of(self.standing)
         return grids_of(least[:, [0, 2]], most[:, [0, 2]])
@@ -176,11 +180,17 @@ class Obstacles:
 
     def at(self, time: float) -> Nearby:
         """All of them, as they stand at a time."""
-        return joined(self.standing, self.moving.at(time, self._packed)) if len(self.moving) else self.standing
+        return joined(self.standing, self.moving.at(time, self._movers)) if len(self.moving) else self.standing
 
-    def bounds_at(self, time: float) -> tuple[Floats, Floats]:
-        """The least and the greatest corners (B, 3) of boxes along the world's axes that hold all of them at a time."""
-        return bounds_of(self.at(time))
+    def first_bounds(self) -> tuple[Floats, Floats]:
+        """The least and the greatest corners (B, 3) of boxes along the world's axes that hold all of them at time 0.
+
+        Found without a kernel: scenes are read before any is compiled.
+        """
+        centers, yaws = self.moving.poses(0.0)
+        turns = quaternion.about_axis(1, yaws[0])
+        moved = rows_of([track.shape for track in self.moving.tracks], centers[0], turns, self._packed)
+        return bounds_of(joined(self.standing, moved))
 
     def clearance(
         self,
@@ -198,7 +208,7 @@ class Obstacles:
         x, z = float(origin[0]), float(origin[1])
         found = np.inf
         if len(self.moving):
-            found = _least(segments, radii, about(self.moving.at(time, self._packed), x, z))
+            found = _least(segments, radii, about(self.moving.at(time, self._movers), x, z))
         for reach, numbers in self._wider_and_wider(segments, radii, x, z, floor):
             if len(numbers):
                 found = min(found, _least(segments, radii, about(self.picked(numbers), x, z)))
@@ -213,7 +223,7 @@ class Obstacles:
         """
         found = clearances_around(self.about_bodies, segments, radii, origin[0], origin[1], floors)
         if len(self.moving):
-            moved = about(self.moving.at(time, self._packed), float(origin[0]), float(origin[1]))
+            moved = about(self.moving.at(time, self._movers), float(origin[0]), float(origin[1]))
             found = np.minimum(found, clearance_from_all(segments[:, :, 0], radii, moved))
         return found
 
@@ -224,7 +234,7 @@ class Obstacles:
         x, z = float(origin[0]), float(origin[1])
         axes, best = np.asarray(segments, np.float64), None
         if len(self.moving):
-            best = _nearest(axes, radii, about(self.moving.at(time, self._packed), x, z))
+            best = _nearest(axes, radii, about(self.moving.at(time, self._movers), x, z))
             best = best._replace(obstacle=best.obstacle + len(self.standing.rows))
         for reach, numbers in self._wider_and_wider(axes, radii, x, z):
             if len(numbers):
@@ -245,13 +255,15 @@ class Obstacles:
 
         Those that rise above a floor.
         """
+        many = len(self.standing.rows)
+        if not many:
+            return
         axes = np.asarray(segments, np.float64)
         ends = np.moveaxis(axes.reshape(len(axes), 2, 3, -1), 2, -1).reshape(-1, 3)
         widest = float(np.max(radii, initial=0.0))
         least, most = ends.min(axis=0) - widest, ends.max(axis=0) + widest
-        many = len(self.standing.rows)
         reach = _NEAR if many < _MANY else _NEARER
-        while many and reach < _FAR:
+        while reach < _FAR:
             low, high = (x + least[0] - reach, z + least[2] - reach), (x + most[0] + reach, z + most[2] + reach)
             numbers = self.numbers_near(low, high)
             lowest, highest = self._heights[numbers].T

@@ -12,11 +12,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.layout import Nearby, Spans
 from elbowroom.world.obstacles.meshes.packed import NOTHING, Packed
 from elbowroom.world.obstacles.rows import rows_of
 from elbowroom.world.obstacles.shapes import Shape, extents_of
-from elbowroom.world.obstacles.tracks.sweeps import LOOP, ONCE, PINGPONG, Tracks, swept_rows
+from elbowroom.world.obstacles.tracks.poses import LOOP, ONCE, PINGPONG, Tracks, rows_at
+from elbowroom.world.obstacles.tracks.sweeps import swept_rows
 
 Floats = NDArray[np.float64]
 
@@ -108,10 +110,16 @@ class Moving:
         found = [track.poses(np.atleast_1d(times)) for track in self.tracks]
         return np.stack([center for center, _ in found], axis=1), np.stack([yaw for _, yaw in found], axis=1)
 
-    def at(self, time: float, packed: Packed | None = None) -> Nearby:
-        """The obstacles as they stand at a time; `packed` as in `rows_of`."""
-        centers, yaws = self.poses(time)
-        return rows_of([track.shape for track in self.tracks], centers[0], _turns(yaws[0]), packed)
+    def about_origin(self, packed: Packed | None = None) -> Nearby:
+        """The obstacles, each with its origin where the world's is, not turned; `packed` as in `rows_of`."""
+        count = len(self.tracks)
+        turns = np.broadcast_to(quaternion.IDENTITY, (count, 4))
+        return rows_of([track.shape for track in self.tracks], np.zeros((count, 3)), turns, packed)
+
+    def at(self, time: float, shapes: Nearby | None = None) -> Nearby:
+        """The obstacles as they stand at a time; their shapes `about_origin` may be known."""
+        near = self._about_origin if shapes is None else shapes
+        return Nearby(rows_at(self._kernel_tracks, near.rows, time), near.packed)
 
     def swept(self, times: Sequence[float] | Floats) -> Spans:
         """Boxes (n, B) that hold what each obstacle sweeps from each of the times (n+1,) to the next."""
@@ -122,6 +130,10 @@ class Moving:
         """Boxes (n, B) that hold what each obstacle sweeps in each span of time, from `first` (n,) to `last`."""
         rows = swept_rows(self._kernel_tracks, np.ascontiguousarray(first), np.ascontiguousarray(last))
         return Spans(rows, NOTHING)
+
+    @cached_property
+    def _about_origin(self) -> Nearby:
+        return self.about_origin()
 
     @cached_property
     def _kernel_tracks(self) -> Tracks:
@@ -139,8 +151,3 @@ def _packed(tracks: tuple[Track, ...]) -> Tracks:
         np.array([extents_of(track.shape) for track in tracks]).reshape(-1, 3),
         np.array([_CODES[track.repeat] for track in tracks], np.int64),
     )
-
-
-def _turns(yaws: Floats) -> Floats:
-    zero = np.zeros_like(yaws)
-    return np.stack([zero, np.sin(0.5 * yaws), zero, np.cos(0.5 * yaws)], axis=-1)

@@ -1,53 +1,19 @@
 """What obstacles on tracks sweep in spans of time, as boxes that hold it: one compiled call for all of both."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.obstacles.layout import ROW, Kind
+from elbowroom.world.obstacles.tracks.poses import LOOP, ONCE, PINGPONG, Tracks, pose_at
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-ONCE, LOOP, PINGPONG = range(3)  # what follows the last key pose
 _BOX = float(Kind.BOX)
 _PARTS = 4  # of a span of time in which a sweep is sampled
-
-
-class Tracks(NamedTuple):
-    """B tracks, one after the other."""
-
-    starts: Longs  # (B+1,) where the key poses of each begin and end
-    times: Floats  # (K,) seconds
-    poses: Floats  # (K, 4) centre and yaw
-    halves: Floats  # (B, 3) half lengths of a box about each that holds it, metres
-    repeats: Longs  # (B,)
-
-
-@inner_exact_kernel
-def _pose_at(times: Floats, poses: Floats, repeat: int, time: float, out: Floats) -> None:
-    """The pose (4,) of one track, key poses (K, 4) at times (K,), at a time."""
-    span, at = times[-1], time
-    if span == 0.0 or repeat == ONCE:
-        at = min(max(time, times[0]), span)
-    elif repeat == LOOP:
-        at = time % span
-    else:
-        at = span - abs(time % (2.0 * span) - span)
-    k, last = 0, times.shape[0] - 1  # the key poses beside
-    while last - k > 1:
-        middle = (k + last) // 2
-        if times[middle] <= at:
-            k = middle
-        else:
-            last = middle
-    length = times[last] - times[k]
-    share = min(max((at - times[k]) / length, 0.0), 1.0) if length > 0.0 else 1.0
-    for i in range(4):
-        out[i] = poses[k, i] + share * (poses[last, i] - poses[k, i])
 
 
 @inner_exact_kernel
@@ -90,13 +56,13 @@ def _samples(times: Floats, repeat: int, first: float, last: float) -> Floats:
 def _sweep(times: Floats, poses: Floats, half: Floats, repeat: int, first: float, last: float, out: Floats) -> None:
     """The row of a box, turned as the track is in the middle of a span, round its corners at all its times."""
     samples, pose = _samples(times, repeat, first, last), np.empty(4)
-    _pose_at(times, poses, repeat, 0.5 * (first + last), pose)
+    pose_at(times, poses, repeat, 0.5 * (first + last), pose)
     yaw, reach = pose[3], math.hypot(half[0], half[2])
     sine, cosine, farthest, before = np.sin(yaw), np.cos(yaw), 0.0, 0.0
     low, high = np.empty(3), np.empty(3)
     low[:], high[:] = np.inf, -np.inf
     for i in range(samples.shape[0]):
-        _pose_at(times, poses, repeat, samples[i], pose)
+        pose_at(times, poses, repeat, samples[i], pose)
         turned = pose[3] - yaw
         farthest = max(farthest, abs(turned - before)) if i > 0 else 0.0
         before = turned

@@ -1,0 +1,68 @@
+"""Kernels that a frame enters keep the interpreter: who lets go of it waits for it while others plan."""
+
+from contextlib import closing
+from typing import Any
+
+import pytest
+
+from elbowroom.control.plans.desk import Job
+from elbowroom.jit import kernels_made
+from elbowroom.server.schema.commands import Input
+from elbowroom.server.sessions.stage import STEP, Stage
+from elbowroom.server.sessions.walk import Walk, WalkSettings
+from elbowroom.server.stores.avatar_store import AvatarStore
+from elbowroom.world.scene import Scene
+from late_desk import LateDesk
+
+_WALK = [*[Input(1, forward=1.0)] * 90, *[Input(2, forward=1.0, strafe=1.0)] * 40, *[Input(3)] * 30]
+
+
+class _Entered:
+    """The names of kernels that were called from Python, but for while a plan was made."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.released: set[str] = set()
+        self.kept: set[str] = set()
+        self.planning = False
+        for kernel in kernels_made():
+            if kernel.__module__.startswith("elbowroom.") and not kernel.targetoptions.get("no_cpython_wrapper"):
+                monkeypatch.setattr(kernel, "__class__", self._noting(type(kernel)))
+
+    def _noting(self, dispatchers: type) -> type:
+        def call(kernel: Any, *arguments: Any) -> Any:
+            if not self.planning:
+                names = self.released if kernel.targetoptions["nogil"] else self.kept
+                names.add(f"{kernel.__module__}.{kernel.__name__}")
+            return dispatchers.__call__(kernel, *arguments)
+
+        return type(dispatchers.__name__, (dispatchers,), {"__call__": call})
+
+
+class _Apart(LateDesk):
+    """A desk whose plans are made elsewhere, as in a thread."""
+
+    def __init__(self, turns: int, entered: _Entered) -> None:
+        super().__init__(turns)
+        self._entered = entered
+
+    def submit(self, job: Job) -> None:
+        self._entered.planning = True
+        super().submit(job)
+        self._entered.planning = False
+
+
+@pytest.mark.parametrize("scene", ["d", "traffic"])
+def test_kernels_that_frames_enter_keep_the_interpreter(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    entered = _Entered(monkeypatch)
+    entered.planning = True
+    with closing(AvatarStore()) as avatars:
+        desk = _Apart(3, entered)
+        stage = Stage(Walk(avatars.get("stock"), Scene.load(scene), WalkSettings(), desk=desk), 0.0)
+        entered.planning = False
+        for number, held in enumerate(_WALK):
+            desk.next_turn()
+            stage.obey(held, number * STEP)
+            stage.advance(number * STEP)
+            stage.frame(number * STEP)
+    assert len(entered.kept) > 10
+    assert not entered.released, sorted(entered.released)
