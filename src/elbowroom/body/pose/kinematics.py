@@ -19,6 +19,7 @@ from elbowroom.body.gait.legs import leg_rest
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.made_once import made_once
 from elbowroom.body.pose import posing
 from elbowroom.body.pose.hands import relaxed_rotations
 from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, posed_joints, posed_legs, whole_body
@@ -84,8 +85,9 @@ class BodyModel(NamedTuple):
         return self.groups[group]
 
 
+@made_once
 def body_model(humanoid: Humanoid) -> BodyModel:
-    """Measure a humanoid. The model belongs to this object: keep it beside the humanoid."""
+    """Measure a humanoid."""
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
     parents = np.ascontiguousarray(skeleton.parents, np.int64)
     rest = np.ascontiguousarray(skeleton.positions, np.float64)

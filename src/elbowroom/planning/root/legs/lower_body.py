@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.made_once import made_once
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.root.legs.hull import ground_below, some_ground, stride_hull
+from elbowroom.planning.root.legs.hull import StrideHull, ground_below, some_ground, stride_hull
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.legs.room_of_legs import Legs, room_at
 from elbowroom.world.ground import ground as walked
@@ -35,6 +36,15 @@ _BESIDE = 0.1  # metres beside a stance within which treads are stood on too: mo
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
+class Measures(NamedTuple):
+    """What is known of somebody's legs anywhere."""
+
+    stance: Stance  # a vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis
+    height: float  # of the pelvis, metres
+    reach: float  # how far the legs reach in a run, with a little to spare, metres
+    hull: StrideHull  # how far they reach in any stride
+
+
 class Grid(NamedTuple):
     """A grid on the ground, as `walkable_window` has it, and where one comes to it."""
 
@@ -54,13 +64,12 @@ class LowerBody:
         self.model: BodyModel = body_model(humanoid)
         self.footing = Footing(self.model, ground)
         self.radii: Floats32 = self.model.roots.radii
-        self.stance, height, self.reach = _measure(self.model)
+        self.stance, height, self.reach, self.hull = _measures(humanoid)
         tall = height + _SPARE_HEIGHT
         self._tall = tall + STEP  # metres above the ground: what begins higher is not met by legs, as on the plane
         corners, height = obstacles.corners, tall if ground.plain else math.inf
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
-        self.hull = stride_hull(self.model)
         if not ground.plain:
             self.hull = self.hull._replace(extents=self.hull.extents + _KNEES)
             self.reach += _KNEES
@@ -145,12 +154,13 @@ class LowerBody:
         return replace(found, clearance=np.where(there, found.clearance, np.float32(-1.0)))
 
 
-def _measure(model: BodyModel) -> tuple[Stance, float, float]:
-    """A vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis; that height; and how far the
-    legs reach in a run, with a little to spare."""
+@made_once
+def _measures(humanoid: Humanoid) -> Measures:
+    model = body_model(humanoid)
     walk, run = (_stride(model, speed) for speed in (_WALK, _RUN))
     radius, height = float(walk[:, 0].max()), float(walk[:, 1].max())
-    return Stance(radius, _LOW, max(height - radius, _LOW)), height, float(run.max()) + _SPARE
+    stance = Stance(radius, _LOW, max(height - radius, _LOW))
+    return Measures(stance, height, float(run.max()) + _SPARE, stride_hull(model))
 
 
 def _stride(model: BodyModel, speed: float) -> Floats:
