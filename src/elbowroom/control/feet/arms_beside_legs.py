@@ -76,9 +76,10 @@ class ArmsBesideLegs:
         back[self._columns] = np.maximum(upper[self._columns], least)
         return back
 
-    def barely_apart(self, root: Floats, upper: Floats) -> Floats:
+    def barely_apart(self, root: Floats, upper: Floats, known: Floats32 | None = None) -> Floats:
         """The same, no farther than needed: for where something else is in the arms' way."""
-        gaps = self._gaps(root, upper)[:, 0].astype(np.float64)
+        both = self._gaps(root, upper) if known is None else known
+        gaps = both[:, 0].astype(np.float64)
         return upper if gaps.min() >= 0.0 else self._spread(root, upper, gaps, np.maximum(gaps, _BARELY))
 
     def _spread(self, root: Floats, upper: Floats, gaps: Floats, wanted: Floats) -> Floats:

@@ -25,10 +25,12 @@ from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Moment
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
+from elbowroom.control.feet.posing import Posing
 from elbowroom.control.feet.raised import raised
 from elbowroom.control.key_frame_queue import Playback
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
@@ -77,26 +79,32 @@ class Stepping:
         """How a pose that is held could be shown next, as legs come to a stand: best first.
 
         Arms make way for legs that come to a stand; if that touches they stay, where no arm comes deeper into a leg.
+        Each pose is made when it is asked for, and none twice.
         """
-        moment = moment._replace(ahead=UNKNOWN)
-        steps = self._followed(moment, held, STEPS)
-        roomy = moment.look(steps.root, held.upper, steps.axes).room >= _ROOM or self._is_clear(moment, steps, held)
-        order, still = (STEPS, GLIDES) if roomy else (GLIDES, STEPS), moment._replace(room=_NOT_AT_ALL)
-        made = [pose for how in order for pose in self._ways(moment, held, how)]
-        if any(lively(pose.root) for pose in made):
-            made += [pose for how in order for pose in self._ways(still, held, how)]
-        deepest = min(self._arms.room(*moment.shown[:2]), 0.0)
-        for pose in made:
-            is_apart = pose.upper is not held.upper
-            yield pose if is_apart else pose._replace(upper=self._arms.apart(pose.root, pose.upper))
-        yield from (pose for pose in made if self._arms.room(pose.root, pose.upper) >= deepest)
+        alive = self._posing(moment._replace(ahead=UNKNOWN), held)
+        steps = alive.made(STEPS)
+        around = alive.moment.look(steps.root, held.upper, steps.axes)
+        roomy = around.room >= _ROOM or self._is_clear(alive.moment, steps, held)
+        stays = list[Playback]()
+        for it, pose in self._all_ways(alive, (STEPS, GLIDES) if roomy else (GLIDES, STEPS)):
+            made_way = pose.upper is not held.upper
+            upper = pose.upper if made_way else self._arms.apart(pose.root, pose.upper, it.gaps(pose))
+            if upper is not pose.upper:
+                stays.append(pose)
+            yield pose._replace(upper=upper)
+        if stays:
+            deepest = min(self._arms.room(*moment.shown[:2]), 0.0)
+            yield from (pose for pose in stays if self._arms.room(pose.root, pose.upper) >= deepest)
 
     def next(self, moment: Moment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
-        after = self._followed(moment, posed, STEPS)
+        return self._next(self._posing(moment, posed))
+
+    def _next(self, it: Posing) -> Playback:
+        moment, posed, after = it.moment, it.posed, it.made(STEPS)
         around = moment.look(after.root, posed.upper, after.axes)
         if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
-            after = self._glided(moment, posed, lasts=around.lasts)
+            after = self._glided(it, lasts=around.lasts)
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
         made = moment.shown.upper - moment.meant
         return Playback(after.root, self._arms.coming_back(upper, posed.upper, made, moment.dt), posed.upper_velocity)
@@ -108,8 +116,11 @@ class Stepping:
         were planned, and arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go
         as planned; or feet step, or wait. Last come those with an arm too deep in a leg.
         """
-        in_legs = list[tuple[Playback, Floats]]()
+        in_legs, told = list[tuple[Playback, Floats]](), list[Playback]()
         for way, stance, clear in self._ways_under(moment, played):
+            if any(way.root is other.root and way.upper is other.upper for other in told):
+                continue
+            told.append(way)
             if clear:
                 yield way, stance
             else:
@@ -119,14 +130,15 @@ class Stepping:
     def _ways_under(
         self, moment: Moment, played: Sequence[tuple[Playback, Floats]]
     ) -> Iterator[tuple[Playback, Floats, bool]]:
-        """The same, and whether arms are clear of the legs."""
+        """The same, some of them twice, and whether arms are clear of the legs."""
         still = moment._replace(room=_NOT_AT_ALL)
-        for posed, stance in played:
-            for way in self._off_things(moment, self._made_way(moment, posed)):
-                yield way, stance, way.upper is posed.upper or self._arms.are_clear(way.root, way.upper)
+        planned = [(self._posing(still, posed), stance) for posed, stance in played]
+        for it, stance in planned:
+            for way in self._off_things(moment, self._made_way(self._posing(moment, it.posed), it)):
+                yield way, stance, way.upper is it.posed.upper or self._arms.are_clear(way.root, way.upper)
         for how in (GLIDES, STEPS):
-            for posed, stance in played:
-                for way in self._ways(still, posed, how):
+            for it, stance in planned:
+                for way in self._ways(it, how):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
         for posed, stance in played:
             waits = self._made(still._replace(dt=0.0), posed, STEPS).root
@@ -136,13 +148,12 @@ class Stepping:
                 for way in (apart, *self._less_apart(waiting)):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
 
-    def _made_way(self, moment: Moment, posed: Playback) -> Iterator[Playback]:
-        """How a pose is shown where arms make way for legs: best first."""
-        still = moment._replace(room=_NOT_AT_ALL)
-        yield (alive := self.next(moment, posed))
-        if lively(moment.shown.root) or lively(alive.root):
-            yield self.next(still, posed)
-        glides = self._followed(still, posed, GLIDES)
+    def _made_way(self, alive: Posing, still: Posing) -> Iterator[Playback]:
+        """How a pose is shown where arms make way for legs, on hips that live and then on those planned: best first."""
+        yield (lives := self._next(alive))
+        if lively(alive.moment.shown.root) or lively(lives.root):
+            yield self._next(still)
+        glides, posed = still.made(GLIDES), still.posed
         yield posed._replace(root=glides.root, upper=self._arms.apart(glides.root, posed.upper, glides.gaps))
 
     def _off_things(self, moment: Moment, ways: Iterator[Playback]) -> Iterator[Playback]:
@@ -163,25 +174,38 @@ class Stepping:
                 best = n if room > near[best][0] + _FARTHER else best
             yield near.pop(best)[1]
 
-    def _less_apart(self, pose: Playback) -> Iterator[Playback]:
+    def _less_apart(self, pose: Playback, known: Floats32 | None = None) -> Iterator[Playback]:
         """A pose whose arms leave the legs no more room than they must, if they are in them; and as it is."""
-        upper = self._arms.barely_apart(pose.root, pose.upper)
+        upper = self._arms.barely_apart(pose.root, pose.upper, known)
         if upper is not pose.upper:
             yield pose._replace(upper=upper)
         yield pose
 
-    def _ways(self, moment: Moment, posed: Playback, how: int) -> Iterator[Playback]:
+    def _all_ways(self, alive: Posing, order: tuple[int, int]) -> Iterator[tuple[Posing, Playback]]:
+        """How a pose can be shown on feet that follow in two ways; where it lives on any, then on hips as planned."""
+        lives = False
+        for how in order:
+            for pose in self._ways(alive, how):
+                lives = lives or lively(pose.root)
+                yield alive, pose
+        if lives:
+            still = self._posing(alive.moment._replace(room=_NOT_AT_ALL), alive.posed)
+            yield from ((still, pose) for how in order for pose in self._ways(still, how))
+
+    def _ways(self, it: Posing, how: int) -> Iterator[Playback]:
         """How a pose can be shown on feet that follow in one of the ways: best first.
 
         On ground that is not plain there are more: on arms that make way for the legs or do not, and where feet glide
         they are raised slowly or hastily, or are at once where they were planned. Skin may be a little outside the
         capsules, so legs that have less room than that come last.
         """
+        moment, posed = it.moment, it.posed
         if self._footing.plain:
-            yield from self._less_apart(posed._replace(root=self._followed(moment, posed, how).root))
+            made = it.made(how)
+            yield from self._less_apart(posed._replace(root=made.root), made.gaps)
             return
         close, as_planned = list[Playback](), list[Playback]()
-        for root in [self._followed(moment, posed, how).root] if how != GLIDES else self._glides(moment, posed):
+        for root in [it.made(how).root] if how != GLIDES else self._glides(moment, posed):
             upper = self._arms.apart(root, posed.upper)
             if upper is not posed.upper:
                 as_planned += self._less_apart(posed._replace(root=root))
@@ -192,6 +216,9 @@ class Stepping:
                 yield pose
         yield from close
         yield from as_planned
+
+    def _posing(self, moment: Moment, posed: Playback) -> Posing:
+        return Posing(moment, posed, self._followed)
 
     def _glides(self, moment: Moment, posed: Playback) -> Iterator[Floats]:
         """Root states (SHOWN,) of a pose on feet that glide where ground is not plain: best first."""
@@ -216,20 +243,21 @@ class Stepping:
         """Whether legs are clear of what is near, but for the ground under them, where that is not plain."""
         return not self._footing.plain and moment.room_along(after.root[None, :WITH_FEET], posed.upper) >= CLEAR
 
-    def _glided(self, moment: Moment, posed: Playback, *, lasts: bool) -> Followed:
+    def _glided(self, it: Posing, *, lasts: bool) -> Followed:
         """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it.
 
         And as long as they could glide from there: planned feet are proven free, those that stay behind them are not.
         """
+        moment, posed = it.moment, it.posed
         if lasts:
-            held = self._followed(moment, posed, HOLDS)
+            held = it.made(HOLDS)
             near = moment.look(held.root, posed.upper, held.axes).room
             if near >= CLEAR or self._is_clear(moment, held, posed):
                 under = self._follower.under
                 back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN, under)
                 if moment.room_along(back, posed.upper) >= CLEAR:
                     return held
-        return self._followed(moment, posed, GLIDES)
+        return it.made(GLIDES)
 
     def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
         """A pose on feet that follow in one of the ways, with hips, chest and head that live."""

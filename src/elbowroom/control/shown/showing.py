@@ -153,15 +153,17 @@ class Showing:
 
     def _settling(self, dt: float) -> Iterator[Playback]:
         """How the pose that is shown can be held, with what it stands on: best first; at last lower, to be able to."""
+        feet, moment, shown = self._around.feet, self._moment(dt), self._pose
         parts = [part * dt for part in (_SETTLING if self.assist else _SETTLING[:1])]
-        held = [self.holding.settle(self._pose, part) for part in parts]
-        for pose in held:
-            yield from self._around.feet.settling(self._moment(dt), pose)
-        root = RootState.of(self._pose.root)._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
-        for pose, part in zip(held, parts, strict=True):
-            lower = ducked(pose, self._around.check.standing(root), part, self._clearance_of)
+        ended = is_still(shown.root[3:6])
+        for part in parts[:1] if ended else parts:
+            yield from feet.settling(moment, self.holding.settle(shown, part))
+        root = RootState.of(shown.root)._replace(forward=0.0, lateral=0.0, turn=0.0).as_array()
+        stood = self._around.check.standing(root)
+        for part in parts:
+            lower = ducked(self.holding.settle(shown, part), stood, part, self._clearance_of)
             if lower is not None:
-                yield from self._around.feet.settling(self._moment(dt), lower)
+                yield from feet.settling(moment, lower)
 
     def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
