@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import ROOT_STATE
@@ -23,6 +24,7 @@ from elbowroom.planning.root.pace import at_speed
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
+Floats = NDArray[np.float64]
 ONE_TURN = 1 / 60  # seconds
 LOW = 1.75  # metres: so near that it is measured
 IMPATIENT, PATIENCE = 1.0, 10.0  # seconds
@@ -65,6 +67,14 @@ def ceiling(height: float) -> dict[str, object]:
     return {"type": "box", "center": [0.0, height + 0.1, 0.0], "size": [2.0, 0.2, 2.0]}
 
 
+def stopped_in_stride(showing: Showing) -> Floats:
+    """The root state, at 1 m/s, in which one is shown from now on."""
+    root = showing.pose.root.copy()
+    root[3] = 1.0
+    showing._pose = showing.pose._replace(root=root)
+    return root
+
+
 def test_where_nothing_else_is_free_one_is_held_to_the_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Who has no room to stand in would go into the knees: not unless that is free."""
     showing = standing_under(0.005)
@@ -75,12 +85,55 @@ def test_where_nothing_else_is_free_one_is_held_to_the_bit(monkeypatch: pytest.M
     assert np.array_equal(showing.pose.upper, shown.upper)
 
 
+def test_who_is_held_and_stands_costs_no_more_than_who_rests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No step is made for legs that stand, and what breathes is looked at in every other frame."""
+    showing, looked = standing_under(0.5), list[float]()
+    clearance_of = Showing._clearance_of
+
+    def counted(self: Showing, root: Floats, upper: Floats) -> float:
+        looked.append(self._now)
+        return clearance_of(self, root, upper)
+
+    def no_step(*_: object) -> None:
+        pytest.fail("feet follow though they stand")
+
+    monkeypatch.setattr(Showing, "_clearance_of", counted)
+    monkeypatch.setattr("elbowroom.control.feet.stepping.followed", no_step)
+    for turn in range(1, 61):
+        showing.hold(turn * ONE_TURN, ONE_TURN)
+    assert 0 < len(looked) <= 30
+    assert showing.holding.active
+
+
+@pytest.mark.parametrize(("seconds", "most"), [(ONE_TURN, 3), (0.5 * ONE_TURN, 2)])
+def test_what_was_not_free_is_not_tried_again_in_each_frame(
+    monkeypatch: pytest.MonkeyPatch, seconds: float, most: int
+) -> None:
+    """One who is held in a stride, and none of whose ways to stand is free; in another pose it is tried at once."""
+    showing, tried = standing_under(0.5), set[float]()
+
+    def never_free(self: Showing, *_: object) -> bool:
+        tried.add(self._now)
+        return False
+
+    monkeypatch.setattr(Showing, "_is_free", never_free)
+    in_stride = stopped_in_stride(showing)
+    for turn in range(1, 13):
+        showing.hold(turn * seconds, seconds)
+        assert showing.pose.root is in_stride
+    assert 1 <= len(tried) <= most
+    showing._show(showing.pose._replace(root=in_stride.copy()), showing.clearance)
+    showing.hold(13 * seconds, seconds)
+    assert 13 * seconds in tried
+
+
 @pytest.mark.parametrize(("has", "offered", "keeps"), [(9.0, 1.9, False), (9.0, 2.1, True), (1.0, 0.9, False)])
 def test_legs_come_to_a_stand_where_that_leaves_a_motion_room_to_begin(
     monkeypatch: pytest.MonkeyPatch, has: float, offered: float, keeps: bool
 ) -> None:
     """Millimetres that one who is held has about the body, and that it would have with its legs nearer to a stand."""
     showing = standing_under(0.001 * has)
+    stopped_in_stride(showing)
     nearer = showing.pose._replace(upper=showing.pose.upper + 1e-3)
 
     def settling(_: Showing, dt: float) -> Iterator[Playback]:

@@ -16,6 +16,8 @@ from elbowroom.control.feet.feet import Around, Look, Moment, RoomAbove
 from elbowroom.control.feet.raised import raised
 from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.key_frame_queue import Playback
+from elbowroom.control.plans.canned import standing_posture
+from elbowroom.world.ground.ground import PLAIN
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -103,3 +105,17 @@ def test_what_comes_nearer_than_skin_gives_way_to_what_keeps_off(
     ways = ways_under(0.2, lambda root, upper: near if np.allclose(root, stepping) else farther)
     assert (not np.allclose(ways[0].root, stepping)) == others_first
     assert any(np.allclose(way.root, stepping) for way in ways), "it is shown where no other is free"
+
+
+@pytest.mark.parametrize("room", [-1.0, 0.03, 0.5])
+def test_no_way_is_told_twice(room: float) -> None:
+    """One who stands on the plane and begins to walk, arms clear of the legs: each way is posed and proven once."""
+    feet, planned = Stepping(HUMANOID, STOCK, AboveSoles(body_model(HUMANOID), PLAIN)), before(0.0)
+    upper = standing_posture(planned)
+    shown, near = Playback(feet.standing(planned), upper, UPPER), Around(0.05, lasts=True)
+    moment = Moment(shown, upper, DT, UNKNOWN, room, lambda *_: near, lambda *_: 0.0, lambda *_: 0.05)
+    planned[3], planned[6] = 0.8, 0.2
+    posed = Playback(planned, upper, UPPER)
+    for ways in (list(feet.settling(moment, posed)), [way for way, _ in feet.under(moment, [(posed, np.zeros(3))])]):
+        assert len(ways) > 1
+        assert len({way.root.tobytes() + way.upper.tobytes() for way in ways}) == len(ways)

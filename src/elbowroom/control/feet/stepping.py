@@ -6,6 +6,7 @@ none.
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,11 +132,12 @@ class Stepping:
         self, moment: Moment, played: Sequence[tuple[Playback, Floats]]
     ) -> Iterator[tuple[Playback, Floats, bool]]:
         """The same, some of them twice, and whether arms are clear of the legs."""
-        still = moment._replace(room=_NOT_AT_ALL)
-        planned = [(self._posing(still, posed), stance) for posed, stance in played]
-        for it, stance in planned:
-            for way in self._off_things(moment, self._made_way(self._posing(moment, it.posed), it)):
-                yield way, stance, way.upper is it.posed.upper or self._arms.are_clear(way.root, way.upper)
+        still, planned = moment._replace(room=_NOT_AT_ALL), list[tuple[Posing, Floats]]()
+        for posed, stance in played:
+            alive = self._posing(moment, posed)
+            planned.append((self._on_planned_hips(alive), stance))
+            for way in self._off_things(moment, self._made_way(alive, planned[-1][0])):
+                yield way, stance, way.upper is posed.upper or self._arms.are_clear(way.root, way.upper)
         for how in (GLIDES, STEPS):
             for it, stance in planned:
                 for way in self._ways(it, how):
@@ -150,8 +152,8 @@ class Stepping:
 
     def _made_way(self, alive: Posing, still: Posing) -> Iterator[Playback]:
         """How a pose is shown where arms make way for legs, on hips that live and then on those planned: best first."""
-        yield (lives := self._next(alive))
-        if lively(alive.moment.shown.root) or lively(lives.root):
+        yield self._next(alive)
+        if still is not alive:
             yield self._next(still)
         glides, posed = still.made(GLIDES), still.posed
         yield posed._replace(root=glides.root, upper=self._arms.apart(glides.root, posed.upper, glides.gaps))
@@ -182,15 +184,16 @@ class Stepping:
         yield pose
 
     def _all_ways(self, alive: Posing, order: tuple[int, int]) -> Iterator[tuple[Posing, Playback]]:
-        """How a pose can be shown on feet that follow in two ways; where it lives on any, then on hips as planned."""
-        lives = False
-        for how in order:
-            for pose in self._ways(alive, how):
-                lives = lives or lively(pose.root)
-                yield alive, pose
-        if lives:
-            still = self._posing(alive.moment._replace(room=_NOT_AT_ALL), alive.posed)
-            yield from ((still, pose) for how in order for pose in self._ways(still, how))
+        """How a pose can be shown on feet that follow in two ways, on hips that live and then on those planned."""
+        still = self._on_planned_hips(alive)
+        for it in (alive,) if still is alive else (alive, still):
+            yield from ((it, pose) for how in order for pose in self._ways(it, how))
+
+    def _on_planned_hips(self, alive: Posing) -> Posing:
+        """The same pose with hips where they were planned; the very same, where nothing lives."""
+        if not lively(alive.made(STEPS).root):
+            return alive
+        return self._posing(alive.moment._replace(room=_NOT_AT_ALL), alive.posed)
 
     def _ways(self, it: Posing, how: int) -> Iterator[Playback]:
         """How a pose can be shown on feet that follow in one of the ways: best first.
@@ -205,7 +208,7 @@ class Stepping:
             yield from self._less_apart(posed._replace(root=made.root), made.gaps)
             return
         close, as_planned = list[Playback](), list[Playback]()
-        for root in [it.made(how).root] if how != GLIDES else self._glides(moment, posed):
+        for root in [it.made(how).root] if how != GLIDES else self._glides(it):
             upper = self._arms.apart(root, posed.upper)
             if upper is not posed.upper:
                 as_planned += self._less_apart(posed._replace(root=root))
@@ -220,10 +223,12 @@ class Stepping:
     def _posing(self, moment: Moment, posed: Playback) -> Posing:
         return Posing(moment, posed, self._followed)
 
-    def _glides(self, moment: Moment, posed: Playback) -> Iterator[Floats]:
+    def _glides(self, it: Posing) -> Iterator[Floats]:
         """Root states (SHOWN,) of a pose on feet that glide where ground is not plain: best first."""
+        moment, posed = it.moment, it.posed
         before, stood = moment.shown.root, self._stood(posed.root)
-        for root in raised(before, stood, moment.dt):
+        yield it.made(GLIDES).root
+        for root in islice(raised(before, stood, moment.dt), 1, None):
             yield self._made(moment, posed._replace(root=root), GLIDES).root
         at_once = gliding(self._gait, before, stood, _LONG)
         yield self._alive(moment._replace(room=_NOT_AT_ALL), at_once, posed).root

@@ -27,7 +27,6 @@ class Holding:
 
     def settle(self, shown: Playback, dt: float) -> Playback:
         """The pose that is shown, `dt` seconds later: the legs a little nearer to standing."""
-        self.active = True
         root = shown.root.copy()
         root[3:6] = _faded(root[3:6], dt)
         return Playback(root, shown.upper, np.zeros_like(shown.upper))

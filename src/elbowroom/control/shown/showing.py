@@ -23,6 +23,7 @@ Floats32 = NDArray[np.float32]
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _TO_BEGIN = 0.002  # metres that a plan needs about the pose in which it begins: of what it has it may lose the half
 _BREATHES = 1 / 31  # seconds: who rests need not move in every frame
+_AGAIN = 0.1  # seconds: where legs have come no nearer to a stand it is not tried again sooner
 
 
 class Showing:
@@ -41,6 +42,7 @@ class Showing:
         self._pose = self._before = self._free = standing
         self._meant = upper  # what was planned for the upper body that is shown
         self._clearance, self._posed_at = around.check.clearance(stood, upper, 0.0), 0.0
+        self._again = 0.0  # seconds: when it is tried again how the legs of who is held come to a stand
 
     @property
     def pose(self) -> Playback:
@@ -86,16 +88,30 @@ class Showing:
         return False
 
     def hold(self, now: float, dt: float) -> None:
-        """Stay in the last good pose; the legs come to a stand where they can, or else go back the way they came."""
+        """Stay in the last good pose; the legs come to a stand where they can, or else go back the way they came.
+
+        Who stands already rests.
+        """
         self._now = now
+        self.holding.active = True
         if self.goes_back:
             self._go_back(dt)
+        elif self._has_settled:
+            self.rest(now, dt)
         else:
             self._settle(dt)
 
+    @property
+    def _has_settled(self) -> bool:
+        """Whether the legs of who is held have come to a stand, and nothing moves: then he rests."""
+        before, shown = self._before, self._pose
+        if not self.assist or self._around.check.restless or shown.upper is not before.upper:
+            return False
+        stands = is_still(shown.root[3:6]) and is_still(shown.upper_velocity)
+        return stands and self._around.feet.are_still(before.root, shown.root)
+
     def _go_back(self, dt: float) -> None:
         """Show what was shown before, when it is time for that, if it is still free."""
-        self.holding.active = True
         before = self._retracing.before(dt)
         if before is None:
             self._posed_at = self._now
@@ -110,14 +126,19 @@ class Showing:
         self._show(posed, clearance, back=True)
 
     def _settle(self, dt: float) -> None:
-        """Stay, as the legs come to a stand where they can, and leave the room that a motion needs to begin."""
+        """Stay, as the legs come to a stand where they can, and leave the room that a motion needs to begin.
+
+        Where they cannot that is not tried again in each frame, but for who touches what has come upon him.
+        """
         restless = self._around.check.restless
         least = 0.0 if restless else min(self._clearance, _TO_BEGIN)
-        for still in self._settling(dt):
+        waits = self._now < self._again and self._clearance >= 0.0
+        for still in () if waits else self._settling(dt):
             clearance = self._clearance_of(still.root, still.upper)
             if not self.assist or (clearance >= least and self._is_free(still, clearance)):
                 break
         else:
+            self._again = self._again if waits else self._now + _AGAIN
             still = self._pose._replace(upper_velocity=np.zeros_like(self._pose.upper))
             clearance = self._clearance_of(still.root, still.upper) if restless else self._clearance
         self._show(still, clearance)
@@ -205,6 +226,8 @@ class Showing:
             self._retracing.forget()
         elif not back:
             self._retracing.show(Past(self._pose, self._clearance, self._now - self._posed_at), pose)
+        if pose.root is not self._pose.root:
+            self._again = self._now
         self._before = self._pose
         self._pose, self._clearance, self._posed_at = pose, clearance, self._now
         self._meant = pose.upper
