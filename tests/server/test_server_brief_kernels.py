@@ -1,8 +1,12 @@
-"""Kernels that a frame enters keep the interpreter: who lets go of it waits for it while others plan."""
+"""Kernels that a frame enters keep the interpreter: who lets go of it waits for it while others plan.
+
+And those that keep it are given little by who plans: frames wait for them.
+"""
 
 from contextlib import closing
 from typing import Any
 
+import numpy as np
 import pytest
 
 from elbowroom.control.plans.desk import Job
@@ -17,12 +21,16 @@ from late_desk import LateDesk
 _WALK = [*[Input(1, forward=1.0)] * 90, *[Input(2, forward=1.0, strafe=1.0)] * 40, *[Input(3)] * 30]
 
 
+_LITTLE = 2000  # numbers in an array
+
+
 class _Entered:
-    """The names of kernels that were called from Python, but for while a plan was made."""
+    """The names of kernels that were called from Python."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.released: set[str] = set()
-        self.kept: set[str] = set()
+        self.released: set[str] = set()  # by frames: what lets go of the interpreter,
+        self.kept: set[str] = set()  # and what keeps it
+        self.large: set[str] = set()  # by plans: what keeps it, and is given much
         self.planning = False
         for kernel in kernels_made():
             if kernel.__module__.startswith("elbowroom.") and not kernel.targetoptions.get("no_cpython_wrapper"):
@@ -30,9 +38,11 @@ class _Entered:
 
     def _noting(self, dispatchers: type) -> type:
         def call(kernel: Any, *arguments: Any) -> Any:
+            name, keeps = f"{kernel.__module__}.{kernel.__name__}", not kernel.targetoptions["nogil"]
             if not self.planning:
-                names = self.released if kernel.targetoptions["nogil"] else self.kept
-                names.add(f"{kernel.__module__}.{kernel.__name__}")
+                (self.kept if keeps else self.released).add(name)
+            elif keeps and any(isinstance(one, np.ndarray) and one.size > _LITTLE for one in arguments):
+                self.large.add(name)
             return dispatchers.__call__(kernel, *arguments)
 
         return type(dispatchers.__name__, (dispatchers,), {"__call__": call})
@@ -52,7 +62,9 @@ class _Apart(LateDesk):
 
 
 @pytest.mark.parametrize("scene", ["d", "traffic"])
-def test_kernels_that_frames_enter_keep_the_interpreter(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_of_frames_keep_the_interpreter_and_plans_give_them_little(
+    scene: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     entered = _Entered(monkeypatch)
     entered.planning = True
     with closing(AvatarStore()) as avatars:
@@ -66,3 +78,4 @@ def test_kernels_that_frames_enter_keep_the_interpreter(scene: str, monkeypatch:
             stage.frame(number * STEP)
     assert len(entered.kept) > 10
     assert not entered.released, sorted(entered.released)
+    assert not entered.large, sorted(entered.large)

@@ -368,7 +368,7 @@ def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Fl
         drops[n] = low + _bob(stride, phase)
 
 
-@brief_kernel
+@kernel
 def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Floats]:
     """Feet and pelvis of the walking cycle for root states (N, 7).
 
@@ -427,7 +427,7 @@ def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, flo
     return drop + lowered, _SETBACK * lowered, hips_lean(lowering)
 
 
-@brief_kernel
+@kernel
 def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
     """How far the hips are below and behind their place in T-pose, metres, and lean forward, radians (N, 3).
 

@@ -12,7 +12,7 @@ from elbowroom.body.gait.cycle import ease_of, hips_sink, tilt_foot, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
 from elbowroom.body.gait.rises import STRETCH, drop_to, is_uneven, raise_foot
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE
-from elbowroom.jit import brief_kernel, helper
+from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def _pulled(down: float, needed: float, soft: float) -> float:
     return needed if over >= soft else down + (over + soft) * (over + soft) / (4.0 * soft)
 
 
-@brief_kernel
+@kernel
 def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, lowerings: Floats) -> tuple[Floats, Floats]:
     """Feet (N, 2, 6) as in `gait.foot_poses`, and sinks of the hips (N, 3) as in `gait.hips_sinks`.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RISES
-from elbowroom.jit import brief_kernel, inner_kernel
+from elbowroom.jit import inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def drop_to(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     return float(legs[side, _HIP + 1] - foot[1] - reach)
 
 
-@brief_kernel
+@kernel
 def raise_feet(legs: Floats, roots: Floats, feet: Floats, drops: Floats) -> None:
     """Put `feet` (N, 2, 6) and the hips' `drops` (N,) of the cycle on the ground that `roots` (N, ROOT_STATE) tell of.
 

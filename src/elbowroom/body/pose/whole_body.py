@@ -16,7 +16,7 @@ from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.pose import posing
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -132,13 +132,13 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
     return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
 
 
-@brief_exact_kernel
+@exact_kernel
 def posed_capsules(body: WholeBody, q: Floats, roots: Floats) -> Segments:
     """The capsules of `posed_body` alone."""
     return posed_body(body, q, roots)[0]
 
 
-@brief_exact_kernel
+@exact_kernel
 def posed_legs(body: WholeBody, roots: Floats, lowerings: Floats) -> Segments:
     """Capsules (C, 6, N) that pelvis and legs carry, of a body that has no others, in the world.
 

@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import ARMS, DOF, LOCAL, columns_of, limits
+from elbowroom.body.dof import ARMS, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import BodyModel, body_model, posture_capsules
+from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.following import ArmsAndLegs, arm_gaps
 from elbowroom.planning.goal import natural_walk
@@ -106,9 +106,7 @@ class ArmsBesideLegs:
         return float(self._gaps(root, upper).min())
 
     def _gaps(self, root: Floats, upper: Floats) -> Floats32:
-        here, q = root[None].copy(), np.zeros((1, DOF))
-        here[0, :3], q[0, DOF - LOCAL :] = 0.0, upper
-        return arm_gaps(posture_capsules(self._model, q, here), self.pairs)
+        return arm_gaps(self._model.whole, np.ascontiguousarray(root), np.ascontiguousarray(upper), self.pairs)
 
 
 _ARMS: Shared[ArmsBesideLegs] = Shared()

@@ -13,11 +13,11 @@ from elbowroom.body.dof import DOF, LOCAL, DofGroup, columns_of
 from elbowroom.body.gait.gliding import glide_feet
 from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.living import Body, live
-from elbowroom.body.pose.whole_body import posed_capsules
+from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.control.feet.treading import step_on, tread_gliding
 from elbowroom.control.shown.standing_about import ShownBody, lift_feet
-from elbowroom.jit import brief_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.footing import Underfoot
 
@@ -59,10 +59,19 @@ class Followed(NamedTuple):
     gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
 
 
-@brief_exact_kernel
-def arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
+@inner_exact_kernel
+def _arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
     """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs, metres (2, 1)."""
     return pair_clearances(axes, pairs.first, pairs.second, pairs.arms, pairs.allowed, _ARMS)
+
+
+@brief_exact_kernel
+def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: ArmsAndLegs) -> Floats32:
+    """`_arm_gaps` of a body at a root with feet (WITH_FEET or SHOWN,), with an upper body (LOCAL,)."""
+    q, here = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
+    q[0, DOF - LOCAL :] = upper
+    here[0, :3] = 0.0
+    return _arm_gaps(posed_capsules(body, q, here), pairs)
 
 
 @brief_exact_kernel
@@ -86,6 +95,6 @@ def followed(
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
     axes = posed_capsules(who.shown.whole, q, near)
-    gaps = arm_gaps(axes, who.pairs)
+    gaps = _arm_gaps(axes, who.pairs)
     lift_feet(who.shown, q, near, axes)
     return row, axes, gaps

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, leg_capsules
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_at, turned_legs
 from elbowroom.control.others.neighbour import Neighbour
@@ -18,6 +18,7 @@ from elbowroom.control.shown.standing_about import (
     HALVINGS,
     capsules_of,
     gaps_about,
+    legs_of,
     lifted_capsules,
     proven_between,
 )
@@ -145,9 +146,9 @@ class BodyCheck:
         """
         if self._empty:
             return np.inf
-        legs, near, lowering = self.model.roots, roots.copy(), upper[_LOWERING]
+        legs, near, lowering = self.model.roots, roots.copy(), float(upper[_LOWERING])
         near[:, :2] -= roots[0, :2]
-        axes = self.footing.lifted(leg_capsules(self.model, near, lowering), legs, near, lowering, _OVER_GROUND)
+        axes = self.footing.lifted(legs_of(self.model.lower, near, lowering), legs, near, lowering, _OVER_GROUND)
         lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
         radii, floors = np.tile(legs.radii, len(roots)), np.tile(self.soles.floors_of_legs(roots), len(roots))
         found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
-from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
+from elbowroom.body.pose.whole_body import WholeBody, posed_capsules, posed_legs
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
@@ -73,6 +73,12 @@ def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
     return lifted_capsules(body, q, near)
+
+
+@brief_exact_kernel
+def legs_of(lower: WholeBody, roots: Floats, lowering: float) -> Floats32:
+    """What pelvis and legs carry, `posed_legs` (C, 6, N), of a few root states (N, 7 or more) with one lowering."""
+    return posed_legs(lower, roots, np.full(len(roots), lowering))
 
 
 @brief_exact_kernel

@@ -78,7 +78,7 @@ def clear_pairs(first: Floats32, second: Floats32) -> Floats32:
     return out
 
 
-@brief_kernel
+@kernel
 def pair_clearances(
     capsules: Floats32, first: Indices, second: Indices, kinds: Indices, allowed: Floats32, count: int
 ) -> Floats32:

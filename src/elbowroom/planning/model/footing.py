@@ -19,7 +19,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
 from elbowroom.world.ground.swept import set_highest_under
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
@@ -302,7 +302,7 @@ def floors_under(states: Floats) -> Floats:
     return floors
 
 
-@brief_exact_kernel
+@exact_kernel
 def levelled(states: Floats) -> Floats:
     """Root states (N, ROOT_STATE) in the same strides on the plane."""
     level = states.copy()
@@ -311,7 +311,7 @@ def levelled(states: Floats) -> Floats:
     return level
 
 
-@brief_exact_kernel
+@exact_kernel
 def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs, radii: Floats32, spare: float) -> None:
     """Raise the capsules `feet` (F,) among `segments` (C, 6, N) by as much as feet are below the plane, and 3 mm.
 
