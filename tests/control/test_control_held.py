@@ -86,8 +86,12 @@ def test_where_nothing_else_is_free_one_is_held_to_the_bit(monkeypatch: pytest.M
 
 
 def test_who_is_held_and_stands_costs_no_more_than_who_rests(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No step is made for legs that stand, and what breathes is looked at in every other frame."""
+    """No step is made for legs that stand, and what breathes is looked at in every other frame.
+
+    In the first one it is looked whether arms make way for the legs.
+    """
     showing, looked = standing_under(0.5), list[float]()
+    showing.hold(ONE_TURN, ONE_TURN)
     clearance_of = Showing._clearance_of
 
     def counted(self: Showing, root: Floats, upper: Floats) -> float:
@@ -99,7 +103,7 @@ def test_who_is_held_and_stands_costs_no_more_than_who_rests(monkeypatch: pytest
 
     monkeypatch.setattr(Showing, "_clearance_of", counted)
     monkeypatch.setattr("elbowroom.control.feet.stepping.followed", no_step)
-    for turn in range(1, 61):
+    for turn in range(2, 62):
         showing.hold(turn * ONE_TURN, ONE_TURN)
     assert 0 < len(looked) <= 30
     assert showing.holding.active

@@ -103,9 +103,12 @@ class Showing:
 
     @property
     def _has_settled(self) -> bool:
-        """Whether the legs of who is held have come to a stand, and nothing moves: then he rests."""
+        """Whether the legs of who is held have come to a stand, arms stay, and nothing moves: then he rests.
+
+        Who has just begun to stand there has yet to look whether his arms make way for the legs.
+        """
         before, shown = self._before, self._pose
-        if not self.assist or self._around.check.restless or shown.upper is not before.upper:
+        if not self.assist or self._around.check.restless or before is shown or shown.upper is not before.upper:
             return False
         stands = is_still(shown.root[3:6]) and is_still(shown.upper_velocity)
         return stands and self._around.feet.are_still(before.root, shown.root)
