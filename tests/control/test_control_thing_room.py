@@ -22,7 +22,7 @@ THINGS: list[dict[str, Any]] = [
 
 def pushed_to(loose: Loose, number: int, place: tuple[float, float], steps: int = 240) -> Thing:
     """A thing, after it was pushed for some seconds with nobody there."""
-    loose.take(Hand(number, place))
+    loose.take(Hand(number, place), lambda _thing: False)
     for step in range(steps):
         loose.advance(STEP * step, STEP, lambda _thing, _way: True)
     return loose.things[number]

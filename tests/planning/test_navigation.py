@@ -214,7 +214,7 @@ def test_places_off_the_ground_and_no_places_are_refused(humanoid: Humanoid) -> 
 def test_what_is_closed_is_gone_round(humanoid: Humanoid) -> None:
     navigator = navigator_among(humanoid)
     start, goal = (0.0, 0.0), (0.0, 4.0)
-    way = navigator.find(start, goal, [((0.0, 2.0), 0.5)])
+    way = navigator.again(navigator.find(start, goal), start, [((0.0, 2.0), 0.5)])
     line = way.corners(start)
     points = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(line)])
     assert np.hypot(*(points[:, [0, 2]] - (0.0, 2.0)).T).min() > 0.5 + way.prices.slim - way.room.cell

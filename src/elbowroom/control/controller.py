@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from elbowroom.control.others.passing import expected, way_made
 from elbowroom.control.others.prediction import neighbour, slimmer
 from elbowroom.control.plans.desk import ImmediateDesk
 from elbowroom.control.plans.errands import Errands
+from elbowroom.control.plans.grounds import Grounds
 from elbowroom.control.plans.lookahead import STOCK_LOOKAHEAD, Lookahead
 from elbowroom.control.plans.planning_scene import PlanningScene
 from elbowroom.control.plans.rehearsal import Held
@@ -82,7 +84,8 @@ class Controller:
         self.motions = motions  # how it walks and evades
         self._errands = Errands(ahead.desk or ImmediateDesk())
         self._fitted = fitted(motions, humanoid)
-        self._around = PlanningScene(humanoid, scene, self.settings, self._fitted)
+        self._grounds = Grounds(humanoid, scene, self.settings, self._fitted)
+        self._around = self._grounds.walked  # where it is checked and planned for
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
 
@@ -91,17 +94,19 @@ class Controller:
         self._errands.forget()
         self.journey = None
         if self._pushing.things:
-            self._settle_in(self.scene)
+            self._grounds = Grounds(self.humanoid, self.scene, self.settings, self._fitted)
         else:
-            self._around.forget()
+            self._grounds.forget()
+        self._settle_in(self._grounds.walked)
         self._begin()
+        self._pushing.rest(self._check, self._queue.time)
 
-    def _settle_in(self, standing: Scene) -> None:
-        """Check and plan among what stands now: all of the scene, or all but what is loose."""
-        others, told = self.others, self._check.told
-        self._around = PlanningScene(self.humanoid, standing, self.settings, self._fitted)
-        self._showing.go_among(self._around)
-        self.others, self._check.told = others, told
+    def _settle_in(self, around: PlanningScene) -> None:
+        """Check and plan there from now on; what moves about it goes on as it did."""
+        if around is not self._around:
+            before, self._around = self._check, around
+            self._check.others, self._check.told, self._check.loose = before.others, before.told, before.loose
+            self._showing.go_among(around)
 
     @property
     def _check(self) -> BodyCheck:
@@ -114,7 +119,7 @@ class Controller:
     @property
     def navigator(self) -> Navigator:
         """Finds ways in the scene, for `goto` and for who wants to find them in another thread."""
-        return self._around.navigator
+        return self._grounds.walked.navigator
 
     def goto(self, place: Place | Spot, pace: Command = FORWARD) -> Journey:
         """Go to a place (x, z) or (x, height, z), with the following steps; a command that is not idle takes over.
@@ -151,9 +156,11 @@ class Controller:
         It is told by its number in the scene, upright and small, moves at up to `loose.FASTEST`, and stops before the
         body that is shown. It stays where it is left, until `reset`. Raises `InputError` for what cannot be pushed.
         """
-        standing = self._pushing.take(Hand(number, place))
+        standing = self._pushing.take(Hand(number, place), self._check, self._shown)
         if standing is not None:
-            self._settle_in(standing)
+            climbs = self._around is not self._grounds.walked
+            self._grounds = Grounds(self.humanoid, standing, self.settings, self._fitted)
+            self._settle_in(self._grounds.around(climbs=climbs))
             self._pushing.rest(self._check, self._queue.time)
 
     def let_go(self) -> None:
@@ -330,7 +337,8 @@ class Controller:
         if self._showing.holding.active and self.assist:
             held = Held(start.root, start.upper, self._showing.holding.stance, self._showing.clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        self._errands.ask(Question(query, self.assist, held, reserve), self._around.wayfinder.answer, self._queue)
+        answer = partial(self._grounds.answer, climbs=self._around is not self._grounds.walked)
+        self._errands.ask(Question(query, self.assist, held, reserve), answer, self._queue)
         self._take_plan(command)
 
     def _others_beside(self, start: Playback, time: float, command: Command) -> Moving:
@@ -365,6 +373,7 @@ class Controller:
 
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
         number = 1 if self._plan_report is None else self._plan_report.number + 1
+        self._settle_in(self._grounds.around(climbs=answer.climbs))
         root = answer.root._replace(path=replace(answer.root.path, start_time=start))
         found, command = answer.uppers is not None, question.query.command
         self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)

@@ -154,7 +154,7 @@ class Journey:
             middle = here[0] + share * (aim[0] - here[0]), here[2] + share * (aim[2] - here[2])
             self._closed.append((middle, _DISC))
             try:
-                self.way = self._navigator.find(here, self.goal, self._closed)
+                self.way = self._navigator.again(self.way, here, self._closed)
             except NoWayError:
                 self._closed.clear()  # there is no other way: this one again
             self._nearest = math.inf
@@ -162,7 +162,7 @@ class Journey:
     def _search(self, here: Place) -> None:
         """The way from somewhere else than one has thought."""
         try:
-            self.way = self._navigator.find(here, self.goal, self._closed)
+            self.way = self._navigator.again(self.way, here, self._closed)
         except NoWayError as error:
             self._give_up(str(error))
         self._nearest = math.inf

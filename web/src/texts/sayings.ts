@@ -53,6 +53,7 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   "walking speed {0}: allowed are {1}": "步行速度 {0} 不可用；允許的範圍是 {1}",
   "obstacle {0} of scene {1}: there is nothing that can be pushed by this number": "場景 {1} 中沒有編號 {0} 的可推物件",
   "obstacle {0} of scene {1}: only what is upright, small and no ground can be pushed": "場景 {1} 的 {0} 無法推動：只有直立、小型且非地面的物件可以",
+  "obstacle {0} of scene {1}: the avatar stands on it": "場景 {1} 的 {0} 無法推動：角色正站在上面",
   "push: {0} is no place on the ground": "{0} 不在地面上",
   "push: a recorded motion plays; walk first": "正在播放動作片段：請先行走",
   // runs

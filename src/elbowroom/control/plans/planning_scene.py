@@ -9,7 +9,6 @@ from elbowroom.control.plans.planners import Planners
 from elbowroom.control.plans.wayfinder import Wayfinder
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.shown.body_check import BodyCheck
-from elbowroom.planning.model.highest_step import as_stepped
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.world.scene import Scene
 
@@ -17,10 +16,14 @@ from elbowroom.world.scene import Scene
 class PlanningScene:
     """A scene as one avatar's controller uses it; where something else stands, there is a new one."""
 
-    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet) -> None:
-        """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
-        scene = as_stepped(scene, humanoid)
-        self._humanoid, self.scene = humanoid, scene
+    def __init__(
+        self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet, spare: float = 0.0
+    ) -> None:
+        """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed.
+
+        A pose that is shown keeps `spare` metres, where the one before it had as much.
+        """
+        self._humanoid, self.scene, self.spare = humanoid, scene, spare
         self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)
         self.feet = Stepping(humanoid, motions, self.check.soles)

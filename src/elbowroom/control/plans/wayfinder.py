@@ -41,6 +41,7 @@ class Answer(NamedTuple):
     uppers: Floats | None  # (n+1, LOCAL) along the path; None where there is no way
     velocities: Floats | None  # (n+1, LOCAL) where the planner has chosen them
     travel: float | None = None  # radians, the heading that it means to travel; None where that is nowhere
+    climbs: bool = False  # on the ground that one climbs
 
 
 class Wayfinder:

@@ -219,7 +219,7 @@ class Showing:
         check, shown = self._around.check, self._pose
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
-        if clearance < 0.0:
+        if clearance < 0.0 or clearance < min(self._around.spare, self._clearance):
             return False
         frames = Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
         return check.leaves_room(frames) and check.free_between(frames)

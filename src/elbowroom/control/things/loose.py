@@ -59,6 +59,11 @@ class Thing:
         return float(self.center[0]), float(self.center[2])
 
     @property
+    def top(self) -> float:
+        """How high it reaches, metres."""
+        return float(self.center[1] + extents_of(self.shape)[1])
+
+    @property
     def moves(self) -> bool:
         """Whether it moves."""
         return not is_still(self.velocity)
@@ -114,7 +119,8 @@ def scene_without(scene: Scene, numbers: frozenset[int]) -> Scene:
     return replace(scene, obstacles=standing)
 
 
-def _at_rest(things: Iterable[Thing], time: float) -> Moving:
+def at_rest(things: Iterable[Thing], time: float) -> Moving:
+    """Things as they stand from `time` on."""
     times = np.array([time, time + 1.0])
     return Moving(tuple(thing.track(times, np.array([thing.place] * 2)) for thing in things))
 
@@ -152,13 +158,19 @@ class Loose:
         """Whether any of it moves."""
         return any(thing.moves for thing in self._things.values())
 
-    def take(self, hand: Hand) -> bool:
-        """Push a thing towards a place; whether it has become loose by that. Raises `InputError`."""
+    def take(self, hand: Hand, is_underfoot: Callable[[Thing], bool]) -> bool:
+        """Push a thing towards a place; whether it has become loose by that. Raises `InputError`.
+
+        What `is_underfoot` cannot be pushed.
+        """
         if not all(map(math.isfinite, hand.place)):
             raise InputError(f"push: {hand.place} is no place on the ground")
         fresh = hand.number not in self._things
         if fresh:
-            self._things[hand.number] = thing_of(self._scene, hand.number)
+            thing = thing_of(self._scene, hand.number)
+            if is_underfoot(thing):
+                raise InputError(f"obstacle {thing.name} of scene {self._scene.name}: the avatar stands on it")
+            self._things[hand.number] = thing
         self.hand = replace(hand, place=self._inside(hand.place))
         return fresh
 
@@ -183,7 +195,7 @@ class Loose:
 
     def at_rest(self, time: float) -> Moving:
         """The things where they are, as if they stood from `time` on."""
-        return _at_rest(self._things.values(), time)
+        return at_rest(self._things.values(), time)
 
     def advance(self, time: float, dt: float, leaves_alone: Callable[[Moving, float], bool]) -> Moving:
         """Go on by `dt` seconds from `time`; how the things move meanwhile.
@@ -207,7 +219,7 @@ class Loose:
     def _room(self, number: int, time: float) -> ThingRoom:
         """What a thing must not enter."""
         others = {other: thing for other, thing in self._things.items() if other != number}
-        return ThingRoom(self.scene().obstacles, _at_rest(others.values(), time), time)
+        return ThingRoom(self.scene().obstacles, at_rest(others.values(), time), time)
 
     def foreseen(self, now: float, time: float, clear: Callable[[Moving], bool]) -> Moving:
         """Where the things will be, as far as their motion `now` tells: on for a while, then they stand.

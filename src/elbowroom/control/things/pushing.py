@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.control.shown.body_check import BodyCheck
-from elbowroom.control.things.loose import Hand, Loose, Thing
+from elbowroom.control.things.loose import Hand, Loose, Thing, at_rest
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
+
+_OVER = 0.1  # metres: a foot that is no higher above a thing stands on it, or goes over it
 
 
 class Pushing:
@@ -35,9 +38,15 @@ class Pushing:
         """The scene as it is at a time: what was pushed is where it is."""
         return self._loose.surroundings(time)
 
-    def take(self, hand: Hand) -> Scene | None:
+    def take(self, hand: Hand, check: BodyCheck, shown: Playback) -> Scene | None:
         """Push a thing; what stands still from now on, if the thing has become loose by that. Raises `InputError`."""
-        return self._loose.scene() if self._loose.take(hand) else None
+        soles = float(shown.root[HEIGHT] + shown.root[RISES:ROOT_STATE:2].max())
+
+        def is_underfoot(thing: Thing) -> bool:
+            there = at_rest([thing], 0.0)
+            return thing.top < soles + _OVER and check.clearance_from(there, shown.root, shown.upper, 0.0) < _OVER
+
+        return self._loose.scene() if self._loose.take(hand, is_underfoot) else None
 
     def let_go(self) -> None:
         """Push nothing any more."""

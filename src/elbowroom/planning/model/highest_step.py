@@ -1,16 +1,15 @@
-"""How high a step one body takes: so high that its raised leg does not come into its own trunk.
+"""How high one body steps, and climbs: so high that its raised leg does not come into its own trunk.
 
-Ground has steps that are high for anybody. Who has short legs under a thick trunk has a knee in the belly, or a foot,
-long before that: such a body stays in front of what is too high for it.
+Ground has steps that are high for anybody, and that one climbs where there is no other way. Who has short legs under a
+thick trunk has a knee in the belly, or a foot, long before that: such a body stays in front of what is too high for it.
 """
-
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import SEARCH_ORDER, DofGroup
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.made_once import made_once
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RISES, ROOT_STATE
 from elbowroom.planning.goal import natural_walk
@@ -20,25 +19,36 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.shared import Shared
 from elbowroom.world.ground.ground import STEP
 from elbowroom.world.scene import Scene
-from elbowroom.world.stepped_scene import stepped
+from elbowroom.world.stepped_scene import climbed, stepped
 
 Floats = NDArray[np.float64]
 
+CLIMB = 0.46  # metres: the knee of an adult; of shorter legs in proportion
 _SPEEDS, _PHASES = (0.0, 0.3, 0.6), 16  # m/s of a walk up steps, moments of its stride
 _APART = 0.005  # metres between heights that are tried
 
-_HIGHEST: WeakKeyDictionary[Humanoid, float] = WeakKeyDictionary()
-_SCENES: Shared[Scene] = Shared(idle=0)
+_STEPPED: Shared[Scene] = Shared(idle=0)
+_CLIMBED: Shared[Scene] = Shared(idle=0)
 
 
 def as_stepped(scene: Scene, humanoid: Humanoid) -> Scene:
     """A scene as it is for a body: steps that are too high for it are in its way. One for all who ask."""
     if scene.ground.plain:
         return scene
-    if humanoid not in _HIGHEST:
-        _HIGHEST[humanoid] = highest_step(humanoid)
-    highest = _HIGHEST[humanoid]
-    return scene if highest >= scene.ground.step else _SCENES.get((scene, humanoid), lambda: stepped(scene, highest))
+    highest = highest_step(humanoid)
+    return scene if highest >= scene.ground.step else _STEPPED.get((scene, highest), lambda: stepped(scene, highest))
+
+
+def as_climbed(scene: Scene, humanoid: Humanoid) -> Scene | None:
+    """A scene as it is for a body that climbs; None where that leads no farther. One for all who ask.
+
+    The first who asks waits while its ground is made, a second or two in a large place.
+    """
+    highest = highest_climb(humanoid)
+    if highest <= highest_step(humanoid):
+        return None
+    found = _CLIMBED.get((scene, highest), lambda: climbed(scene, highest))
+    return None if found.ground is scene.ground else found
 
 
 def highest_step(humanoid: Humanoid) -> float:
@@ -46,9 +56,20 @@ def highest_step(humanoid: Humanoid) -> float:
 
     No more than `STEP`, above which all climb.
     """
-    rises = np.arange(0.0, STEP * (1.0 + OVER) + _APART, _APART)
+    return min(_highest(humanoid), STEP)
+
+
+def highest_climb(humanoid: Humanoid) -> float:
+    """The same of what is climbed: no more than `CLIMB`, or as much less as the legs are shorter."""
+    return min(_highest(humanoid), CLIMB * min(body_model(humanoid).gait.scale, 1.0))
+
+
+@made_once
+def _highest(humanoid: Humanoid) -> float:
+    """How high a foot can be raised out of the way of the trunk, less what it keeps above an edge; metres."""
+    rises = np.arange(0.0, CLIMB * (1.0 + OVER) + _APART, _APART)
     free = rises[np.logical_and.accumulate(_trunk_clearances(humanoid, rises) >= 0.0)]
-    return min(float(free.max(initial=0.0)) / (1.0 + OVER), STEP)
+    return float(free.max(initial=0.0)) / (1.0 + OVER)
 
 
 def _trunk_clearances(humanoid: Humanoid, rises: Floats) -> Floats:

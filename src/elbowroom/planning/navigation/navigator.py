@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
 from threading import Lock
 
 import numpy as np
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.planning.model.highest_step import as_stepped
+from elbowroom.planning.model.highest_step import as_climbed, as_stepped
 from elbowroom.planning.navigation.field import Prices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
@@ -31,22 +33,71 @@ _MARGINS = (4.0, 16.0, math.inf)  # metres around start and goal that are looked
 
 
 class Navigator:
-    """Threads may share it."""
+    """Finds ways that are walked; where there is none, ways that lead over what is climbed. Threads may share it."""
 
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
-        self._scene = as_stepped(scene, humanoid)
-        self._girth, self._ground = girth_of(humanoid), ground_of(scene)
-        self._prices = Prices(self._girth.slim)
-        self._known: RoomMap | None = None
-        self._lock = Lock()
+        self._made_of = humanoid, scene
+        self._walked = _Finder(humanoid, as_stepped(scene, humanoid))
 
-    def find(self, start: Place | Spot, goal: Place | Spot, closed: Sequence[tuple[Spot, float]] = ()) -> Way:
-        """The way from one place to another, around discs (middle, radius) that are taken to be closed.
+    @cached_property
+    def _climbed(self) -> "_Finder | None":
+        humanoid, scene = self._made_of
+        climbed = as_climbed(scene, humanoid)
+        return None if climbed is None else _Finder(humanoid, climbed)
+
+    def find(self, start: Place | Spot, goal: Place | Spot) -> Way:
+        """The way from one place to another.
 
         A goal without a height is on the floor there that a way leads to, at that of the start if it can be; a start
         without one is at 0. Raises `InputError` where the goal is no place on the ground, `NoWayError` where there is
         no way.
         """
+        try:
+            return self._walked.find(start, goal)
+        except NoWayError:
+            if self._climbed is None:
+                raise
+            try:
+                return replace(self._climbed.find(start, goal), climbs=True)
+            except NoWayError:
+                pass
+            raise
+
+    def again(self, way: Way, start: Place | Spot, closed: Sequence[tuple[Spot, float]]) -> Way:
+        """The way to where another leads, from elsewhere, around discs (middle, radius) that are taken to be closed.
+
+        It leads over what is climbed if that does. Raises `NoWayError` where there is none.
+        """
+        finder = self._climbed if way.climbs else self._walked
+        assert finder is not None
+        return replace(finder.find(start, way.goal, closed), climbs=way.climbs)
+
+    def room(self) -> RoomMap:
+        """The room over the whole ground that is walked on."""
+        return self._walked.room()
+
+    def reachable(self, start: Place | Spot) -> NDArray[np.bool_]:
+        """The places of the map of the whole ground (N,) to which one walks from a place."""
+        return reachable_over(self.room(), self.prices, placed(start, 0.0))
+
+    @property
+    def prices(self) -> Prices:
+        """What ways cost."""
+        return self._walked.prices
+
+
+class _Finder:
+    """Finds ways over one ground; threads may share it."""
+
+    def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
+        self._scene = scene
+        self._girth, self._ground = girth_of(humanoid), ground_of(scene)
+        self.prices = Prices(self._girth.slim)  # what ways cost
+        self._known: RoomMap | None = None
+        self._lock = Lock()
+
+    def find(self, start: Place | Spot, goal: Place | Spot, closed: Sequence[tuple[Spot, float]] = ()) -> Way:
+        """The way from one place to another, around closed discs; raises as `Navigator.find` and `again` do."""
         begin = placed(start, 0.0)
         end = placed(goal, begin[1])
         if not all(map(math.isfinite, end)):
@@ -79,7 +130,7 @@ class Navigator:
         errors = []
         for end in meant(room, goal, begin[1]):
             try:
-                return way_over(room, self._prices, begin, end, closed)
+                return way_over(room, self.prices, begin, end, closed)
             except NoWayError as error:
                 errors.append(error)
         raise errors[0]
@@ -87,15 +138,6 @@ class Navigator:
     def room(self) -> RoomMap:
         """The room over the whole ground."""
         return self._map_of(self._ground)
-
-    def reachable(self, start: Place | Spot) -> NDArray[np.bool_]:
-        """The places of the map of the whole ground (N,) that a way leads to from a place."""
-        return reachable_over(self.room(), self._prices, placed(start, 0.0))
-
-    @property
-    def prices(self) -> Prices:
-        """What ways cost."""
-        return self._prices
 
     def _map_of(self, area: Rectangle) -> RoomMap:
         """The map that holds an area."""

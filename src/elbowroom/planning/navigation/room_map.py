@@ -10,7 +10,7 @@ from elbowroom.jit import kernel
 from elbowroom.kept_arrays import Arrays, kept
 from elbowroom.planning.navigation.girth import Girth
 from elbowroom.planning.navigation.surfaces import Surfaces, one_plane, over_ground, to_edges
-from elbowroom.world.ground.ground import EVEN_STAIR, Ground, tops_about
+from elbowroom.world.ground.ground import EVEN_STAIR, STEP, Ground, tops_about
 from elbowroom.world.ground.steepness import grades_about
 from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.from_above import ball_radius, heights_of, place_of
@@ -176,7 +176,8 @@ def _made(scene: Scene, girth: Girth, area: Rectangle) -> RoomMap:
 def _climbs(ground: Ground, surfaces: Surfaces, corner: tuple[float, float], radius: float) -> tuple[Floats, Floats32]:
     """How far the treads about each place (N,) rise above a step from it, and how steep it is there (N,).
 
-    What is stood on is not in the way. Where ground rises by no more than one step it is no stair, and not steep.
+    What is stood on is not in the way. Where ground rises by no more than one step, as one walks, it is no stair, and
+    not steep.
     """
     if ground.plain:
         return np.zeros(len(surfaces.points)), np.zeros(len(surfaces.points), np.float32)
@@ -187,7 +188,7 @@ def _climbs(ground: Ground, surfaces: Surfaces, corner: tuple[float, float], rad
     steep = grades_about(ground, surfaces.heights, places, radius)
     steeper = np.flatnonzero(steep > EVEN_STAIR)
     heights = surfaces.heights[steeper]
-    one_step = tops_about(ground, heights, places[steeper], 2.0 * radius) - heights <= ground.step
+    one_step = tops_about(ground, heights, places[steeper], 2.0 * radius) - heights <= min(ground.step, STEP)
     steep[steeper[one_step]] = EVEN_STAIR
     return rises, steep.astype(np.float32)
 

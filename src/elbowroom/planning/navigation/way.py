@@ -66,6 +66,7 @@ class Way:
     room: RoomMap
     prices: Prices
     field: Field
+    climbs: bool = False  # over what is too high for a step
 
     def left(self, place: Place | Spot) -> float:
         """Metres that are still to walk from a place, more where it is narrow; infinite where no way is known."""

@@ -28,18 +28,19 @@ _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
 
 
-def ground_of(obstacles: Obstacles, floor: FloorArea | None = None) -> Ground:
+def ground_of(obstacles: Obstacles, floor: FloorArea | None = None, step: float = STEP) -> Ground:
     """The ground of what stands on the plane at height 0, which is ground all over, or where a place has its `floor`.
 
-    Plain where no surface lies within a step of the plane, or all of those rise from it by nothing, or lie under it.
+    It is reached by steps of up to `step` metres. Plain where no surface lies within a step of the plane, or all of
+    those rise from it by nothing, or lie under it.
     """
     triangles = level_triangles(obstacles)
     least, most = triangles[:, :, 1].min(axis=1, initial=np.inf), triangles[:, :, 1].max(axis=1, initial=-np.inf)
-    within = (least <= STEP) & (most >= -STEP) & ((most > RISE) | (least < -RISE))
+    within = (least <= step) & (most >= -step) & ((most > RISE) | (least < -RISE))
     within[within] &= (most[within] > RISE) | ~_covered(triangles[within], floor)
     if not within.any():
         return PLAIN
-    return _gridded(triangles, floor)
+    return _gridded(triangles, floor, step)
 
 
 def walked_over(obstacles: Obstacles, floor: FloorArea | None) -> Obstacles:
@@ -47,8 +48,11 @@ def walked_over(obstacles: Obstacles, floor: FloorArea | None) -> Obstacles:
 
     Feet are held above what they stand on there. Else what does not rise from the plane is not in the way.
     """
-    if floor is None or ground_of(obstacles, floor).plain:
-        return obstacles
+    return obstacles if floor is None or ground_of(obstacles, floor).plain else over_floors(obstacles)
+
+
+def over_floors(obstacles: Obstacles) -> Obstacles:
+    """What stands in a place whose floors are in the way like all else."""
     return replace(obstacles, ground=-np.inf)
 
 
@@ -80,13 +84,13 @@ def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
     return covered
 
 
-def _gridded(triangles: Floats, floor: FloorArea | None) -> Ground:
-    ground = _over(triangles, np.empty((0, 3, 3)), floor)
+def _gridded(triangles: Floats, floor: FloorArea | None, step: float) -> Ground:
+    ground = _over(triangles, np.empty((0, 3, 3)), floor, step)
     gaps = spans_over(ground)
-    return _over(triangles, gaps, floor) if len(gaps) else ground
+    return _over(triangles, gaps, floor, step) if len(gaps) else ground
 
 
-def _over(firm: Floats, gaps: Floats, floor: FloorArea | None) -> Ground:
+def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> Ground:
     """The ground of triangles (T, 3, 3) and of others that span gaps."""
     triangles = np.concatenate([firm, gaps])
     order = np.argsort(-triangles[:, :, 1].max(axis=1), kind="stable")
@@ -110,12 +114,12 @@ def _over(firm: Floats, gaps: Floats, floor: FloorArea | None) -> Ground:
     planes = planes_of(triangles)
     planes[:, SPANS] = spanning
     even = np.zeros(wide * deep + 1, np.int64)
-    args = planes, starts, members, level, (begins[0], begins[1], cell), deep
+    args = planes, starts, members, level, (begins[0], begins[1], cell, step), deep
     _even(*args, even, np.empty(0))
     np.cumsum(even, out=even)
     heights = np.empty(int(even[-1]))
     _even(*args, even, heights)
-    return Ground(False, STEP, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
+    return Ground(False, step, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
 
 
 def planes_of(triangles: Floats) -> Floats:
@@ -168,11 +172,14 @@ def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Lon
 
 @exact_kernel
 def _even(
-    planes: Floats, starts: Longs, members: Longs, level: Bools, grid: tuple[float, float, float], deep: int,
+    planes: Floats, starts: Longs, members: Longs, level: Bools, grid: tuple[float, float, float, float], deep: int,
     counts: Longs, out: Floats,
 ) -> None:  # fmt: skip
-    """Count the even heights of each cell (in `counts`, one further on), or write them in `out` from there."""
-    x, z, side = grid
+    """Count the even heights of each cell (in `counts`, one further on), or write them in `out` from there.
+
+    `grid`: x and z of its corner, the side of a cell, and the highest step.
+    """
+    x, z, side, step = grid
     writes, parts = len(out) > 0, np.empty((1 + int((starts[1:] - starts[:-1]).max()), 3))
     for cell in range(counts.shape[0] - 1):
         count, found, corner = 0, 0, (x + side * (cell // deep), z + side * (cell % deep))
@@ -183,7 +190,7 @@ def _even(
                 parts[count] = _part_in(planes[members[m]], corner, side)
                 count += parts[count, 0] > 0.0
         for k in range(count):
-            if _is_even(parts[:count], k, side):
+            if _is_even(parts[:count], k, side, step):
                 if writes:
                     out[counts[cell] + found] = parts[k, 2]
                 found += 1
@@ -192,7 +199,7 @@ def _even(
 
 
 @helper
-def _is_even(parts: Floats, k: int, side: float) -> bool:
+def _is_even(parts: Floats, k: int, side: float, step: float) -> bool:
     """Whether parts of surfaces (n, 3), area, lowest and highest point, fill a square just below the top of part `k`.
 
     And none rises above that by less than a step. Of parts with the same top the first answers for all.
@@ -200,7 +207,7 @@ def _is_even(parts: Floats, k: int, side: float) -> bool:
     top, covered = parts[k, 2], 0.0
     for i in range(parts.shape[0]):
         area, low, high = parts[i]
-        if (i < k and abs(high - top) <= _SAME) or (high > top + _SAME and low <= top + STEP + _SAME):
+        if (i < k and abs(high - top) <= _SAME) or (high > top + _SAME and low <= top + step + _SAME):
             return False
         if low >= top - RELIEF and high <= top + _SAME:
             covered += area

@@ -116,7 +116,7 @@ class PlaceCourseMaker:
             return None
         corners = way.corners(begin, _FAR)
         length = float(np.hypot(*np.diff(corners[:, [0, 2]], axis=0).T).sum()) if len(corners) > 1 else 0.0
-        level = float(np.abs(corners[:, 1]).max()) <= _LEVEL
+        level = float(np.abs(corners[:, 1]).max()) <= _LEVEL and not way.climbs
         return np.round(corners[:, [0, 2]], GRAIN) if level and _SHORTEST <= length <= _LONGEST else None
 
     def _furnished(self, draw: Draw, corners: Floats, walk: ProvenWalk) -> list[tuple[Piece, Floats, float]]:

@@ -66,7 +66,8 @@ class LowerBody:
         self.radii: Floats32 = self.model.roots.radii
         self.stance, height, self.reach, self.hull = _measures(humanoid)
         tall = height + _SPARE_HEIGHT
-        self._tall = tall + STEP  # metres above the ground: what begins higher is not met by legs, as on the plane
+        # Metres above the ground: what begins higher is not met by legs, as on the plane.
+        self._tall = tall + max(ground.step, STEP)
         corners, height = obstacles.corners, tall if ground.plain else math.inf
         low = corners[:, :, 1].min(axis=1) < height
         self.height = height
