@@ -2,6 +2,7 @@
 
 `ground.svg`: the stock avatar's capsules at even places of a walk over a sill, onto a kerb and up a ramp.
 `stair.svg`: the same up a stair of four steps of 17 by 28 cm.
+`climb.svg`: the same over a sill and a block of 40 cm.
 """
 
 import math
@@ -17,6 +18,7 @@ from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.report.svg import tag
 from elbowroom.planning.command import Command
+from elbowroom.planning.model.highest_step import as_climbed
 from elbowroom.world.ground.ground import height_along
 from elbowroom.world.scene import Scene
 
@@ -58,6 +60,11 @@ def stair() -> Walk:
     return Walk([*steps, box(1.2 + 0.28 * 4, 0.17 * 4, 3.0)], 4.4, 0.42)
 
 
+def high_things() -> Walk:
+    """Over what is too high for a step."""
+    return Walk([box(1.4, 0.4, 0.1), box(3.4, 0.4, 0.9)], 5.4, 0.42)
+
+
 def walked(walk: Walk, scene: Scene) -> list[tuple[Floats, Floats]]:
     """Postures and root states, one every so many metres of the way."""
     controller, shown, at = Controller(Humanoid.default(), scene), [], 0.0
@@ -84,10 +91,10 @@ def drawn(walk: Walk) -> str:
             ends = {"x1": across(x1), "y1": up(y1), "x2": across(x2 + 1e-3), "y2": up(y2)}
             width = 2.0 * SCALE * float(humanoid.capsules.radii[c])
             parts.append(tag("line", **ends, stroke=color, stroke_width=width, stroke_linecap="round"))
-    heights, near = [], 0.0
+    heights, near, ground = [], 0.0, (as_climbed(scene, humanoid) or scene).ground
     ways = np.arange(-0.5, walk.end + 0.5, 0.01).tolist()
     for z in ways:
-        near = height_along(scene.ground, (0.0, near, z - 0.01), 0.0, z)
+        near = height_along(ground, (0.0, near, z - 0.01), 0.0, z)
         heights.append(near)
     edge = " ".join(f"{across(z)},{up(y)}" for z, y in zip(ways, heights, strict=True))
     below = f"{across(ways[-1])},{up(-0.12)} {across(ways[0])},{up(-0.12)}"
@@ -108,5 +115,5 @@ def up(y: float) -> str:
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
-    for name, walk in {"ground": low_things(), "stair": stair()}.items():
+    for name, walk in {"ground": low_things(), "stair": stair(), "climb": high_things()}.items():
         (folder / f"{name}.svg").write_text(drawn(walk) + "\n", "utf-8")
