@@ -109,6 +109,11 @@ class Controller:
             self._showing.go_among(around)
 
     @property
+    def _climbs(self) -> bool:
+        """Whether it is on the ground that it climbs."""
+        return self._around is not self._grounds.walked
+
+    @property
     def _check(self) -> BodyCheck:
         return self._around.check
 
@@ -158,7 +163,7 @@ class Controller:
         """
         standing = self._pushing.take(Hand(number, place), self._check, self._shown)
         if standing is not None:
-            climbs = self._around is not self._grounds.walked
+            climbs = self._climbs
             self._grounds = Grounds(self.humanoid, standing, self.settings, self._fitted)
             self._settle_in(self._grounds.around(climbs=climbs))
             self._pushing.rest(self._check, self._queue.time)
@@ -337,7 +342,7 @@ class Controller:
         if self._showing.holding.active and self.assist:
             held = Held(start.root, start.upper, self._showing.holding.stance, self._showing.clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        answer = partial(self._grounds.answer, climbs=self._around is not self._grounds.walked)
+        answer = partial(self._grounds.answer, climbs=self._climbs)
         self._errands.ask(Question(query, self.assist, held, reserve), answer, self._queue)
         self._take_plan(command)
 

@@ -26,6 +26,7 @@ from elbowroom.world.scene import Scene
 
 _SLOWER = 0.4  # of the speed that is asked for
 _SPARE = 0.01  # metres: so far skin may be outside of capsules, and is where feet are raised high
+_ASKS = 0.1  # of full speed: who asks for less may as well stand
 _ON = 0.1  # metres that a plan must lead on
 _AGAIN = 1.0  # seconds until one looks again whether one can climb
 _ABOUT, _CELL = 8, 0.1  # cells to all sides that are compared, and their size in metres
@@ -112,7 +113,7 @@ def _stands_before(answer: Answer, question: Question) -> bool:
     """Whether the root stands, is asked to go on, and finds no way."""
     query = question.query
     stands = answer.root.kind is RootPlanKind.STOPPED and is_still(np.array(query.root[3:6]))
-    return stands and question.assist and query.command.speed > _ON
+    return stands and question.assist and query.command.speed > _ASKS
 
 
 def _leads_on(answer: Answer) -> bool:
