@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 STEP = 0.25  # metres: higher is climbed, not walked
 STEEPEST = math.radians(30.0)  # of a surface that one walks on
 PLACE = 0.1  # metres between places that a way over the ground is looked at
-LOWEST, HIGHEST, SPANS = 9, 10, 11  # columns of triangles
+SPANS = 9  # a column of triangles
 FIRM, SPANNED = 0.5, 1.5  # of what `SPANS` tells: ground alone, or gaps that are spanned too
 _NEXT = np.uint64(1)
 _NONE = -math.inf
@@ -51,8 +52,10 @@ class Ground(NamedTuple):
     cell: float
     shape: tuple[int, int]  # cells along x and z
     starts: Longs  # (cells + 1,) where the triangles over each cell, numbered ix * shape[1] + iz, begin
-    members: Longs  # (M,) their numbers, the same several times
-    triangles: Floats  # (T, 12), those that reach higher first, as `planes_of` has them
+    members: Longs  # (M,) their numbers, the same several times; of each cell those first that begin higher there
+    bottoms: Floats32  # (M,) how low they come in the cell, at least, and
+    tops: Floats32  # (M,) how high they and all that follow them in the cell reach, at most
+    triangles: Floats  # (T, 10), as `planes_of` has them
     level: Bools  # (cells,) where the plane at height 0 is ground
     beyond: bool  # whether it is, outside of the grid
     even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
@@ -68,8 +71,8 @@ class Sole(NamedTuple):
 
 
 PLAIN = Ground(
-    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros((0, 12)),
-    np.zeros(0, np.bool_), True, np.zeros(1, np.int64), np.zeros(0),
+    True, STEP, (0.0, 0.0), 1.0, (0, 0), np.zeros(1, np.int64), np.zeros(0, np.int64), np.zeros(0, np.float32),
+    np.zeros(0, np.float32), np.zeros((0, 10)), np.zeros(0, np.bool_), True, np.zeros(1, np.int64), np.zeros(0),
 )  # fmt: skip
 
 
@@ -119,10 +122,17 @@ def _highest(ground: Ground, x: float, z: float, near: float, kinds: float) -> f
     there, low, high = ground.level[cell] if inside else ground.beyond, near - ground.step, near + ground.step
     best = 0.0 if ground.plain or (there and low <= 0.0 <= high) else _NONE
     m, last = np.uint64(ground.starts[cell]), np.uint64(ground.starts[cell + _NEXT] if inside else ground.starts[cell])
-    while m < last and ground.triangles[ground.members[m], HIGHEST] > max(best, low - _INSIDE):
+    above = last
+    while m < above:
+        middle = (m + above) >> _NEXT
+        if ground.bottoms[middle] > high:
+            m = middle + _NEXT
+        else:
+            above = middle
+    while m < last and ground.tops[m] > max(best, low - _INSIDE):
         t = np.uint64(ground.members[m])
         m += _NEXT
-        if ground.triangles[t, LOWEST] <= high and ground.triangles[t, SPANS] < kinds:
+        if ground.triangles[t, SPANS] < kinds:
             px, pz = x - ground.triangles[t, 0], z - ground.triangles[t, 1]
             height = ground.triangles[t, 2] + ground.triangles[t, 7] * px + ground.triangles[t, 8] * pz
             if best < height and low <= height <= high and _is_over(ground.triangles[t], px, pz):

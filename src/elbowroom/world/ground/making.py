@@ -16,6 +16,7 @@ from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.places.floor_area import FloorArea
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
@@ -24,6 +25,7 @@ _CELL = 0.08  # metres
 _X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
+_HAIR = 1e-4  # metres by which what is known of a part of a triangle is wide of it
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
 
@@ -92,9 +94,7 @@ def _gridded(triangles: Floats, floor: FloorArea | None, step: float) -> Ground:
 
 def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> Ground:
     """The ground of triangles (T, 3, 3) and of others that span gaps."""
-    triangles = np.concatenate([firm, gaps])
-    order = np.argsort(-triangles[:, :, 1].max(axis=1), kind="stable")
-    triangles, spanning = triangles[order], order >= len(firm)
+    triangles, spanning = np.concatenate([firm, gaps]), np.arange(len(firm) + len(gaps)) >= len(firm)
     flat = triangles[:, :, [0, 2]]
     least, most = firm[:, :, [0, 2]].min(axis=(0, 1)), firm[:, :, [0, 2]].max(axis=(0, 1))
     if floor is not None:
@@ -108,25 +108,26 @@ def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> G
         if count <= _MOST_MEMBERS:
             break
         cell *= 2.0
-    starts, members = _members(spans, wide, deep, count)
     begins = (float(least[0]), float(least[1]))
     level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
     planes = planes_of(triangles)
     planes[:, SPANS] = spanning
+    starts, members, bottoms, tops = _in_cells(planes, *_members(spans, wide, deep, count), (*begins, cell), deep)
     even = np.zeros(wide * deep + 1, np.int64)
     args = planes, starts, members, level, (begins[0], begins[1], cell, step), deep
     _even(*args, even, np.empty(0))
     np.cumsum(even, out=even)
     heights = np.empty(int(even[-1]))
     _even(*args, even, heights)
-    return Ground(False, step, begins, cell, (wide, deep), starts, members, planes, level, floor is None, even, heights)
+    where = (starts, members, bottoms, tops, planes)
+    return Ground(False, step, begins, cell, (wide, deep), *where, level, floor is None, even, heights)
 
 
 def planes_of(triangles: Floats) -> Floats:
     """Triangles (T, 3, 3) as `Ground` has them, turned so that seen from above each corner has the next to its left.
 
-    Columns (T, 12): x, z, height of a corner; x, z of the next two; grade along x and z; lowest and highest height;
-    whether it spans a gap: none does.
+    Columns (T, 10): x, z, height of a corner; x, z of the next two; grade along x and z; whether it spans a gap: none
+    does.
     """
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     u, v = b - a, c - a
@@ -137,8 +138,7 @@ def planes_of(triangles: Floats) -> Floats:
     along_x = (u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / area
     along_z = (v[:, 0] * u[:, 1] - u[:, 0] * v[:, 1]) / area
     columns = [a[:, 0], a[:, 2], a[:, 1], *(a + u)[:, [0, 2]].T, *(a + v)[:, [0, 2]].T, along_x, along_z]
-    columns += [triangles[:, :, 1].min(axis=1), triangles[:, :, 1].max(axis=1), np.zeros(len(triangles))]
-    return np.ascontiguousarray(np.stack(columns, axis=1))
+    return np.ascontiguousarray(np.stack([*columns, np.zeros(len(triangles))], axis=1))
 
 
 def _spans(flat: Floats, least: Floats, cell: float, shape: tuple[int, int]) -> Longs:
@@ -168,6 +168,34 @@ def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Lon
                 members[filled[cell]] = t
                 filled[cell] += 1
     return starts, members
+
+
+@exact_kernel
+def _in_cells(
+    planes: Floats, starts: Longs, members: Longs, grid: tuple[float, float, float], deep: int
+) -> tuple[Longs, Longs, Floats32, Floats32]:
+    """Of the triangles whose spans cover each cell those with a part in it: what `Ground` has of its `members`.
+
+    `grid`: x and z of its corner, and the side of a cell. A part within `_HAIR` of a cell counts.
+    """
+    x, z, side = grid
+    begins, count, parts = np.zeros(starts.shape[0], np.int64), 0, np.empty((members.shape[0], 2), np.float32)
+    kept = np.empty(members.shape[0], np.int64)
+    for cell in range(starts.shape[0] - 1):
+        corner = (x + side * (cell // deep) - _HAIR, z + side * (cell % deep) - _HAIR)
+        for m in range(starts[cell], starts[cell + 1]):
+            _, low, high = _part_in(planes[members[m]], corner, side + 2.0 * _HAIR)
+            if low <= high:
+                at = count
+                while at > begins[cell] and parts[at - 1, 0] < low - _HAIR:
+                    kept[at], parts[at] = kept[at - 1], parts[at - 1]
+                    at -= 1
+                kept[at], parts[at, 0], parts[at, 1] = members[m], low - _HAIR, high + _HAIR
+                count += 1
+        begins[cell + 1] = count
+        for m in range(count - 2, begins[cell] - 1, -1):
+            parts[m, 1] = max(parts[m, 1], parts[m + 1, 1])
+    return begins, kept[:count].copy(), parts[:count, 0].copy(), parts[:count, 1].copy()
 
 
 @exact_kernel
@@ -202,12 +230,13 @@ def _even(
 def _is_even(parts: Floats, k: int, side: float, step: float) -> bool:
     """Whether parts of surfaces (n, 3), area, lowest and highest point, fill a square just below the top of part `k`.
 
-    And none rises above that by less than a step. Of parts with the same top the first answers for all.
+    And none rises above that by less than a step. Of parts with the same top the highest answers for all.
     """
     top, covered = parts[k, 2], 0.0
     for i in range(parts.shape[0]):
         area, low, high = parts[i]
-        if (i < k and abs(high - top) <= _SAME) or (high > top + _SAME and low <= top + step + _SAME):
+        higher = high > top or (i < k and high >= top)
+        if (higher and high <= top + _SAME) or (high > top + _SAME and low <= top + step + _SAME):
             return False
         if low >= top - RELIEF and high <= top + _SAME:
             covered += area
