@@ -18,6 +18,7 @@ Longs = NDArray[np.int64]
 
 WIDEST = 0.32  # metres
 _MOST = 8  # heights over a square that are told apart
+_ROOM = 256  # squares that are spanned, at first; at least as many as `_MOST`
 _LOOKS = 4  # places across a square that are looked at for cracks
 _AXES = np.array([[1, 0], [0, 1], [1, 1], [1, -1]])
 
@@ -36,9 +37,7 @@ def spans_over(ground: Ground) -> Floats:
     So they reach the ground beside them, which may begin anywhere in a square.
     """
     squares = _Squares(ground, *_heights(ground))
-    middles = np.empty((_spanned(squares, np.empty((0, 3))), 3))
-    _spanned(squares, middles)
-    side = ground.cell
+    middles, side = _spanned(squares), ground.cell
     corners = np.array([[-side, 0.0, -side], [side, 0.0, -side], [side, 0.0, side], [-side, 0.0, side]])
     spans = middles[:, None] + corners
     return np.concatenate([spans[:, [0, 1, 2]], spans[:, [0, 2, 3]]])
@@ -58,17 +57,21 @@ def _heights(ground: Ground) -> tuple[Longs, Floats]:
 
 
 @exact_kernel
-def _spanned(squares: _Squares, out: Floats) -> int:
-    """Write the middles (x, height, z) of the squares over which gaps are spanned, as many as `out` holds; how many."""
-    ground, found, over = squares.ground, 0, np.empty(_MOST)
+def _spanned(squares: _Squares) -> Floats:
+    """The middles (N, 3) of the squares over which gaps are spanned: x, height, z."""
+    ground, found, over, out = squares.ground, 0, np.empty(_MOST), np.empty((_ROOM, 3))
     for cell in range(squares.counts.shape[0]):
-        for k in range(_spans_of(squares, cell, over)):
-            if found < out.shape[0]:
-                out[found, 0] = ground.corner[0] + ground.cell * (cell // ground.shape[1] + 0.5)
-                out[found, 1] = over[k]
-                out[found, 2] = ground.corner[1] + ground.cell * (cell % ground.shape[1] + 0.5)
+        spanned = _spans_of(squares, cell, over)
+        if found + spanned > out.shape[0]:
+            longer = np.empty((2 * out.shape[0], 3))
+            longer[:found] = out[:found]
+            out = longer
+        for k in range(spanned):
+            out[found, 0] = ground.corner[0] + ground.cell * (cell // ground.shape[1] + 0.5)
+            out[found, 1] = over[k]
+            out[found, 2] = ground.corner[1] + ground.cell * (cell % ground.shape[1] + 0.5)
             found += 1
-    return found
+    return out[:found].copy()
 
 
 @helper
@@ -123,6 +126,9 @@ def _square_at(ground: Ground, cell: int, rows: int, columns: int) -> int:
 @helper
 def _is_whole(ground: Ground, cell: int, height: float) -> bool:
     """Whether there is ground about a height wherever one looks in a square."""
+    for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
+        if abs(ground.evens[e] - height) <= ground.step:
+            return True
     x, z = ground.corner[0] + ground.cell * (cell // ground.shape[1]), ground.corner[1]
     z += ground.cell * (cell % ground.shape[1])
     missing = 0

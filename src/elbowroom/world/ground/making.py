@@ -9,7 +9,7 @@ from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.gaps import spans_over
-from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground
+from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground, firm_at
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.triangles import triangles_of
@@ -24,6 +24,7 @@ RISE = 0.005  # metres: what rises no higher from the plane is the plane
 _CELL = 0.08  # metres
 _X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
+_LOOKS = 4  # places across a square that are looked at
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
 _HAIR = 1e-4  # metres by which what is known of a part of a triangle is wide of it
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
@@ -87,13 +88,18 @@ def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
 
 
 def _gridded(triangles: Floats, floor: FloorArea | None, step: float) -> Ground:
-    ground = _over(triangles, np.empty((0, 3, 3)), floor, step)
+    ground = _with_evens(_over(triangles, np.empty((0, 3, 3)), floor, step))
     gaps = spans_over(ground)
-    return _over(triangles, gaps, floor, step) if len(gaps) else ground
+    if not len(gaps):
+        return ground
+    whole = _over(triangles, gaps, floor, step)
+    if whole.shape != ground.shape:
+        return _with_evens(whole)
+    return whole._replace(even_starts=ground.even_starts, evens=ground.evens)
 
 
 def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> Ground:
-    """The ground of triangles (T, 3, 3) and of others that span gaps."""
+    """The ground of triangles (T, 3, 3) and of others that span gaps, still without even heights."""
     triangles, spanning = np.concatenate([firm, gaps]), np.arange(len(firm) + len(gaps)) >= len(firm)
     flat = triangles[:, :, [0, 2]]
     least, most = firm[:, :, [0, 2]].min(axis=(0, 1)), firm[:, :, [0, 2]].max(axis=(0, 1))
@@ -113,14 +119,14 @@ def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> G
     planes = planes_of(triangles)
     planes[:, SPANS] = spanning
     starts, members, bottoms, tops = _in_cells(planes, *_members(spans, wide, deep, count), (*begins, cell), deep)
-    even = np.zeros(wide * deep + 1, np.int64)
-    args = planes, starts, members, level, (begins[0], begins[1], cell, step), deep
-    _even(*args, even, np.empty(0))
-    np.cumsum(even, out=even)
-    heights = np.empty(int(even[-1]))
-    _even(*args, even, heights)
-    where = (starts, members, bottoms, tops, planes)
-    return Ground(False, step, begins, cell, (wide, deep), *where, level, floor is None, even, heights)
+    there, none = (starts, members, bottoms, tops, planes), (np.zeros(wide * deep + 1, np.int64), np.empty(0))
+    return Ground(False, step, begins, cell, (wide, deep), *there, level, floor is None, *none)
+
+
+def _with_evens(ground: Ground) -> Ground:
+    """The same ground with the even heights of its cells. What spans gaps is not even, and counts for nothing."""
+    starts, evens = _evens(ground)
+    return ground._replace(even_starts=starts, evens=evens)
 
 
 def planes_of(triangles: Floats) -> Floats:
@@ -199,31 +205,43 @@ def _in_cells(
 
 
 @exact_kernel
-def _even(
-    planes: Floats, starts: Longs, members: Longs, level: Bools, grid: tuple[float, float, float, float], deep: int,
-    counts: Longs, out: Floats,
-) -> None:  # fmt: skip
-    """Count the even heights of each cell (in `counts`, one further on), or write them in `out` from there.
-
-    `grid`: x and z of its corner, the side of a cell, and the highest step.
-    """
-    x, z, side, step = grid
-    writes, parts = len(out) > 0, np.empty((1 + int((starts[1:] - starts[:-1]).max()), 3))
-    for cell in range(counts.shape[0] - 1):
-        count, found, corner = 0, 0, (x + side * (cell // deep), z + side * (cell % deep))
-        if level[cell]:
+def _evens(ground: Ground) -> tuple[Longs, Floats]:
+    """Where the even heights of each cell begin (cells + 1,), and these (E,)."""
+    planes, starts, members, deep, side = ground.triangles, ground.starts, ground.members, ground.shape[1], ground.cell
+    begins, out = np.zeros(starts.shape[0], np.int64), np.empty(starts.shape[0])
+    found, parts = 0, np.empty((1 + int((starts[1:] - starts[:-1]).max()), 3))
+    for cell in range(starts.shape[0] - 1):
+        corner, count = (ground.corner[0] + side * (cell // deep), ground.corner[1] + side * (cell % deep)), 0
+        if ground.level[cell]:
             parts[0], count = (side * side, 0.0, 0.0), 1
         for m in range(starts[cell], starts[cell + 1]):
             if planes[members[m], SPANS] < FIRM:
                 parts[count] = _part_in(planes[members[m]], corner, side)
                 count += parts[count, 0] > 0.0
         for k in range(count):
-            if _is_even(parts[:count], k, side, step):
-                if writes:
-                    out[counts[cell] + found] = parts[k, 2]
+            if _is_even(parts[:count], k, side, ground.step) and _is_whole(ground, corner, parts[k, 2]):
+                if found == out.shape[0]:
+                    longer = np.empty(2 * found)
+                    longer[:found] = out
+                    out = longer
+                out[found] = parts[k, 2]
                 found += 1
-        if not writes:
-            counts[cell + 1] = found
+        begins[cell + 1] = found
+    return begins, out[:found].copy()
+
+
+@helper
+def _is_whole(ground: Ground, corner: tuple[float, float], top: float) -> bool:
+    """Whether there is firm ground just below a height wherever one looks in a square.
+
+    Surfaces that lie over one another may be as large as it together, and leave a part of it open.
+    """
+    missing = 0
+    for i in range(_LOOKS):
+        for j in range(_LOOKS):
+            aside, along = ground.cell * (i + 0.5) / _LOOKS, ground.cell * (j + 0.5) / _LOOKS
+            missing += firm_at(ground, corner[0] + aside, corner[1] + along, top) < top - RELIEF
+    return missing == 0
 
 
 @helper

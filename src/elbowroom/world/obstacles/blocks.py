@@ -1,11 +1,11 @@
 """Clearance of whole blocks of postures around the key times, and of single capsules along a motion."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.jit import exact_kernel, inner_exact_kernel, inner_kernel, plain
+from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, inner_kernel, plain
 from elbowroom.world.obstacles.layout import HALF, LANES, PER_METRE, ROUNDING, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
 
@@ -15,6 +15,8 @@ Longs = NDArray[np.int64]
 
 COMFORT = 0.06  # metres: how much nearer something is than this, nobody asks
 _ROUNDING = 1e-5  # metres: balls are held against obstacles in single precision
+_COMFORT: Any = np.float32(COMFORT + _ROUNDING)
+_PER_METRE: Any = np.float32(PER_METRE)
 _NONE = plain(0)
 _PAIRS = 512  # pairs of a tile and an obstacle that are collected before they are checked
 _FAR = np.float32(np.inf)
@@ -100,8 +102,10 @@ def lower_blocks_in(
     total = tiles.shape[0] // TILE
     rows, squares, pairs, parts = scratch.rows, scratch.squares, scratch.pairs, total // out.shape[0]
     fill_tile_rows(near.rows, count, rows)
-    for i in range(np.uint64(total * LANES)):
-        squares[i] = _FAR
+    for t in range(total):
+        reach = _reach_of(tiles, t)
+        for i in range(np.uint64(LANES)):
+            squares[t * LANES + i] = reach
     found, checks, beyond = _NONE, 0, spread[4, : (total + LANES - 1) // LANES * LANES]
     for b in range(count):
         if found > 0 and not same_kind(rows, b, b - 1):
@@ -116,17 +120,34 @@ def lower_blocks_in(
             checks, found = checks + found * LANES, _NONE
     if checks > 0:
         for t in range(total):
-            if squares[t * LANES] < _FAR:
-                radius = tiles[t * TILE + (TILE - LANES)]
-                lower_to_squares(squares[t * LANES : (t + 1) * LANES], radius, out[t // parts])
+            lanes, reach = squares[t * LANES : (t + 1) * LANES], _reach_of(tiles, t)
+            if _leave_within(lanes, reach) > 0:
+                lower_to_squares(lanes, tiles[t * TILE + (TILE - LANES)], out[t // parts])
     return checks
+
+
+@helper
+def _reach_of(tiles: Floats32, t: int) -> Any:
+    """The squared distance from the axes of a tile beyond which nothing is asked for."""
+    reach = (tiles[t * TILE + (TILE - LANES)] + _COMFORT) * _PER_METRE
+    return reach * reach
+
+
+@inner_kernel
+def _leave_within(squares: Floats32, reach: float) -> int:
+    """Make those of the squared distances (16,) infinite that are not below `reach`; how many are."""
+    limit, within = np.float32(reach), 0
+    for i in range(np.uint64(squares.shape[0])):
+        within += squares[i] < limit
+        squares[i] = squares[i] if squares[i] < limit else _FAR
+    return within
 
 
 @exact_kernel
 def lower_blocks(lanes: Floats32, balls: Floats, near: Nearby, count: int, out: Floats32) -> int:
     """Lower `out` (B, 16) to the clearance of blocks of postures from the first `count` obstacles, all in one frame.
 
-    What is farther away than `COMFORT` may be left out. Returns the capsules that were checked.
+    What is farther away than `COMFORT` is left out. Returns the capsules that were checked.
     """
     scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], near)
     spread_balls(balls, scratch.spread)
@@ -191,7 +212,7 @@ def capsule_clearances_in(scratch: ClearanceScratch, near: Nearby, count: int, o
 def capsule_clearances(lanes: Floats32, near: Nearby, count: int, out: Floats32) -> int:
     """Lower `out` (C, 16) to the clearance of each capsule in each lane (C, 7, 16).
 
-    Obstacles farther than `COMFORT` from all of a capsule's lanes may be left out. Returns how many were checked.
+    What is farther away than `COMFORT` is left out. Returns how many were checked.
     """
     scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], near)
     scratch.lanes[:] = lanes

@@ -185,15 +185,15 @@ def shifted_into(near: Nearby, b: int, place: tuple[float, float, float], out: N
 
 @exact_kernel
 def around(near: Nearby, place: Floats, reach: float, out: Nearby) -> int:
-    """Copy the obstacles whose ball comes within `reach` of a place (3,) to `out`; their number."""
+    """Copy the obstacles whose box comes within `reach` of a place (3,) to `out`; their number."""
     count = 0
     for b in range(near.rows.shape[0]):
         own = near.rows[b]
-        total, half = 0.0, 0.0
+        x, y, z, limit, square = place[0] - own[0], place[1] - own[1], place[2] - own[2], reach + own[ROUNDING], 0.0
         for i in range(3):
-            total += (own[i] - place[i]) ** 2
-            half += own[HALF + i] ** 2
-        if np.sqrt(total) - np.sqrt(half) - own[ROUNDING] < reach:
+            along = own[TURN + 3 * i] * x + own[TURN + 3 * i + 1] * y + own[TURN + 3 * i + 2] * z
+            square += max(abs(along) - own[HALF + i], 0.0) ** 2
+        if square < limit * limit:
             for i in range(ROW):
                 out.rows[count, i] = own[i]
             count += 1
