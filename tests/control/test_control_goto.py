@@ -102,9 +102,9 @@ def test_what_is_blocked_for_long_is_given_up_with_the_place(humanoid: Humanoid)
     """The avatar never moves, whatever it is told."""
     controller = Controller(humanoid, Scene.load("empty"))
     journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (0.0, 5.0)), FORWARD)
-    told = []
+    told = list[Command]()
     for _ in range(round(120.0 / DT)):
-        told.append(journey.command(RootState(), DT, stuck=True))
+        told.append(journey.command(RootState(), DT, stuck=True, plans=len(told) // 10))
         if not journey.walking:
             break
     assert journey.state is JourneyState.GIVEN_UP
@@ -113,6 +113,17 @@ def test_what_is_blocked_for_long_is_given_up_with_the_place(humanoid: Humanoid)
     directions = {round(command.direction, 2) for command in told if command.direction is not None}
     assert len(directions) > 1, "it never tried another way"
     assert told[-1].idle
+
+
+@pytest.mark.parametrize(("interval", "seconds"), [(0.15, 1.2), (0.4, 2.4), (3.0, 4.0)])
+def test_who_plans_slowly_steps_back_later(humanoid: Humanoid, interval: float, seconds: float) -> None:
+    """So many plans are waited for as one makes in a second where they are quick; 4 s at most."""
+    controller = Controller(humanoid, Scene.load("empty"))
+    journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (0.0, 5.0)), FORWARD)
+    frames = 0
+    while journey.command(RootState(), DT, stuck=True, plans=int(frames * DT / interval)).forward >= 0.0:
+        frames += 1
+    assert frames * DT == pytest.approx(seconds, abs=2.0 * DT)
 
 
 def bend() -> Scene:
@@ -143,9 +154,9 @@ def test_one_way_is_walked_along_round_its_corners_and_planned_on(humanoid: Huma
 def test_who_was_led_off_the_way_looks_for_it_again(humanoid: Humanoid) -> None:
     controller = Controller(humanoid, bend())
     journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (-2.0, 4.5)), FORWARD)
-    way = journey.command(RootState(), DT, stuck=False).way
-    assert journey.command(RootState(0.1, 0.2), DT, stuck=False).way == way
-    other = journey.command(RootState(-2.0, 1.0), DT, stuck=False).way
+    way = journey.command(RootState(), DT, stuck=False, plans=0).way
+    assert journey.command(RootState(0.1, 0.2), DT, stuck=False, plans=0).way == way
+    other = journey.command(RootState(-2.0, 1.0), DT, stuck=False, plans=0).way
     assert other != way
     assert math.dist(other[0], (-2.0, 1.0)) < 0.1
     assert math.dist(other[-1], (-2.0, 4.5)) < 0.1
@@ -159,11 +170,11 @@ def test_on_a_spiral_stair_the_same_is_asked_for_all_the_way(humanoid: Humanoid,
     start, goal = ends if up else ends[::-1]
     way = navigator.find(start, goal)
     journey, corners = Journey(navigator, way, FORWARD), way.corners(start, 6.0)
-    asked = {journey.command(RootState(x=start[0], z=start[2], height=start[1]), DT, stuck=False).way}
+    asked = {journey.command(RootState(x=start[0], z=start[2], height=start[1]), DT, stuck=False, plans=0).way}
     for begin, end in pairwise(corners[:-1].tolist()):
         heading = math.atan2(end[0] - begin[0], end[2] - begin[2])
         for part, aside in product((0.0, 0.5), (-0.08, 0.0, 0.08)):
             x, height, z = (a + part * (b - a) for a, b in zip(begin, end, strict=True))
             here = RootState(x=x + aside * math.cos(heading), z=z - aside * math.sin(heading), height=height)
-            asked.add(journey.command(here, DT, stuck=False).way)
+            asked.add(journey.command(here, DT, stuck=False, plans=0).way)
     assert len(asked) == 1

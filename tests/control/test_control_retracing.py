@@ -77,8 +77,10 @@ def test_only_so_much_is_remembered_and_what_touched_is_no_way_back() -> None:
     assert not retracing.goes_back
 
 
-@pytest.mark.parametrize("rise", [0.1, 0.4])
-def test_who_finds_no_way_from_steep_treads_for_long_goes_back_and_before_a_wall_one_stands(rise: float) -> None:
+@pytest.mark.parametrize(("rise", "on_the_way"), [(0.1, False), (0.4, False), (0.0, True)])
+def test_who_finds_no_way_from_steep_treads_or_to_a_place_for_long_goes_back_and_before_a_wall_one_stands(
+    rise: float, on_the_way: bool
+) -> None:
     retracing, poses = walked(200)
     still = pose(float(poses[-1].root[1]), 0.0)
     still.root[RISES] = rise
@@ -87,5 +89,5 @@ def test_who_finds_no_way_from_steep_treads_for_long_goes_back_and_before_a_wall
         assert not retracing.goes_back or second == 3
         for _ in range(60):
             retracing.show(Past(still, 0.1, DT), still)
-            retracing.wait(still, DT)
-    assert retracing.goes_back is (rise > 0.25)
+            retracing.wait(still, DT, on_the_way=on_the_way)
+    assert retracing.goes_back is (rise > 0.25 or on_the_way)

@@ -170,13 +170,14 @@ def test_on_an_edge_and_on_a_cable_a_sole_is_level_and_on_the_highest() -> None:
     assert sole_on(cable, Sole(0.06, 0.18, 0.04), (0.0, 0.0, 1.988), 0.0) == pytest.approx((0.06, 0.0))
 
 
-def test_where_ground_is_told_to_be_level_it_is() -> None:
-    """Against `height_at` at many places, over steps, a ramp and holes between boxes."""
-    boxes = [[x, 0.5 * top, z, 1.0, top, 1.0] for x, z, top in [(1, 2, 0.1), (2, 2, 0.2), (1, 3, 0.1), (3, 5, 0.15)]]
-    obstacles = [
-        {"type": "box", "center": [x, y, z], "size": [wide, tall, deep]} for x, y, z, wide, tall, deep in boxes
+@pytest.mark.parametrize("times", [1, 2])
+def test_where_ground_is_told_to_be_level_it_is(times: int) -> None:
+    """Against `height_at` at many places, over steps and holes between boxes; also where each box is there twice."""
+    boxes = [
+        box((x, 0.5 * top, z), (wide, top, wide))
+        for x, z, top, wide in [(1, 2, 0.1, 1.0), (2, 2, 0.2, 1.0), (1, 3, 0.1, 0.96), (3, 5, 0.15, 0.92)]
     ]
-    ground = Scene.of("boxes", obstacles, finish=(0.0, 9.0)).ground
+    ground = scene_with(*(times * boxes)).ground
     rng, told = np.random.default_rng(3), 0
     for x, z in rng.uniform((-1.0, 0.0), (4.0, 7.0), (400, 2)):
         reach, near = float(rng.uniform(0.05, 0.5)), float(rng.choice([0.0, 0.1, 0.2]))

@@ -270,14 +270,20 @@ class Controller:
         self._flow = next((flow for flow in (Phase.RESET, Phase.PLAN) if flow in flows), Phase.PLAY)
         return self._frame(wanted)
 
+    @property
+    def _going(self) -> Journey | None:
+        """The journey that it is on."""
+        return self.journey if self.journey is not None and self.journey.walking else None
+
     def _on_the_way(self, command: Command, dt: float) -> Command:
         """The user's command, or where nothing is wanted, what the journey asks for."""
-        if self.journey is None or not self.journey.walking or dt <= 0.0:
+        going, plans = self._going, 0 if self._plan_report is None else self._plan_report.number
+        if going is None or dt <= 0.0:
             return command
         if not command.idle:
-            self.journey.take_over()
+            going.take_over()
             return command
-        return self.journey.command(self.root, dt, stuck=self._blocked or self._walled_in())
+        return going.command(self.root, dt, stuck=self._blocked or self._walled_in(), plans=plans)
 
     def _aside(self, command: Command) -> Command:
         """What to do under a command: a step aside, where nothing is wanted and others want to pass."""
@@ -299,7 +305,7 @@ class Controller:
             self._plan(command, at_once=flow is Phase.RESET or changed(self._command, command))
         self._play(dt)
         if self._is_stuck(command):
-            self._showing.wait(dt)
+            self._showing.wait(dt, on_the_way=self._going is not None)
         return flow
 
     def _move_things(self, dt: float) -> None:
@@ -342,7 +348,8 @@ class Controller:
         if self._showing.holding.active and self.assist:
             held = Held(start.root, start.upper, self._showing.holding.stance, self._showing.clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        answer = partial(self._grounds.answer, climbs=self._climbs)
+        may_climb = self._going is None or self._going.way.climbs
+        answer = partial(self._grounds.answer, climbs=self._climbs, may_climb=may_climb)
         self._errands.ask(Question(query, self.assist, held, reserve), answer, self._queue)
         self._take_plan(command)
 

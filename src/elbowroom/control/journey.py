@@ -21,6 +21,7 @@ _ON_IT = 0.15  # metres from a leg of the way: one is on it
 _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who gets no nearer
 _NEARER = 0.15  # metres that count as progress
 _PATIENCE, _STUCK_PATIENCE = 4.0, 1.2  # seconds without progress; the same where no way on is found
+_PLANS = 6  # that have found none until then: where these are dear, not all has been tried so soon
 _BACKS = 0.7  # seconds of stepping back
 _AHEAD, _DISC = 0.45, 0.3  # metres to the middle of what is taken to be closed, and its radius
 _TRIES = 6  # to get past what blocks the way
@@ -50,7 +51,7 @@ class Journey:
         self._stretch = Stretch(False, way)  # of the way, that they lead along
         self._along: Corners = ()  # the same without heights
         self._leg = 0  # the number of the leg that was reached
-        self._nearest, self._waited, self._back = math.inf, 0.0, 0.0
+        self._nearest, self._waited, self._plans, self._back = math.inf, 0.0, 0, 0.0
         self._tries, self._blocked_at = 0, way.goal
 
     @property
@@ -68,8 +69,8 @@ class Journey:
         if self.walking:
             self.state = JourneyState.TAKEN_OVER
 
-    def command(self, root: RootState, dt: float, *, stuck: bool) -> Command:
-        """What to do for the next `dt` seconds; `stuck` is what the last frame said."""
+    def command(self, root: RootState, dt: float, *, stuck: bool, plans: int) -> Command:
+        """What to do for the next `dt` seconds; `stuck` is what the last frame said, after so many `plans` in all."""
         here = float(root.x), float(root.height), float(root.z)
         away = apart(here, self.goal)
         if away < _THERE:
@@ -78,7 +79,8 @@ class Journey:
             self._back -= dt
             return Command(forward=-self._forward)
         else:
-            self._watch(here, away, dt, stuck)
+            self._waited += dt
+            self._watch(here, away, plans, stuck)
         if not self.walking:
             return Command()
         return self._onward(here)
@@ -123,20 +125,20 @@ class Journey:
         self._stretch = stretch_from(self.way, here, backwards=self._stretch.backwards)
         return self._stretch.way.corners(here, _FAR)
 
-    def _watch(self, here: Place, away: float, dt: float, stuck: bool) -> None:
+    def _watch(self, here: Place, away: float, plans: int, stuck: bool) -> None:
         """Notice progress, or that there is none for long."""
         left = self.way.left(here)
         if left < self._nearest - _NEARER:
             if apart(here, self._blocked_at) > _PAST:
                 self._tries = 0
-            self._nearest, self._waited = left, 0.0
+            self._nearest, self._waited, self._plans = left, 0.0, plans
             return
-        self._waited += dt
-        if self._waited < (_STUCK_PATIENCE if stuck else _PATIENCE):
+        if self._waited < (_STUCK_PATIENCE if stuck and plans - self._plans >= _PLANS else _PATIENCE):
             return
         if away < _NEARLY:
             self.state = JourneyState.ARRIVED
             return
+        self._plans = plans
         self._get_past(here)
 
     def _get_past(self, here: Place) -> None:

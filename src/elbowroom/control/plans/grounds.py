@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
@@ -18,18 +19,22 @@ from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.plans.planning_scene import PlanningScene
 from elbowroom.control.plans.wayfinder import Answer, Question
 from elbowroom.control.settings import ControlSettings
+from elbowroom.control.steering import direction
+from elbowroom.planning.command import Command
 from elbowroom.planning.model.highest_step import as_climbed, as_stepped, highest_climb
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import is_still
 from elbowroom.world.ground.ground import Ground, heights_beside
 from elbowroom.world.scene import Scene
 
+Floats = NDArray[np.float64]
+
 _SLOWER = 0.4  # of the speed that is asked for
 _SPARE = 0.01  # metres: so far skin may be outside of capsules, and is where feet are raised high
 _ASKS = 0.1  # of full speed: who asks for less may as well stand
 _ON = 0.1  # metres that a plan must lead on
 _AGAIN = 1.0  # seconds until one looks again whether one can climb
-_ABOUT, _CELL = 8, 0.1  # cells to all sides that are compared, and their size in metres
+_ABOUT, _ASIDE, _CELL = 8, 4, 0.1  # cells that are compared, and to either side of a way; their size in metres
 _SAME, _NOWHERE = 1e-3, -1e6  # metres: heights that are not told apart, and that of no ground
 
 
@@ -60,14 +65,19 @@ class Grounds:
             del self.climbed
         self._again = 0.0
 
-    def answer(self, question: Question, *, climbs: bool) -> Answer | None:
-        """Plan for who walks, or climbs; tells by `Answer.climbs` which of both from then on."""
-        if climbs and self._differ_about(question.query.root):
+    def answer(self, question: Question, *, climbs: bool, may_climb: bool) -> Answer | None:
+        """Plan for who walks, or climbs; tells by `Answer.climbs` which of both from then on.
+
+        Who walks and `may_climb` does so where there is no other way on.
+        """
+        root, command = question.query.root, question.query.command
+        if climbs and self._differ(root, _about(root), _ABOUT):
             return self._climbing(question)
         answer = self.walked.wayfinder.answer(question)
-        if answer is None or not _stands_before(answer, question) or question.query.time < self._again:
+        vain = answer is not None and _stands_before(answer, question)
+        if not (vain and may_climb) or question.query.time < self._again:
             return answer
-        over = self._climbing(question) if self._differ_about(question.query.root) else None
+        over = self._climbing(question) if self._differ(root, _ahead(root, command), 0) else None
         if over is not None and _leads_on(over):
             return over
         self._again = question.query.time + _AGAIN
@@ -80,15 +90,12 @@ class Grounds:
         answer = self.climbed.wayfinder.answer(_slower(question))
         return None if answer is None else answer._replace(climbs=True)
 
-    def _differ_about(self, root: RootState) -> bool:
-        """Whether higher steps lead anywhere else about a place."""
+    def _differ(self, root: RootState, places: Floats, first: int) -> bool:
+        """Whether higher steps lead anywhere else at some `places` (rows, columns, 2), of which a row is here."""
         if self._higher is None:
             return False
-        cells = _CELL * np.arange(-_ABOUT, _ABOUT + 1.0)
-        x, z = np.meshgrid(root.x + cells, root.z + cells)
-        places = np.stack([x, z], axis=-1)
         one, other = (
-            np.maximum(heights_beside(ground, float(root.height), _ABOUT, places), _NOWHERE)
+            np.maximum(heights_beside(ground, float(root.height), first, places), _NOWHERE)
             for ground in (self.walked.scene.ground, self._higher)
         )
         return bool(np.abs(one - other).max() > _SAME)
@@ -100,6 +107,20 @@ class Grounds:
         if not ground.plain:
             return ground._replace(step=highest) if highest > ground.step else None
         return None if self.climbed is None else self.climbed.scene.ground
+
+
+def _about(root: RootState) -> Floats:
+    """Places (rows, columns, 2), x and z, to all sides of a root, which stands in the middle of them."""
+    cells = _CELL * np.arange(-_ABOUT, _ABOUT + 1.0)
+    x, z = np.meshgrid(root.x + cells, root.z + cells)
+    return np.stack([x, z], axis=-1)
+
+
+def _ahead(root: RootState, command: Command) -> Floats:
+    """Places (rows, columns, 2), x and z, from a root on where a command leads it, not those beside a stair."""
+    onward, aside = _CELL * np.arange(_ABOUT + 1.0)[:, None], _CELL * np.arange(-_ASIDE, _ASIDE + 1.0)
+    x, z = direction(command, root.heading).tolist()
+    return np.stack([root.x + onward * x + aside * z, root.z + onward * z - aside * x], axis=-1)
 
 
 def _slower(question: Question) -> Question:

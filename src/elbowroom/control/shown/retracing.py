@@ -1,7 +1,7 @@
 """Back the way one came: for who stays where he is in mid-stride, and whose legs do not come to a stand there.
 
-And for who stands on steep treads, wants to go on, and has found no way from there for long: it may be that none leads
-back either that begins standing.
+And for who stands on steep treads or is on the way to a place, wants to go on, and has found no way from there for
+long: it may be that none leads back either that begins standing.
 
 All that was shown was free, and so was the way from each pose to the next: it is free the other way round too, as long
 as nothing moves.
@@ -64,12 +64,13 @@ class Retracing:
         if self._stays > _PATIENCE:
             self._turn_back(x, z)
 
-    def wait(self, shown: Playback, seconds: float) -> None:
-        """The user pushes, and there is no way on; only where feet stand more than a step apart from the ground there.
+    def wait(self, shown: Playback, seconds: float, *, on_the_way: bool) -> None:
+        """There is no way on for who pushes; only where feet stand more than a step apart from the ground there.
 
-        Before a wall one stands as long as one likes.
+        Anywhere for who is `on_the_way` to a place. Before a wall a user stands as long as he likes.
         """
-        self._waits += seconds if np.abs(shown.root[RISES:ROOT_STATE:2]).max() > STEP else 0.0
+        far = on_the_way or np.abs(shown.root[RISES:ROOT_STATE:2]).max() > STEP
+        self._waits += seconds if far else 0.0
         if self._waits > _LONG:
             self._turn_back(float(shown.root[0]), float(shown.root[1]))
 

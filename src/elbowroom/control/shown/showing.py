@@ -146,9 +146,9 @@ class Showing:
             clearance = self._clearance_of(still.root, still.upper) if restless else self._clearance
         self._show(still, clearance)
 
-    def wait(self, dt: float) -> None:
-        """There is no way on from where it stands, and the user pushes."""
-        self._retracing.wait(self._pose, dt)
+    def wait(self, dt: float, *, on_the_way: bool) -> None:
+        """There is no way on from where it stands, and the user pushes, or it is `on_the_way` to a place."""
+        self._retracing.wait(self._pose, dt, on_the_way=on_the_way)
 
     def rest(self, now: float, dt: float) -> None:
         """Who rests lives on where that touches nothing: breathes, and shifts its weight."""
@@ -219,7 +219,8 @@ class Showing:
         check, shown = self._around.check, self._pose
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
-        if clearance < 0.0 or clearance < min(self._around.spare, self._clearance):
+        spare = 0.0 if self.holding.active else min(self._around.spare, self._clearance)
+        if clearance < max(spare, 0.0):
             return False
         frames = Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
         return check.leaves_room(frames) and check.free_between(frames)
