@@ -64,6 +64,22 @@ def test_who_stays_in_a_stride_goes_back_as_fast_as_he_came_and_each_time_farthe
     assert len(gone_back(retracing, dt)) == pytest.approx(2 * len(first), abs=2)
 
 
+def test_who_dithers_where_he_finds_no_way_still_knows_how_he_came() -> None:
+    retracing, poses = walked(200)
+    place, last = float(poses[-1].root[1]), poses[-1]
+    for k in range(60 * 12):
+        still, swing = pose(place, 0.0), 0.1 * abs((k % 40) - 20)
+        dithering = still._replace(upper=np.full(LOCAL, swing))
+        retracing.show(Past(last, 0.1, DT), dithering)
+        last = dithering
+    for _ in range(60 * 4):
+        if not retracing.goes_back:
+            retracing.wait(last, DT, on_the_way=True)
+    back = gone_back(retracing)
+    assert place - float(back[-1].root[1]) == pytest.approx(0.5 * 0.4, abs=0.03)
+    assert len(back) * DT < 2.0
+
+
 def test_only_so_much_is_remembered_and_what_touched_is_no_way_back() -> None:
     retracing, poses = walked(600)
     for _ in range(9):

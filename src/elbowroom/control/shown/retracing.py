@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.body.root import RISES, ROOT_STATE, SHOWN
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.stillness import SAME, SAME_TIME, is_still
 from elbowroom.world.ground.ground import STEP
@@ -22,6 +22,7 @@ _REMEMBERED = 5.0  # seconds that were shown
 _PATIENCE, _LONG = 0.5, 3.0  # seconds in which legs come to a stand, where they can; in which a way is found
 _BACK = 0.4  # seconds that one goes back at first; each time that this was not enough as much more
 _HERE = 0.005  # metres, radians: who has moved no farther is where he was
+_ALIKE, _EACH = 2e-3, 8  # metres, radians: poses that are taken for one; poses until it is looked for one again
 _ELSEWHERE = 0.5  # metres from where one has gone back from
 
 
@@ -40,7 +41,7 @@ class Retracing:
         self._trail = deque[Past]()  # latest last
         self._length = 0.0  # seconds
         self._place, self._stays, self._waits = (math.inf, math.inf, 0.0), 0.0, 0.0
-        self._left = self._spare = 0.0  # seconds to go back; of them, how long what is shown was shown again
+        self._left = self._spare = 0.0  # seconds to go back from here; how long what is shown was shown again
         self._from, self._times = (math.inf, math.inf), 0  # where one has gone back from, and how often
 
     @property
@@ -60,9 +61,25 @@ class Retracing:
         away = max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2]))
         if away > _HERE:
             self._place, self._waits = (x, z, heading), 0.0
+        else:
+            self._cut_loop(shown)
         self._stays = 0.0 if away > _HERE or is_still(shown.root[3:6]) else self._stays + seconds
         if self._stays > _PATIENCE:
             self._turn_back(x, z)
+
+    def _cut_loop(self, shown: Playback) -> None:
+        """Forget what led from a pose to the same again: who dithers on the spot has got nowhere, and came otherwise.
+
+        It is looked for now and then; the last number of a root tells how long ago it began to breathe.
+        """
+        if not self._trail or len(self._trail) % _EACH > 0:
+            return
+        roots = np.array([past.pose.root for past in self._trail])[:, : SHOWN - 1]
+        uppers = np.array([past.pose.upper for past in self._trail])
+        apart = np.abs(roots - shown.root[: SHOWN - 1]).max(axis=1), np.abs(uppers - shown.upper).max(axis=1)
+        alike = np.flatnonzero(np.maximum(*apart) < _ALIKE)
+        while len(alike) and len(self._trail) > alike[0]:
+            self._length -= self._trail.pop().seconds
 
     def wait(self, shown: Playback, seconds: float, *, on_the_way: bool) -> None:
         """There is no way on for who pushes; only where feet stand more than a step apart from the ground there.
@@ -82,14 +99,17 @@ class Retracing:
 
     def before(self, dt: float) -> Past | None:
         """What was shown before what is shown, on the way back, for another `dt` seconds; None where that stays."""
-        self._left, self._spare = self._left - dt, self._spare + dt
+        self._spare += dt
         due = self._trail and self._spare > self._trail[-1].seconds - SAME_TIME
         return self._trail[-1] if due else None
 
     def went(self) -> None:
         """One has gone back to what was shown `before`."""
-        seconds = self._trail.pop().seconds
+        pose, _, seconds = self._trail.pop()
         self._length, self._spare = self._length - seconds, max(self._spare - seconds, 0.0)
+        x, z, heading = pose.root[:3].tolist()
+        if max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2])) > _HERE:
+            self._left -= seconds
 
     def give_up(self) -> None:
         """There is no way back now."""
