@@ -66,17 +66,16 @@ class _Tour:
 
     def __init__(self, way: Way, controller: Controller, rng: np.random.Generator) -> None:
         del way
-        root, self._navigator = controller.root, controller.navigator
+        root, self._navigator, self._interval = controller.root, controller.navigator, controller.settings.interval
         here = float(root.x), float(root.height), float(root.z)
         self._targets = random_targets(self._navigator, here, _VISITS, int(rng.integers(2**31)))
         self._journey: Journey | None = None
 
     def __call__(self, time: float, root: RootState, stuck: bool) -> Command:
-        del time
-        here = float(root.x), float(root.height), float(root.z)
+        here, plans = (float(root.x), float(root.height), float(root.z)), int(time / self._interval)  # one for each
         while self._targets and (self._journey is None or not self._journey.walking):
             self._journey = self._set_out(here, self._targets.pop())
-        return Command() if self._journey is None else self._journey.command(root, DT, stuck=stuck)
+        return Command() if self._journey is None else self._journey.command(root, DT, stuck=stuck, plans=plans)
 
     def _set_out(self, here: Place, target: Place) -> Journey | None:
         try:
