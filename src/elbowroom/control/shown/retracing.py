@@ -22,7 +22,7 @@ _REMEMBERED = 5.0  # seconds that were shown
 _PATIENCE, _LONG = 0.5, 3.0  # seconds in which legs come to a stand, where they can; in which a way is found
 _BACK = 0.4  # seconds that one goes back at first; each time that this was not enough as much more
 _HERE = 0.005  # metres, radians: who has moved no farther is where he was
-_ALIKE, _EACH = 2e-3, 8  # metres, radians: poses that are taken for one; poses until it is looked for one again
+_ALIKE, _EACH = 1e-4, 8  # metres, radians: poses that are taken for one; poses until it is looked for one again
 _ELSEWHERE = 0.5  # metres from where one has gone back from
 
 
