@@ -126,10 +126,13 @@ def test_a_real_kernel_is_kept_checked_and_made_anew(tmp_path: Path) -> None:
     assert compilations(tmp_path) == "0"
     name = name_of(tmp_path / "toy.py", "double", 4)
     (folder,) = {file.parent for file in place.rglob("*.sum")}
-    assert {file.name for file in folder.iterdir()} == {f"{name}.nbi", f"{name}.1.nbc", f"{name}.sum"}
-    flip(folder / f"{name}.1.nbc")
-    assert compilations(tmp_path) == "1"
-    assert compilations(tmp_path) == "0"
+    (bitcode,) = folder.glob("*.bc")
+    files = {f"{name}.nbi", f"{name}.1.nbc", bitcode.name, f"{name}.sum"}
+    for damaged in (folder / f"{name}.1.nbc", bitcode):
+        assert {file.name for file in folder.iterdir()} == files
+        flip(damaged)
+        assert compilations(tmp_path) == "1"
+        assert compilations(tmp_path) == "0"
 
 
 def test_kernels_run_uncompiled_too(tmp_path: Path) -> None:

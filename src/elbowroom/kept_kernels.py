@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from elbowroom.kernel_bitcode import leave_unread
+from elbowroom.kernel_bitcode import Bitcode
 from elbowroom.kernel_turns import Turn
 
 _UNREADABLE = (OSError, ValueError, TypeError)
@@ -56,7 +56,7 @@ class KeptKernel:
                 found = self._cache.load_overload(signature, context)
                 if found is not None and not known:
                     note(self._folder, self._name)
-                leave_unread(found)
+                Bitcode(self._folder, self._name, signature).leave_unread(found)
                 return found
         forget(self._folder, self._name)
         return None
@@ -66,7 +66,8 @@ class KeptKernel:
         try:
             with contextlib.suppress(OSError):
                 _sum_file(self._folder, self._name).unlink(missing_ok=True)
-                self._cache.save_overload(signature, code)
+                with Bitcode(self._folder, self._name, signature).written_apart(code):
+                    self._cache.save_overload(signature, code)
                 note(self._folder, self._name)
         finally:
             self._turn.give_up()
@@ -109,8 +110,9 @@ def forget(folder: Path, name: str) -> None:
 
 
 def _files(folder: Path, name: str) -> Iterator[Path]:
-    """The index, and the machine code of each signature."""
+    """The index, and the bitcode and the machine code of each signature."""
     yield folder / f"{name}.nbi"
+    yield from sorted(folder.glob(f"{name}.*.bc"))
     for number in itertools.count(1):
         file = folder / f"{name}.{number}.nbc"
         if not file.exists():

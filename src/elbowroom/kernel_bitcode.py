@@ -1,31 +1,80 @@
-"""What a kernel that was read from disk keeps for others that will call it: LLVM's bitcode, unread until one does.
+"""What a kernel keeps for others that will call it: LLVM's bitcode, in a file of its own, unread until one does.
 
-Beside the machine code Numba reads a kernel's bitcode into a module of LLVM, as whoever is compiled with a call to the
-kernel takes it in. A module takes ten times the memory of its bitcode, and a program that compiles nothing has no use
-for it: 140 of the 320 MB of a server with 130 kernels.
+Beside the machine code Numba keeps a kernel's bitcode, for whoever is compiled with a call to the kernel to take it in,
+and reads both whenever the kernel is first called. Reading it takes longer than all the rest, and ten times the memory
+of the file; a program that compiles nothing has no use for it. So Numba is handed a module that only names the
+functions of the kernel, and the bitcode lies beside.
 
 Numba has no option for this. Where a version of it names the module differently all is as it was, and larger.
 """
 
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
-from llvmlite.binding import ModuleRef, parse_bitcode
+from llvmlite import ir
+from llvmlite.binding import ModuleRef, parse_assembly, parse_bitcode
 
 
 class UnreadModule:
     """Stands for a module of LLVM that is read when it is asked for a clone, as who links it does."""
 
-    def __init__(self, bitcode: bytes) -> None:
-        self._bitcode = bitcode
+    def __init__(self, file: Path) -> None:
+        self._file = file
 
     def clone(self) -> ModuleRef:
         """The module, for whoever takes it in."""
-        return parse_bitcode(self._bitcode)
+        return parse_bitcode(self._file.read_bytes())
 
 
-def leave_unread(result: Any) -> None:
-    """Put bitcode in the place of the module that a kernel holds for its callers; `result` is what Numba read."""
-    library = getattr(result, "library", None)
-    module = getattr(library, "_shared_module", None)
-    if isinstance(module, ModuleRef):
-        library._shared_module = UnreadModule(module.as_bitcode())  # type: ignore[union-attr]
+class Bitcode:
+    """That of one kernel for one signature."""
+
+    def __init__(self, folder: Path, name: str, signature: Any) -> None:
+        """It lies in `folder`, in a file whose name begins with `name`."""
+        self._folder, self._name, self._signature = folder, name, signature
+
+    @contextmanager
+    def written_apart(self, code: Any) -> Iterator[None]:
+        """What Numba writes of compiled `code` meanwhile has no bitcode: that is in its file. Raises `OSError`."""
+        library = getattr(code, "library", None)
+        if not hasattr(library, "_shared_module"):
+            yield
+            return
+        whole, file = library._get_module_for_linking(), self._file(code)  # type: ignore[union-attr]
+        new = file.with_suffix(f".{os.getpid()}")
+        try:
+            new.write_bytes(whole.as_bitcode())
+            new.replace(file)
+        finally:
+            new.unlink(missing_ok=True)
+        library._shared_module = _outline(whole)  # type: ignore[union-attr]
+        try:
+            yield
+        finally:
+            library._shared_module = whole  # type: ignore[union-attr]
+
+    def leave_unread(self, code: Any) -> None:
+        """Let callers of `code`, as Numba read it, find its bitcode in the file, if it was written apart."""
+        library = getattr(code, "library", None)
+        if hasattr(library, "_shared_module") and (file := self._file(code)).exists():
+            library._shared_module = UnreadModule(file)  # type: ignore[union-attr]
+
+    def _file(self, code: Any) -> Path:
+        """Where it lies: another processor's is another file."""
+        told = repr((self._signature, code.target_context.codegen().magic_tuple()))
+        return self._folder / f"{self._name}.{hashlib.sha256(told.encode()).hexdigest()[:16]}.bc"
+
+
+def _outline(whole: ModuleRef) -> ModuleRef:
+    """A module with functions of the same names that do nothing: by them Numba knows what there is."""
+    outline, nothing = ir.Module(), ir.FunctionType(ir.VoidType(), ())
+    for function in whole.functions:
+        if not function.is_declaration:
+            named = ir.Function(outline, nothing, function.name)
+            named.linkage = "linkonce_odr"
+            ir.IRBuilder(named.append_basic_block()).ret_void()
+    return parse_assembly(str(outline))

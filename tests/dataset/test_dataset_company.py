@@ -22,7 +22,7 @@ from elbowroom.dataset.walk import company_on, controller_of, setting_of
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.apart import Walker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion
-from elbowroom.experiment.parallel import Processes
+from elbowroom.experiment.parallel import ThisProcess
 from place_builder import Boxes, write_place
 
 SPEC = DatasetSpec(walks=1, shard=1, seconds=1.2, places=("gauntlet:1",), company=(2,))
@@ -38,7 +38,7 @@ CLOSET: Boxes = {
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("company")
-    make_dataset(SPEC, folder, Processes(1))
+    make_dataset(SPEC, folder, ThisProcess())
     return folder
 
 
@@ -74,7 +74,7 @@ def test_the_rows_tell_where_they_were(made: Path) -> None:
 
 @pytest.mark.long
 def test_walked_again_they_are_the_same(made: Path) -> None:
-    checked = check_dataset(made, Processes(1), 1)
+    checked = check_dataset(made, ThisProcess(), 1)
     assert checked.faults == ()
     assert checked.walked == 1
 

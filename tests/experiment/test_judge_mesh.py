@@ -13,6 +13,7 @@ from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
 from elbowroom.body.loading.settings import LoadSettings
+from elbowroom.experiment.judge.crossing_triangles import crossing_depths
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.mesh_judge import MeshJudge, region_of
 from elbowroom.experiment.judge.motion import ShownMotion
@@ -210,13 +211,17 @@ def test_nothing_is_missed(seed: int, place: Callable[[np.random.Generator], Obs
     assert ledger.touching == set(np.flatnonzero(whole < -1e-5))
 
 
-def whole_obstacles(scene: Scene) -> list[tuple[object, object]]:
-    """Shapes of the library and where they are: a mesh is one of them."""
-    return [
-        (triangles(shape.vertices, shape.faces) if isinstance(shape, Mesh) else coal.Box(*shape.size), placed)  # type: ignore[union-attr]
-        for _, shape, center, turn in scene.obstacles
-        for placed in [coal.Transform3s(quaternion.to_matrix(turn), center)]
-    ]
+def whole_obstacles(scene: Scene) -> list[tuple[object, object, Floats | None]]:
+    """Shapes of the library and where they are: a mesh is one of them, and has its corners (T, 3, 3) in the world."""
+    found = list[tuple[object, object, Floats | None]]()
+    for _, shape, center, turn in scene.obstacles:
+        matrix = quaternion.to_matrix(turn)
+        if isinstance(shape, Mesh):
+            there = shape.vertices @ matrix.T + center
+            found.append((triangles(there, shape.faces), coal.Transform3s(), there[shape.faces]))
+        else:
+            found.append((coal.Box(*shape.size), coal.Transform3s(matrix, center), None))  # type: ignore[union-attr]
+    return found
 
 
 def triangles(points: Floats, faces: NDArray[np.int64]) -> object:
@@ -228,7 +233,7 @@ def triangles(points: Floats, faces: NDArray[np.int64]) -> object:
     return model
 
 
-def whole_distance(points: Floats, shape: object, place: object) -> float:
+def whole_distance(points: Floats, shape: object, place: object, corners: Floats | None) -> float:
     bodies = (triangles(points, SKIN.triangles), coal.Transform3s(), shape, place)
     distance = coal.distance(*bodies, coal.DistanceRequest(), coal.DistanceResult())
     if distance > 0.0:
@@ -236,7 +241,11 @@ def whole_distance(points: Floats, shape: object, place: object) -> float:
     request, result = coal.CollisionRequest(), coal.CollisionResult()
     request.num_max_contacts, request.enable_contact = 100 * len(SKIN.triangles), True
     coal.collide(*bodies, request, result)
-    return float(min(contact.penetration_depth for contact in result.getContacts()))
+    contacts = result.getContacts()
+    if corners is None:
+        return float(min(contact.penetration_depth for contact in contacts))
+    mine, theirs = ([getattr(contact, side) for contact in contacts] for side in ("b1", "b2"))
+    return -float(crossing_depths(points[SKIN.triangles[mine]], corners[theirs]).max())
 
 
 def test_a_fingertip_in_a_wall_is_reported_with_its_depth() -> None:
@@ -254,6 +263,20 @@ def test_a_fingertip_in_a_wall_is_reported_with_its_depth() -> None:
     assert contact.first == pytest.approx(4.5 / 60, abs=1 / 240)  # 22 mm after 4.4 frames
     assert contact.deepest.time == pytest.approx(0.1)
     assert verdict.triangles == len(SKIN.triangles)
+
+
+def test_a_fingertip_through_a_sheet_is_as_deep_as_it_has_to_be_drawn_out() -> None:
+    """Of two meshes the other library tells a depth of metres, where one has to be moved by millimetres."""
+    points = SKIN.vertices(poses(STOCK, T_POSE[None], np.zeros((1, 7))), np.arange(len(SKIN.joints)))[0]
+    sheet = Mesh(
+        np.array([[0.0, -2.0, -2.0], [0.0, 4.0, 0.0], [0.0, -2.0, 2.0]]),
+        np.array([[0, 1, 2]]),
+    )
+    face = np.array([[points[:, 0].max() - 0.003, 1.0, 0.0]])
+    scene = scene_with(Obstacles((sheet,), face, quaternion.IDENTITY[None], ("sheet",)))
+    verdict = judge(ShownMotion.at_rate(*gliding(T_POSE, 2, speed=0.0)), STOCK, scene)
+    assert verdict.mesh is not None
+    assert 0.002 < verdict.mesh.deepest <= 0.003 + 1e-9
 
 
 def test_a_clean_mesh_tells_its_clearance() -> None:

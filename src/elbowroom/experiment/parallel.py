@@ -1,4 +1,4 @@
-"""Many small tasks, and who does them: several processes of this machine, or whatever else is `Workers`."""
+"""Many small tasks, and who does them: this process, several of this machine, or whatever else is `Workers`."""
 
 import multiprocessing
 import os
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 from elbowroom.errors import InputError
 from elbowroom.experiment.opened import Thing
@@ -53,6 +53,23 @@ def check_jobs(jobs: int) -> None:
     """Raises `InputError` unless this many processes may be started."""
     if not 1 <= jobs <= MAX_JOBS:
         raise InputError(f"jobs: {jobs} is not between 1 and {MAX_JOBS}")
+
+
+@dataclass(frozen=True)
+class ThisProcess:
+    """The very process that asks, which does one task after the other: nothing is started for it."""
+
+    at_once: ClassVar[int] = 1
+
+    def run(self, tasks: Sequence[Task[Result]]) -> Iterator[tuple[int, Result]]:
+        """See `Workers`."""
+        for place, task in enumerate(tasks):
+            yield place, task.run()
+
+
+def workers_here(jobs: int) -> Workers:
+    """So many at once on this machine; raises `InputError` for a number out of range."""
+    return ThisProcess() if jobs == 1 else Processes(jobs)
 
 
 @dataclass(frozen=True)

@@ -31,11 +31,11 @@ def check_workers(cluster: str | None, jobs: int | None = None) -> None:
 @contextmanager
 def chosen_workers(cluster: str | None, jobs: int | None, most: int | None = None) -> "Iterator[Workers]":
     """Those that the options name; of this machine's processes at most `most`, the number of tasks."""
-    from elbowroom.experiment.parallel import Processes, usable_cores
+    from elbowroom.experiment.parallel import usable_cores, workers_here
 
     if cluster is None:
         cores = usable_cores()
-        yield Processes(min(cores, most or cores) if jobs is None else jobs)
+        yield workers_here(min(cores, most or cores) if jobs is None else jobs)
         return
     from elbowroom.cluster.connection import connected
 

@@ -1,16 +1,18 @@
 """The skinned mesh against obstacles: every triangle, none left out, the far ones dismissed in bulk."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.around import Around
+from elbowroom.experiment.judge.crossing_triangles import crossing_depths
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
-from elbowroom.experiment.judge.pieces import MOST
+from elbowroom.experiment.judge.pieces import MOST, Piece
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.skin import Skin
 
@@ -98,14 +100,20 @@ class MeshJudge:
         model.endModel()
         bodies = (model, coal.Transform3s(), obstacle.shape, obstacle.place)
         distance = float(coal.distance(*bodies, self._nearest, coal.DistanceResult()))
-        return distance if distance > 0.0 else self._depth(bodies, len(triangles))
+        if distance > 0.0:
+            return distance
+        contacts = self._contacts(bodies, len(triangles))
+        if not isinstance(obstacle.made_of, Piece):
+            return min([float(contact.penetration_depth) for contact in contacts], default=0.0)
+        mine, theirs = ([getattr(contact, side) for contact in contacts] for side in ("b1", "b2"))
+        return -float(crossing_depths(points[triangles[mine]], obstacle.triangles[theirs]).max(initial=0.0))
 
-    def _depth(self, bodies: tuple[object, ...], triangles: int) -> float:
-        """The contact depth of the deepest triangle, negative (a distance query stops at the first that touches)."""
+    def _contacts(self, bodies: tuple[object, ...], triangles: int) -> list[Any]:
+        """All contacts of a patch with an obstacle (a distance query stops at the first that touches)."""
         request, result = self._coal.CollisionRequest(), self._coal.CollisionResult()
         request.num_max_contacts, request.enable_contact = triangles * MOST, True
         self._coal.collide(*bodies, request, result)
-        return min([float(contact.penetration_depth) for contact in result.getContacts()], default=0.0)
+        return list(result.getContacts())
 
 
 def region_of(bone: str) -> str:

@@ -45,6 +45,12 @@ class Obstacle:
         """The library's shape; that of a piece is made when it is first asked for: most are never near."""
         return _library_mesh(self.made_of.mesh) if isinstance(self.made_of, Piece) else self.made_of
 
+    @cached_property
+    def triangles(self) -> Floats:
+        """Corners (T, 3, 3) in the world of a piece of a mesh."""
+        corners: Floats = self.made_of.mesh.corners @ self.place.getRotation().T + self.place.getTranslation()
+        return corners
+
     @property
     def reach(self) -> Floats:
         """Half lengths (3,) along the world's axes of the box along these that it lies in, metres."""
