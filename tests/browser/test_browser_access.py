@@ -50,7 +50,7 @@ def barriers_in_looks(page: Any, looks: list[tuple[str, str]]) -> dict[str, list
 
 @pytest.mark.parametrize(
     "looks",
-    [pytest.param(LOOKS[::3], id="each scheme"), pytest.param(LOOKS, id="every look", marks=pytest.mark.long)],
+    [pytest.param(LOOKS[:1], id="one look"), pytest.param(LOOKS, id="every look", marks=pytest.mark.long)],
 )
 def test_axe_finds_nothing_serious_wherever_one_can_be(open_page: Open, looks: list[tuple[str, str]]) -> None:
     live = open_page("scene=doorway&theme=auto", viewport=(1280, 800), reduced_motion="reduce")

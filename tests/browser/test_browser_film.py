@@ -74,12 +74,13 @@ except InputError as error:
 """
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("chromium")
 @pytest.mark.parametrize(
     ("page", "said"),
     [
         ("data:text/html,<title>nothing</title>", "the page was not drawn within 5 s: a smaller --size or"),
-        pytest.param(DEAF, "2", marks=pytest.mark.long),
+        (DEAF, "2"),
     ],
     ids=["nothing comes up", "keys are missed"],
 )

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from live_page import LivePage
 
 Open = Callable[..., LivePage]
@@ -49,6 +51,7 @@ def picture(live: LivePage, name: str) -> None:
         live.page.screenshot(path=Path(PICTURES) / f"phone-{name}.png")
 
 
+@pytest.mark.long
 def test_a_first_visit_ends_with_a_shared_film_of_a_crossing(open_page: Open) -> None:
     options: dict[str, Any] = {"has_touch": True, "is_mobile": True, "locale": "zh-TW", "device_scale_factor": 1}
     live = open_page("scene=beam&speed=1.6", viewport=(390, 844), script=DIALOG, **options)

@@ -91,6 +91,7 @@ def test_on_a_phone_panels_can_be_hidden_and_come_back(open_page: Open) -> None:
     assert "#hud" in boxes(live)
 
 
+@pytest.mark.long
 def test_a_page_that_stands_still_keeps_its_line(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.page.evaluate("() => { const end = performance.now() + 9000; while (performance.now() < end); }")
