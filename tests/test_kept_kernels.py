@@ -107,6 +107,49 @@ def test_a_full_disk_is_no_fault(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert kernel.cache_path == str(tmp_path)
 
 
+TOLD = """
+import os
+import signal
+import sys
+from ctypes import c_void_p, cast
+from llvmlite.binding import ExecutionEngine
+from elbowroom.cli.main import run
+import elbowroom.cli.main as cli
+
+found, asked = ExecutionEngine._find_module_ptr, []
+
+
+def find(engine, pointer):
+    asked.append(cast(pointer, c_void_p).value)
+    if asked.count(asked[-1]) == 2:  # first it is asked whether its code is known, then the code is told
+        os.kill(os.getpid(), signal.SIGINT)
+    return found(engine, pointer)
+
+
+ExecutionEngine._find_module_ptr = find
+sys.path.insert(0, {folder!r})
+
+
+def app(**_):
+    from toy import double
+    double(4.0)
+    print("went on")
+
+
+cli.app = app
+run()
+"""
+
+
+def test_who_is_interrupted_while_machine_code_is_made_ends(tmp_path: Path) -> None:
+    """The signal is heard in a callback of the compiler, which swallows what is raised."""
+    toy(tmp_path)
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    call = [sys.executable, "-c", TOLD.format(folder=str(tmp_path))]
+    ended = subprocess.run(call, env=environment, check=False, capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout) == (130, "")
+
+
 def toy(folder: Path) -> Path:
     """A module with a kernel; where that is kept."""
     source = "from elbowroom.jit import exact_kernel\n\n\n@exact_kernel\ndef double(x):\n    return 2.0 * x\n"

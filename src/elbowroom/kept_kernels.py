@@ -22,6 +22,7 @@ from elbowroom.kernel_bitcode import Bitcode
 from elbowroom.kernel_turns import Turn
 
 _UNREADABLE = (OSError, ValueError, TypeError)
+_NO_CODE = "no compiled object"  # in Numba's words
 
 
 class KeptKernel:
@@ -62,13 +63,21 @@ class KeptKernel:
         return None
 
     def save_overload(self, signature: Any, code: Any) -> None:
-        """Keep machine code, if there is room for it."""
+        """Keep machine code, if there is room for it.
+
+        Who is told to end while LLVM makes machine code hears of it in a callback, which lets no exception through: the
+        code is missing then. What Numba says to that is raised as the `KeyboardInterrupt` that it is.
+        """
         try:
             with contextlib.suppress(OSError):
                 _sum_file(self._folder, self._name).unlink(missing_ok=True)
                 with Bitcode(self._folder, self._name, signature).written_apart(code):
                     self._cache.save_overload(signature, code)
                 note(self._folder, self._name)
+        except RuntimeError as error:
+            if _NO_CODE not in str(error):
+                raise
+            raise KeyboardInterrupt from error
         finally:
             self._turn.give_up()
 
