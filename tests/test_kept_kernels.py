@@ -111,6 +111,7 @@ TOLD = """
 import os
 import signal
 import sys
+import time
 from ctypes import c_void_p, cast
 from llvmlite.binding import ExecutionEngine
 from elbowroom.cli.main import run
@@ -121,8 +122,8 @@ found, asked = ExecutionEngine._find_module_ptr, []
 
 def find(engine, pointer):
     asked.append(cast(pointer, c_void_p).value)
-    if asked.count(asked[-1]) == 2:  # first it is asked whether its code is known, then the code is told
-        os.kill(os.getpid(), signal.SIGINT)
+    if asked.count(asked[-1]) % 2 == 0:  # first it is asked whether its code is known, then the code is told
+        os.kill(os.getpid(), getattr(signal, sys.argv[1]))
     return found(engine, pointer)
 
 
@@ -133,6 +134,7 @@ sys.path.insert(0, {folder!r})
 def app(**_):
     from toy import double
     double(4.0)
+    time.sleep(5.0)
     print("went on")
 
 
@@ -141,11 +143,12 @@ run()
 """
 
 
-def test_who_is_interrupted_while_machine_code_is_made_ends(tmp_path: Path) -> None:
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+def test_who_is_told_to_end_while_machine_code_is_made_ends(tmp_path: Path, sent: str) -> None:
     """The signal is heard in a callback of the compiler, which swallows what is raised."""
     toy(tmp_path)
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
-    call = [sys.executable, "-c", TOLD.format(folder=str(tmp_path))]
+    call = [sys.executable, "-c", TOLD.format(folder=str(tmp_path)), sent]
     ended = subprocess.run(call, env=environment, check=False, capture_output=True, text=True)
     assert (ended.returncode, ended.stdout) == (130, "")
 
@@ -175,7 +178,7 @@ def test_a_real_kernel_is_kept_checked_and_made_anew(tmp_path: Path) -> None:
         assert {file.name for file in folder.iterdir()} == files
         flip(damaged)
         assert compilations(tmp_path) == "1"
-        assert compilations(tmp_path) == "0"
+    assert compilations(tmp_path) == "0"
 
 
 def test_kernels_run_uncompiled_too(tmp_path: Path) -> None:

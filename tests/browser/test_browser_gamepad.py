@@ -48,6 +48,7 @@ def go_down_to(live: LivePage, element: str) -> None:
     raise AssertionError(f"{element} is not reached")
 
 
+@pytest.mark.long
 def test_menu_lists_and_help_are_worked_by_the_pad(open_page: Open) -> None:
     live = open_page("scene=a", viewport=(640, 480), script=PAD, sparing=False)
     live.wait("s.scene === 'a'")

@@ -73,6 +73,7 @@ def test_overlays_switch_on_and_off(open_page: Open) -> None:
     live.wait("s.overlays.length === 2")
 
 
+@pytest.mark.long
 def test_time_pauses_steps_and_slows(open_page: Open) -> None:
     live = open_page("scene=empty")
     live.page.keyboard.press("p")
@@ -152,6 +153,7 @@ def test_a_dropped_file_is_in_no_other_pages_menu(open_page: Open) -> None:
     assert avatar in mine.page.evaluate(titles)
 
 
+@pytest.mark.long
 def test_the_page_says_what_a_file_permits_and_what_was_made_of_it(open_page: Open, tmp_path: Path) -> None:
     live = open_page("scene=empty")
     file = tmp_path / "mine.vrm"
@@ -172,6 +174,7 @@ def test_a_wrong_file_is_refused_in_one_sentence(open_page: Open) -> None:
     live.excuse_refusals()
 
 
+@pytest.mark.long
 def test_the_page_reconnects_by_itself_and_keeps_its_choices(open_page: Open) -> None:
     with LiveServer() as server:
         live = open_page("scene=c", viewport=SMALL, server=server)

@@ -67,6 +67,7 @@ def test_a_walk_is_replayed_compared_and_left_again(open_page: Open) -> None:
     live.wait(f"s.root.z < {z} - 0.2")
 
 
+@pytest.mark.long
 def test_a_replay_is_filmed_to_its_end(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(400, 300))
     _walk_to(live, 1.0)

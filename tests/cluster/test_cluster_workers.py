@@ -73,6 +73,7 @@ def test_what_a_task_raises_is_raised_and_the_next_run_works(workers: RayWorkers
     assert [answer.value for _, answer in workers.run([Square(3)])] == [9]
 
 
+@pytest.mark.long
 def test_a_worker_that_dies_costs_nothing(workers: RayWorkers, tmp_path: Path) -> None:
     assert list(workers.run([Death(tmp_path / "died")])) == [(0, "lives")]
     with pytest.raises(InputError, match="a task ended its worker 3 times"):

@@ -106,6 +106,7 @@ def naive_flows(outcomes: list[bool], steps: int) -> list[Phase]:
     return flows
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=30)
 @given(outcomes=st.lists(st.booleans(), max_size=20))
 def test_flows_follow_the_figure(outcomes: list[bool]) -> None:

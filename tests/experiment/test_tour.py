@@ -93,6 +93,7 @@ def test_the_command_tells_it_as_json() -> None:
     assert (told["targets"], told["arrived"], told["touching_frames"], told["given_up"]) == (2, 2, 0, [])
 
 
+@pytest.mark.long
 def test_a_judgement_that_is_broken_off_leaves_the_walk_and_what_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = Judging.parts
 

@@ -73,6 +73,7 @@ def test_as_planned_it_shows_the_planning_configuration_alone(library: Library) 
     assert np.abs(free.node_pose().rotations - wanted).max() > 0.05
 
 
+@pytest.mark.long
 def test_a_clip_begins_anew_and_jumps_there(library: Library) -> None:
     walk = clip_walk(library)
     stage = Stage(walk, 0.0)

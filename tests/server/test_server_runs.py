@@ -69,6 +69,7 @@ def refusal(url: str, data: bytes | None = None) -> tuple[int, str]:
     return caught.value.code, json.load(caught.value)["error"]
 
 
+@pytest.mark.long
 def test_a_run_is_what_was_shown(walk: tuple[Path, list[Frame]]) -> None:
     file, shown = walk
     poser, model = Poser(Humanoid.default()), Humanoid.default()

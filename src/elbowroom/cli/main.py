@@ -7,9 +7,11 @@ A command is one function in a module of its own, registered at the foot of this
 inside their function, so that `elbowroom --help` answers at once.
 """
 
+import _thread
 import errno
 import signal
 import sys
+import threading
 from functools import cache
 from types import FrameType
 from typing import Annotated, Any
@@ -40,6 +42,7 @@ from elbowroom.errors import InputError
 
 WRONG_CALL = 2
 INTERRUPTED = 130
+_SOON = 0.05  # seconds
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 # The base of all "wrong call" errors, which typer takes from click or carries itself, depending on its version.
@@ -91,6 +94,7 @@ def _first(
 def run() -> None:
     """Run the command that the arguments ask for, and leave the process with its exit code."""
     signal.signal(signal.SIGTERM, _told_to_end)
+    sys.unraisablehook = _tell_again
     try:
         code = app(standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
@@ -115,6 +119,16 @@ def _told_to_end(sig: int, _frame: FrameType | None) -> None:
     """
     signal.signal(sig, signal.SIG_IGN)
     raise SystemExit(128 + sig)
+
+
+def _tell_again(ignored: "sys.UnraisableHookArgs") -> None:
+    """Who is interrupted while a compiler calls back is told again: what is raised there ends the callback alone."""
+    if not isinstance(ignored.exc_value, KeyboardInterrupt | SystemExit):
+        sys.__unraisablehook__(ignored)
+        return
+    again = threading.Timer(_SOON, _thread.interrupt_main)
+    again.daemon = True
+    again.start()
 
 
 def _broken_off(error: SystemError) -> int | str | None:
