@@ -126,7 +126,11 @@ def _tell_again(ignored: "sys.UnraisableHookArgs") -> None:
     if not isinstance(ignored.exc_value, KeyboardInterrupt | SystemExit):
         sys.__unraisablehook__(ignored)
         return
-    again = threading.Timer(_SOON, _thread.interrupt_main)
+    number = signal.SIGINT
+    if isinstance(ignored.exc_value, SystemExit):
+        number = signal.SIGTERM
+        signal.signal(number, _told_to_end)
+    again = threading.Timer(_SOON, _thread.interrupt_main, (number,))
     again.daemon = True
     again.start()
 
