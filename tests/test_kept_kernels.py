@@ -181,6 +181,9 @@ def test_a_real_kernel_is_kept_checked_and_made_anew(tmp_path: Path) -> None:
         flip(damaged)
         assert compilations(tmp_path) == "1"
     assert compilations(tmp_path) == "0"
+    bitcode.unlink()  # callers would take in a kernel that does nothing
+    (folder / f"{name}.sum").unlink()
+    assert compilations(tmp_path) == "1"
 
 
 def test_kernels_run_uncompiled_too(tmp_path: Path) -> None:

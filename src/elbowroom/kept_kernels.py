@@ -55,10 +55,12 @@ class KeptKernel:
         if is_whole(self._folder, self._name):
             with contextlib.suppress(Exception):  # damaged where nothing is known of it: unpickling may raise anything
                 found = self._cache.load_overload(signature, context)
-                if found is not None and not known:
-                    note(self._folder, self._name)
-                Bitcode(self._folder, self._name, signature).leave_unread(found)
-                return found
+                if found is None:
+                    return None
+                if Bitcode(self._folder, self._name, signature).leave_unread(found):
+                    if not known:
+                        note(self._folder, self._name)
+                    return found
         forget(self._folder, self._name)
         return None
 

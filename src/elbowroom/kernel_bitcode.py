@@ -57,11 +57,17 @@ class Bitcode:
         finally:
             library._shared_module = whole  # type: ignore[union-attr]
 
-    def leave_unread(self, code: Any) -> None:
-        """Let callers of `code`, as Numba read it, find its bitcode in the file, if it was written apart."""
+    def leave_unread(self, code: Any) -> bool:
+        """Let callers of `code`, as Numba read it, find its bitcode in the file; whether it is there.
+
+        Without, they would take in functions that do nothing.
+        """
         library = getattr(code, "library", None)
-        if hasattr(library, "_shared_module") and (file := self._file(code)).exists():
-            library._shared_module = UnreadModule(file)  # type: ignore[union-attr]
+        if not hasattr(library, "_shared_module"):
+            return True
+        file = self._file(code)
+        library._shared_module = UnreadModule(file)  # type: ignore[union-attr]
+        return file.exists()
 
     def _file(self, code: Any) -> Path:
         """Where it lies: another processor's is another file."""
