@@ -4,6 +4,7 @@ The root's path is planned for upright legs. How deep the body crouches on it is
 pelvis have to be looked at again where it does. That depends on the lowering and on the root's state alone.
 """
 
+import math
 from copy import copy
 from dataclasses import replace
 
@@ -59,29 +60,33 @@ class LoweredLegs:
         """The path with what the feet stand on at its key times; itself on plain ground."""
         return path if self.footing.plain else replace(path, states=self.footing.stood(path.states)[0])
 
-    def clearances(self, roots: Floats, lowerings: Floats, after: Floats | None = None) -> Floats32:
+    def clearances(
+        self, roots: Floats, lowerings: Floats, after: Floats | None = None, farthest: float = math.inf
+    ) -> Floats32:
         """Clearance (N,) at root states (N, 7) and lowerings (N,), `after` (N,) seconds on the path, or at its start.
 
-        Infinite where upright or far from everything.
+        Infinite where upright. More than `farthest` metres are not told apart.
         """
-        return self._standing(self.footing.stood(roots)[0], lowerings, np.zeros(len(roots)) if after is None else after)
+        times = np.zeros(len(roots)) if after is None else after
+        return self._standing(self.footing.stood(roots)[0], lowerings, times, farthest)
 
-    def _standing(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
+    def _standing(self, roots: Floats, lowerings: Floats, after: Floats, farthest: float) -> Floats32:
         """`clearances` (N,) where the feet stand in the root states (N, 7)."""
         out = np.full(len(roots), np.inf, np.float32)
         lowered = np.flatnonzero(lowerings > _LEAST)
         if len(lowered):
-            out[lowered] = self._crouching(roots[lowered], lowerings[lowered], after[lowered])
+            out[lowered] = self._crouching(roots[lowered], lowerings[lowered], after[lowered], farthest)
         return out
 
-    def _crouching(self, roots: Floats, lowerings: Floats, after: Floats) -> Floats32:
+    def _crouching(self, roots: Floats, lowerings: Floats, after: Floats, farthest: float) -> Floats32:
         """`clearances` (N,) where all are lowered and the feet stand, N at least 1."""
-        out = self._clear(self._near(roots), roots, lowerings)
+        out = self._clear(self._near(roots), roots, lowerings, farthest)
         if self._sweeps is not None:
             spans = np.clip((after / self._interval).astype(np.int64), 0, span_count(self._sweeps) - 1)
             for span in np.unique(spans):
                 at = spans == span
-                out[at] = np.minimum(out[at], self._clear(span_of(self._sweeps, span), roots[at], lowerings[at]))
+                near = span_of(self._sweeps, span)
+                out[at] = np.minimum(out[at], self._clear(near, roots[at], lowerings[at], farthest))
         return out
 
     def _near(self, roots: Floats) -> Nearby:
@@ -94,7 +99,7 @@ class LoweredLegs:
         )
         return self._obstacles.picked(numbers[self._low[numbers]])
 
-    def _clear(self, near: Nearby, roots: Floats, lowerings: Floats) -> Floats32:
+    def _clear(self, near: Nearby, roots: Floats, lowerings: Floats, farthest: float) -> Floats32:
         """Clearance (N,) from obstacles; all is reckoned from the first root, so that single precision holds.
 
         Feet stand in the root states (N, 7).
@@ -106,7 +111,7 @@ class LoweredLegs:
         segments = self.footing.lifted(
             leg_capsules(self._model, states, lowerings), self._model.roots, states, lowerings
         )
-        return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]))
+        return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]), farthest)
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
         """Which of the lowerings (n+1, V) bring legs within `margin` of anything about their key time: (n+1, V)."""
@@ -117,7 +122,7 @@ class LoweredLegs:
         states = np.repeat(roots, lowerings.shape[1], axis=0)
         each = np.repeat(lowerings[:, None], _AROUND, axis=1).ravel()
         after = np.repeat(times.ravel(), lowerings.shape[1])
-        found = self._standing(states, each, after).reshape(len(times), _AROUND, -1)
+        found = self._standing(states, each, after, margin).reshape(len(times), _AROUND, -1)
         blocked: Bools = found.min(axis=1) < margin
         return blocked
 
@@ -130,7 +135,8 @@ class LoweredLegs:
         roots, lowerings, after, owner = _shown(path.states, path.interval, *curve)
         blocked = np.zeros(path.horizon, np.bool_)
         if len(owner):
-            blocked[owner[self._crouching(self.footing.stood(roots)[0], lowerings, after) < margin]] = True
+            clear = self._crouching(self.footing.stood(roots)[0], lowerings, after, margin)
+            blocked[owner[clear < margin]] = True
         return blocked
 
 

@@ -54,7 +54,7 @@ class Crouch:
         if max(deep.tolist()) <= _UPRIGHT:
             return False
         if self._margin is None:
-            now = self._legs.clearances(self._path.states[:1], deep[:1])
+            now = self._legs.clearances(self._path.states[:1], deep[:1], farthest=2.0 * _MARGIN)
             self._margin = min(_MARGIN, max(0.5 * float(now[0]), 0.0))
         blocked = self._legs.blocked_intervals(self._path, deep, rates, self._margin)
         folded = self._folds(keys, velocities)

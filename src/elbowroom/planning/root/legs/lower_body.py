@@ -105,16 +105,18 @@ class LowerBody:
         """
         return room_at(self.legs, among, np.ascontiguousarray(states), spare, farthest)
 
-    def standing_clearance(self, among: Neighbours, places: Floats, height: float = 0.0) -> Floats32:
+    def standing_clearance(
+        self, among: Neighbours, places: Floats, height: float = 0.0, farthest: float = math.inf
+    ) -> Floats32:
         """Clearance (N,) of the stance capsule at `places` (N, 2) on a way over the ground that begins at a height.
 
         Where the ground is not plain, it is held above all that is a step high, and above the treads about it; negative
-        where there is no ground.
+        where there is no ground. More than `farthest` metres are not told apart.
         """
         segments = stance_segments(self.stance, places[:, 0], places[:, 1])
         radii = np.array([self.stance.radius])
         if self.footing.plain:
-            return clearance(segments, radii, among.obstacles)
+            return clearance(segments, radii, among.obstacles, farthest)
         heights = heights_along(self.footing.ground, height, places)
         there = np.isfinite(heights)
         above = np.where(there, heights, height)
@@ -122,7 +124,8 @@ class LowerBody:
         segments[0, 1], segments[0, 4] = tops + self.stance.radius, above + raised.high
         segments[0, 4] = np.maximum(segments[0, 4], segments[0, 1])
         near = among.above(float(above.min()) + _FAR_BELOW, float(above.max()) + self._tall)
-        return np.where(there, clearance(segments.astype(np.float32), radii, near.obstacles), np.float32(-1.0))
+        clear = clearance(segments.astype(np.float32), radii, near.obstacles, farthest)
+        return np.where(there, clear, np.float32(-1.0))
 
     def _tops(self, heights: Floats, places: Floats) -> Floats:
         """What a stance at places (N, 2) and `heights` (N,) is held above (N,): a step, and the treads about it."""

@@ -110,12 +110,12 @@ class RouteFinder:
 
         The route begins at a `height`.
         """
-        points, along = route_points(route, _SPACING)
-        clear = self._body.standing_clearance(obstacles, points, height)
+        (points, along), margin = route_points(route, _SPACING), self._settings.margin
+        clear = self._body.standing_clearance(obstacles, points, height, margin)
         if self.above is not None:
             clear = np.minimum(clear, self.above.clearance(points, line.facing))
         leaving = (along < 0.3) & (clear >= min(float(clear[0]), 0.0) - _MORE)
-        blocked = np.flatnonzero((clear < self._settings.margin) & ~leaving)
+        blocked = np.flatnonzero((clear < margin) & ~leaving)
         return float(along[blocked[0]]) if len(blocked) else math.inf, len(points)
 
     def _round(
