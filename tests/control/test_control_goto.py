@@ -1,6 +1,7 @@
 """Walking to a place: there, round things, given up with a reason, and taken over by the next key."""
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise, product
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
-from elbowroom.planning.navigation.way import NoWayError
+from elbowroom.planning.navigation.way import NoWayError, Place, Spot, Way
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.world.scene import Scene
 from stairs import BEFORE, ON_FLOOR, TREADS, spiral_stair, tread_top
@@ -115,6 +116,34 @@ def test_what_is_blocked_for_long_is_given_up_with_the_place(humanoid: Humanoid)
     assert told[-1].idle
 
 
+def test_each_time_one_steps_back_farther(humanoid: Humanoid) -> None:
+    controller = Controller(humanoid, Scene.load("empty"))
+    journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (0.0, 5.0)), FORWARD)
+    backs, frames = [0], 0
+    while journey.walking:
+        frames += 1
+        back = journey.command(RootState(), DT, stuck=True, plans=frames // 10).forward < 0.0
+        if back:
+            backs[-1] += 1
+        elif backs[-1]:
+            backs.append(0)
+    assert backs[:-1] == pytest.approx([backs[0] * times for times in range(1, 7)], abs=6)
+
+
+def test_who_comes_no_farther_gives_up_however_far_he_steps_back(humanoid: Humanoid) -> None:
+    """At 2 m nobody gets on; there and back again is no progress."""
+    controller = Controller(humanoid, Scene.load("empty"))
+    journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (0.0, 5.0)), FORWARD)
+    along, frames = 0.0, 0
+    while journey.walking:
+        frames += 1
+        forward = journey.command(RootState(z=along), DT, stuck=along >= 2.0, plans=frames // 10).forward
+        along = min(along + 1.1 * forward * DT, 2.0)
+        assert frames * DT < 90.0
+    assert journey.state is JourneyState.GIVEN_UP
+    assert "blocked at 0.00, 2.00" in journey.reason
+
+
 @pytest.mark.parametrize(("interval", "seconds"), [(0.15, 1.2), (0.4, 2.4), (3.0, 4.0)])
 def test_who_plans_slowly_steps_back_later(humanoid: Humanoid, interval: float, seconds: float) -> None:
     """So many plans are waited for as one makes in a second where they are quick; 4 s at most."""
@@ -160,6 +189,26 @@ def test_who_was_led_off_the_way_looks_for_it_again(humanoid: Humanoid) -> None:
     assert other != way
     assert math.dist(other[0], (-2.0, 1.0)) < 0.1
     assert math.dist(other[-1], (-2.0, 4.5)) < 0.1
+
+
+def test_what_was_taken_to_be_closed_is_open_again_for_who_finds_no_other_way(humanoid: Humanoid) -> None:
+    class Gap(Navigator):
+        """Aside there is no way but through what is closed."""
+
+        def again(self, way: Way, start: Place | Spot, closed: Sequence[tuple[Spot, float]]) -> Way:
+            if closed and start[0] < -1.0:
+                raise NoWayError("no way")
+            return super().again(way, start, closed)
+
+    navigator = Gap(humanoid, bend())
+    journey, frames = Journey(navigator, navigator.find((0.0, 0.0), (-2.0, 4.5)), FORWARD), 0
+    while not journey._closed:
+        frames += 1
+        journey.command(RootState(), DT, stuck=True, plans=frames)
+    for _ in range(round(3.0 / DT)):
+        command = journey.command(RootState(-2.0, 1.0), DT, stuck=False, plans=frames)
+    assert journey.walking
+    assert math.dist(command.way[-1], (-2.0, 4.5)) < 0.1
 
 
 @pytest.mark.parametrize("up", [True, False], ids=["up", "down"])

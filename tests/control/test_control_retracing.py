@@ -1,5 +1,6 @@
 """Who stays in mid-stride and comes to no stand goes back the way he came, pose by pose."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -25,13 +26,13 @@ def walked(count: int, speed: float = 0.5) -> tuple[Retracing, list[Playback]]:
     """So many frames of an even walk."""
     retracing, poses = Retracing(), [pose(speed * DT * k, speed) for k in range(count)]
     for before, shown in pairwise(poses):
-        retracing.show(Past(before, 0.1, DT), shown)
+        retracing.show(Past(before, DT), shown)
     return retracing, poses
 
 
 def stayed(retracing: Retracing, last: Playback, seconds: float) -> None:
     for _ in range(round(seconds / DT)):
-        retracing.show(Past(last, 0.1, DT), last)
+        retracing.show(Past(last, DT), last)
 
 
 def gone_back(retracing: Retracing, dt: float = DT) -> list[Playback]:
@@ -64,20 +65,62 @@ def test_who_stays_in_a_stride_goes_back_as_fast_as_he_came_and_each_time_farthe
     assert len(gone_back(retracing, dt)) == pytest.approx(2 * len(first), abs=2)
 
 
+def dithered(retracing: Retracing, last: Playback, seconds: float) -> Playback:
+    """Arms that swing to and fro on the spot, never twice the same way; what is shown last."""
+    for k in range(round(seconds / DT)):
+        swing = 0.02 * abs((k % 40) - 20) + 1e-3 * math.sin(k)
+        dithering = pose(float(last.root[1]), 0.0)._replace(upper=np.full(LOCAL, swing))
+        retracing.show(Past(last, DT), dithering)
+        last = dithering
+    return last
+
+
 def test_who_dithers_where_he_finds_no_way_still_knows_how_he_came() -> None:
     retracing, poses = walked(200)
-    place, last = float(poses[-1].root[1]), poses[-1]
-    for k in range(60 * 12):
-        still, swing = pose(place, 0.0), 0.1 * abs((k % 40) - 20)
-        dithering = still._replace(upper=np.full(LOCAL, swing))
-        retracing.show(Past(last, 0.1, DT), dithering)
-        last = dithering
+    place = float(poses[-1].root[1])
+    stands = pose(place, 0.0)
+    retracing.show(Past(poses[-1], DT), stands)
+    last = dithered(retracing, stands, 12.0)
     for _ in range(60 * 4):
         if not retracing.goes_back:
             retracing.wait(last, DT, on_the_way=True)
-    back = gone_back(retracing)
-    assert place - float(back[-1].root[1]) == pytest.approx(0.5 * 0.4, abs=0.03)
-    assert len(back) * DT < 2.0
+    came = retracing.came(last, DT)
+    assert came is not None
+    assert came.pose is stands
+    shown, roots = retracing.go_straight(last, came, DT).pose, []
+    assert 0.0 < np.abs(shown.upper - last.upper).max() <= 1.5 * DT + 1e-9
+    for back in gone_back(retracing):
+        assert np.abs(back.upper - shown.upper).max() <= 1.5 * DT + 1e-9
+        roots.append(float(back.root[1]))
+        shown = back
+    assert max(roots) <= place + 1e-9
+    assert place - roots[-1] == pytest.approx(0.5 * 0.4, abs=0.03)
+    assert len(roots) * DT < 0.4 + float(np.abs(last.upper).max()) / 1.5 + 3 * DT
+
+
+def test_a_second_on_the_spot_is_remembered_and_where_it_was_cut() -> None:
+    retracing, poses = walked(200)
+    last = dithered(retracing, poses[-1], 0.2)
+    assert retracing.came(last, DT) is None
+    last = dithered(retracing, last, 12.0)
+    for _ in range(60 * 4):
+        retracing.wait(last, DT, on_the_way=True)
+    joined = []
+    while (past := retracing.before(1.0)) is not None and past.pose.root[1] >= poses[-1].root[1]:
+        joined.append(past.joined)
+        retracing.went()
+    assert joined.count(False) == 1, "from the last second on the spot to how he came there"
+    assert 58 <= len(joined) <= 62
+
+
+def test_the_way_back_ends_where_no_more_is_remembered() -> None:
+    retracing, poses = walked(30)
+    stayed(retracing, poses[-1], 0.6)
+    assert len(gone_back(retracing)) * DT == pytest.approx(0.4, abs=2 * DT)
+    stayed(retracing, poses[5], 0.6)
+    gone_back(retracing)
+    retracing.show(Past(poses[0], DT), poses[1])
+    assert not retracing.goes_back, "who goes on from there is not called back"
 
 
 def test_only_so_much_is_remembered_and_what_touched_is_no_way_back() -> None:
@@ -100,10 +143,10 @@ def test_who_finds_no_way_from_steep_treads_or_to_a_place_for_long_goes_back_and
     retracing, poses = walked(200)
     still = pose(float(poses[-1].root[1]), 0.0)
     still.root[RISES] = rise
-    retracing.show(Past(poses[-1], 0.1, DT), still)
+    retracing.show(Past(poses[-1], DT), still)
     for second in range(4):
-        assert not retracing.goes_back or second == 3
+        assert not retracing.goes_back or second == 3 or (on_the_way and second == 2)
         for _ in range(60):
-            retracing.show(Past(still, 0.1, DT), still)
+            retracing.show(Past(still, DT), still)
             retracing.wait(still, DT, on_the_way=on_the_way)
     assert retracing.goes_back is (rise > 0.25 or on_the_way)

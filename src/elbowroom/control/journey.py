@@ -22,10 +22,10 @@ _THERE, _NEARLY = 0.15, 0.35  # metres to the goal: one has arrived; so has who 
 _NEARER = 0.15  # metres that count as progress
 _PATIENCE, _STUCK_PATIENCE = 4.0, 1.2  # seconds without progress; the same where no way on is found
 _PLANS = 6  # that have found none until then: where these are dear, not all has been tried so soon
-_BACKS = 0.7  # seconds of stepping back
+_BACKS = 0.7  # seconds of stepping back at first; each time as much more
 _AHEAD, _DISC = 0.45, 0.3  # metres to the middle of what is taken to be closed, and its radius
 _TRIES = 6  # to get past what blocks the way
-_PAST = 1.5  # metres from there: one has got past
+_PAST = 1.5  # metres along the way from there: one has got past
 
 
 class JourneyState(Enum):
@@ -52,7 +52,7 @@ class Journey:
         self._along: Corners = ()  # the same without heights
         self._leg = 0  # the number of the leg that was reached
         self._nearest, self._waited, self._plans, self._back = math.inf, 0.0, 0, 0.0
-        self._tries, self._blocked_at = 0, way.goal
+        self._tries, self._blocked = 0, math.inf  # metres that were left where one was last blocked
 
     @property
     def goal(self) -> Place:
@@ -129,7 +129,7 @@ class Journey:
         """Notice progress, or that there is none for long."""
         left = self.way.left(here)
         if left < self._nearest - _NEARER:
-            if apart(here, self._blocked_at) > _PAST:
+            if left < self._blocked - _PAST:
                 self._tries = 0
             self._nearest, self._waited, self._plans = left, 0.0, plans
             return
@@ -144,11 +144,11 @@ class Journey:
     def _get_past(self, here: Place) -> None:
         """Step back and try again, or, the next time, go round what blocks the way."""
         self._waited, self._tries, self._corners = 0.0, self._tries + 1, []
-        self._blocked_at = here
+        self._blocked = self.way.left(here)
         if self._tries > _TRIES:
             self._give_up(f"the way is blocked at {said(here)}")
             return
-        self._back = _BACKS
+        self._back = _BACKS * self._tries
         aim = self.way.aim(here, _FAR)
         if self._tries % 2 == 0 and aim is not None:
             away = max(apart(here, aim), _AHEAD)
@@ -166,7 +166,11 @@ class Journey:
         try:
             self.way = self._navigator.again(self.way, here, self._closed)
         except NoWayError as error:
-            self._give_up(str(error))
+            if self._closed:  # it may be what is taken to be closed
+                self._closed.clear()
+                self._search(here)
+            else:
+                self._give_up(str(error))
         self._nearest = math.inf
 
     def _give_up(self, why: str) -> None:

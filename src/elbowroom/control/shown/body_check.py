@@ -84,6 +84,7 @@ class BodyCheck:
         self._around = self._that_can_move()
         self._empty = not len(scene.obstacles)
         self._above = np.setdiff1d(np.arange(len(self._radii)), self.model.roots.indices)
+        self._about_knees = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2]))
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
         self.told: Neighbour | None = None  # what they know of this one
@@ -157,6 +158,10 @@ class BodyCheck:
     def room_above(self, root: Floats, upper: Floats) -> float:
         """Metres from all that is carried by pelvis and legs to what stands."""
         return np.inf if self._empty else float(self._pose(root, upper).gaps[self._above].min())
+
+    def room_about_knees(self, root: Floats, upper: Floats) -> float:
+        """Metres from thighs and shins to what stands."""
+        return np.inf if self._empty else float(self._pose(root, upper).gaps[self._about_knees].min())
 
     def room_of_trunk(self, root: Floats, upper: Floats, time: float) -> float:
         """The same of all that is carried by the shins: what feet stand on, and go over, is no nearer for them."""

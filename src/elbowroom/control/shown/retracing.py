@@ -4,7 +4,8 @@ And for who stands on steep treads or is on the way to a place, wants to go on, 
 long: it may be that none leads back either that begins standing.
 
 All that was shown was free, and so was the way from each pose to the next: it is free the other way round too, as long
-as nothing moves.
+as nothing moves. Who dithers on the spot moves his arms alone: most of that is forgotten, and none of it is shown again
+where arms can go straight from what is shown to the pose in which one came there.
 """
 
 import math
@@ -19,19 +20,21 @@ from elbowroom.planning.stillness import SAME, SAME_TIME, is_still
 from elbowroom.world.ground.ground import STEP
 
 _REMEMBERED = 5.0  # seconds that were shown
-_PATIENCE, _LONG = 0.5, 3.0  # seconds in which legs come to a stand, where they can; in which a way is found
-_BACK = 0.4  # seconds that one goes back at first; each time that this was not enough as much more
+_PATIENCE = 0.5  # seconds in which legs come to a stand, where they can
+_LONG, _ON_THE_WAY = 3.0, 1.2  # seconds in which a way is found, by who steers; by who is on the way to a place
+_BACK = 0.4  # seconds that one goes back at first; each time that this was not enough twice as long
 _HERE = 0.005  # metres, radians: who has moved no farther is where he was
-_ALIKE, _EACH = 1e-4, 8  # metres, radians: poses that are taken for one; poses until it is looked for one again
 _ELSEWHERE = 0.5  # metres from where one has gone back from
+_DITHERED = 1.0  # seconds on one spot that are remembered, besides the pose in which one came there
+_ARMS = 1.5  # rad/s, metres a second: how fast arms go straight to where they were
 
 
 class Past(NamedTuple):
     """What was shown."""
 
     pose: Playback
-    clearance: float  # metres
     seconds: float  # for how long
+    joined: bool = True  # whether what is remembered next was shown next
 
 
 class Retracing:
@@ -40,6 +43,7 @@ class Retracing:
     def __init__(self) -> None:
         self._trail = deque[Past]()  # latest last
         self._length = 0.0  # seconds
+        self._here, self._dithered = 0, 0.0  # how many of these were shown on the spot where one is, and for how long
         self._place, self._stays, self._waits = (math.inf, math.inf, 0.0), 0.0, 0.0
         self._left = self._spare = 0.0  # seconds to go back from here; how long what is shown was shown again
         self._from, self._times = (math.inf, math.inf), 0  # where one has gone back from, and how often
@@ -47,39 +51,44 @@ class Retracing:
     @property
     def goes_back(self) -> bool:
         """Whether one is on the way back."""
-        return self._left > 0.0 and bool(self._trail)
+        return self._left > 0.0
 
     def show(self, before: Past, shown: Playback) -> None:
         """After what was shown another pose is shown now, or the same."""
         seconds = before.seconds
         if _differ(before.pose, shown):
-            self._trail.append(before)
-            self._length += seconds
-            while self._length > _REMEMBERED:
-                self._length -= self._trail.popleft().seconds
+            self._remember(before)
         x, z, heading = shown.root[:3].tolist()
         away = max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2]))
         if away > _HERE:
             self._place, self._waits = (x, z, heading), 0.0
-        else:
-            self._cut_loop(shown)
         self._stays = 0.0 if away > _HERE or is_still(shown.root[3:6]) else self._stays + seconds
         if self._stays > _PATIENCE:
             self._turn_back(x, z)
 
-    def _cut_loop(self, shown: Playback) -> None:
-        """Forget what led from a pose to the same again: who dithers on the spot has got nowhere, and came otherwise.
+    def _remember(self, past: Past) -> None:
+        """Remember what was shown; of who stays on the spot, how he came there and what he has shown last."""
+        if self._here and not _stand_alike(self._trail[-self._here].pose, past.pose):
+            self._here, self._dithered = 0, 0.0
+        self._trail.append(past)
+        self._length += past.seconds
+        self._here, self._dithered = self._here + 1, self._dithered + past.seconds
+        while self._dithered > _DITHERED and self._here > 2:
+            came = len(self._trail) - self._here
+            self._trail[came] = self._trail[came]._replace(joined=False)
+            self._forget(came + 1)
+        while self._length > _REMEMBERED:
+            self._forget(0)
 
-        It is looked for now and then; the last number of a root tells how long ago it began to breathe.
-        """
-        if not self._trail or len(self._trail) % _EACH > 0:
-            return
-        roots = np.array([past.pose.root for past in self._trail])[:, : SHOWN - 1]
-        uppers = np.array([past.pose.upper for past in self._trail])
-        apart = np.abs(roots - shown.root[: SHOWN - 1]).max(axis=1), np.abs(uppers - shown.upper).max(axis=1)
-        alike = np.flatnonzero(np.maximum(*apart) < _ALIKE)
-        while len(alike) and len(self._trail) > alike[0]:
-            self._length -= self._trail.pop().seconds
+    def _forget(self, number: int) -> Past:
+        """Forget one pose of the trail."""
+        here = number >= len(self._trail) - self._here
+        gone = self._trail[number]
+        del self._trail[number]
+        self._length -= gone.seconds
+        if here:
+            self._here, self._dithered = self._here - 1, self._dithered - gone.seconds
+        return gone
 
     def wait(self, shown: Playback, seconds: float, *, on_the_way: bool) -> None:
         """There is no way on for who pushes; only where feet stand more than a step apart from the ground there.
@@ -88,14 +97,15 @@ class Retracing:
         """
         far = on_the_way or np.abs(shown.root[RISES:ROOT_STATE:2]).max() > STEP
         self._waits += seconds if far else 0.0
-        if self._waits > _LONG:
+        if self._waits > (_ON_THE_WAY if on_the_way else _LONG):
             self._turn_back(float(shown.root[0]), float(shown.root[1]))
 
     def _turn_back(self, x: float, z: float) -> None:
         if math.dist((x, z), self._from) > _ELSEWHERE:
             self._from, self._times = (x, z), 0
+        self._left, self._spare, self._stays, self._waits = _BACK * 2.0**self._times, 0.0, 0.0, 0.0
         self._times += 1
-        self._left, self._spare, self._stays, self._waits = _BACK * self._times, 0.0, 0.0, 0.0
+        self._end_where_it_ends()
 
     def before(self, dt: float) -> Past | None:
         """What was shown before what is shown, on the way back, for another `dt` seconds; None where that stays."""
@@ -105,11 +115,39 @@ class Retracing:
 
     def went(self) -> None:
         """One has gone back to what was shown `before`."""
-        pose, _, seconds = self._trail.pop()
-        self._length, self._spare = self._length - seconds, max(self._spare - seconds, 0.0)
+        pose, seconds, _ = self._forget(len(self._trail) - 1)
+        self._spare = max(self._spare - seconds, 0.0)
         x, z, heading = pose.root[:3].tolist()
         if max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2])) > _HERE:
             self._left -= seconds
+        self._end_where_it_ends()
+
+    def came(self, shown: Playback, dt: float) -> Past | None:
+        """The pose in which one came to the spot where one is; None where it is as soon shown by going back to it."""
+        found, seconds = None, 0.0
+        for past in reversed(self._trail):
+            if not _stand_alike(past.pose, shown):
+                break
+            found, seconds = past, seconds + past.seconds
+        if found is None or (seconds < 2.0 * dt * _steps(shown, found.pose, dt) and self._trail[-1].joined):
+            return None
+        return found
+
+    def go_straight(self, shown: Playback, to: Past, dt: float) -> Past:
+        """Remember arms that go straight to what one `came` with, in place of all in between; what is next on this way.
+
+        It begins with what is `shown`.
+        """
+        while self._trail[-1] is not to:
+            self._forget(len(self._trail) - 1)
+        self._forget(len(self._trail) - 1)
+        steps = _steps(shown, to.pose, dt)
+        for step in range(steps):
+            part = step / steps
+            root, upper = (old + part * (new - old) for old, new in zip(to.pose[:2], shown[:2], strict=True))
+            self._trail.append(Past(Playback(root, upper, np.zeros_like(upper)), dt))
+            self._length += dt
+        return self._trail[-1]
 
     def give_up(self) -> None:
         """There is no way back now."""
@@ -118,9 +156,25 @@ class Retracing:
     def forget(self) -> None:
         """What was shown is no way back: it was not free, or something else stands there now."""
         self._trail.clear()
-        self._length = self._left = 0.0
+        self._length = self._left = self._dithered = 0.0
+        self._here = 0
+
+    def _end_where_it_ends(self) -> None:
+        """Who has come to the end of what is remembered goes on as he likes."""
+        if not self._trail:
+            self.give_up()
 
 
 def _differ(one: Playback, other: Playback) -> bool:
     both = zip(one[:2], other[:2], strict=True)
     return any(np.abs(before - after).max() > SAME for before, after in both)
+
+
+def _stand_alike(one: Playback, other: Playback) -> bool:
+    """Whether root and feet are in the same place."""
+    return bool(np.abs(one.root - other.root)[: SHOWN - 1].max() < _HERE)
+
+
+def _steps(one: Playback, other: Playback, dt: float) -> int:
+    """In how many steps of `dt` seconds arms go from one pose to another."""
+    return max(math.ceil(float(np.abs(one.upper - other.upper).max()) / (_ARMS * dt)), 1)

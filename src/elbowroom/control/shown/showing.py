@@ -22,6 +22,7 @@ Floats32 = NDArray[np.float32]
 
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _TO_BEGIN = 0.002  # metres that a plan needs about the pose in which it begins: of what it has it may lose the half
+_SKIN = 0.01  # metres: so far that of bent legs may be outside of their capsules
 _BREATHES = 1 / 31  # seconds: who rests need not move in every frame
 _AGAIN = 0.1  # seconds: where legs have come no nearer to a stand it is not tried again sooner
 
@@ -119,14 +120,26 @@ class Showing:
         if before is None:
             self._posed_at = self._now
             return
+        came = self._retracing.came(self._pose, dt)
+        if came is not None and self._goes_straight(came.pose):
+            before = self._retracing.go_straight(self._pose, came, dt)
+        elif not before.joined:
+            self._retracing.forget()
+            return
         posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
-        accompanied = self._around.check.accompanied
-        clearance = self._clearance_of(posed.root, posed.upper) if accompanied else before.clearance
-        if accompanied and not self._is_free(posed, clearance):
+        clearance = self._clearance_of(posed.root, posed.upper)
+        if self._around.check.accompanied and not self._is_free(posed, clearance):
             self._retracing.give_up()
             return
         self._retracing.went()
         self._show(posed, clearance, back=True)
+
+    def _goes_straight(self, to: Playback) -> bool:
+        """Whether what stands leaves the straight way from what is shown to another pose on the spot free."""
+        shown = self._pose
+        return self._around.check.free_between(
+            Frames((shown.root, to.root), (shown.upper, to.upper), (self._now, self._now))
+        )
 
     def _settle(self, dt: float) -> None:
         """Stay, as the legs come to a stand where they can, and leave the room that a motion needs to begin.
@@ -220,16 +233,24 @@ class Showing:
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
         spare = 0.0 if self.holding.active else min(self._around.spare, self._clearance)
-        if clearance < max(spare, 0.0):
+        if clearance < max(spare, 0.0) or not self._leaves_knees_room(posed):
             return False
         frames = Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
         return check.leaves_room(frames) and check.free_between(frames)
+
+    def _leaves_knees_room(self, posed: Playback) -> bool:
+        """Whether what the skin about bent knees needs is left, or as much as there was, where legs go up and down."""
+        check, shown = self._around.check, self._pose
+        if check.footing.plain or self.holding.active:
+            return True
+        room = check.room_about_knees(posed.root, posed.upper)
+        return room >= _SKIN or room >= check.room_about_knees(shown.root, shown.upper)
 
     def _show(self, pose: Playback, clearance: float, *, back: bool = False) -> None:
         if clearance < 0.0 or self._clearance < 0.0 or not self.assist:
             self._retracing.forget()
         elif not back:
-            self._retracing.show(Past(self._pose, self._clearance, self._now - self._posed_at), pose)
+            self._retracing.show(Past(self._pose, self._now - self._posed_at), pose)
         if pose.root is not self._pose.root:
             self._again = self._now
         self._before = self._pose
